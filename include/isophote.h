@@ -28,6 +28,11 @@
  *
  *   const struct IsophotePrecisionApi *precision = api->extension("isophote.precision/1");
  *
+ * The pictures that may enter a graph beside the colour, and presets, looks and colours as people write them, are those of
+ *
+ *   const struct IsophoteGuidesApi *guides = api->extension("isophote.guides/1");
+ *   const struct IsophotePresetsApi *presets = api->extension("isophote.presets/1");
+ *
  * A host that renders with Vulkan records the filter into its command buffers, from and to its images:
  *
  *   const struct IsophoteVulkanApi *vulkans = api->extension("isophote.vulkan/1");
@@ -323,6 +328,10 @@ extern "C" {
 // `ISOPHOTE_FORMAT_RGBA16F`; what a host binds in the place of such an input must have a format that its device filters.
 // Shaders in WGSL and SPIR-V only.
 #define ISOPHOTE_PRECISION_FAST 2
+
+// Lines of the picture that lengths are meant for, unless a preset says that they are pixels of the picture itself. See
+// `IsophoteRequest::reference_height`.
+#define ISOPHOTE_REFERENCE_HEIGHT 1080
 
 // Bit of features: `shaderStorageImageExtendedFormats` of `VkPhysicalDeviceFeatures`, for images of two floats.
 #define ISOPHOTE_VULKAN_STORAGE_IMAGE_EXTENDED_FORMATS 1
@@ -1043,6 +1052,138 @@ typedef struct IsophotePrecisionApi {
   // `process` on; exactly, unless set. CPUs always compute exactly. It is no part of the graph as text.
   IsophoteStatus (ISOPHOTE_ABI *graph_set_precision)(struct IsophoteGraph graph, IsophotePrecision precision);
 } IsophotePrecisionApi;
+
+// A picture that may enter a graph.
+typedef struct IsophoteGuide {
+  // Name of the graph's input, such as "normal".
+  const char *id;
+  // For people.
+  const char *label;
+  // One sentence.
+  const char *doc;
+  // Kind of the picture.
+  IsophoteKind kind;
+  // Values a pixel.
+  uint32_t channels;
+  // Bit in `IsophoteRequest::guides`.
+  uint32_t bit;
+} IsophoteGuide;
+
+// The functions of the extension "isophote.guides/1". Tags and ownership are those of `IsophoteApi`.
+typedef struct IsophoteGuidesApi {
+  // Size of this table in bytes.
+  uint32_t struct_size;
+  // [any-thread] All pictures that may enter a graph beside the colour.
+  IsophoteStatus (ISOPHOTE_ABI *guides)(const struct IsophoteGuide **guides, uint32_t *count);
+} IsophoteGuidesApi;
+
+// A look that ships with the library.
+typedef struct IsophoteLook {
+  // Stable name. `look:` and this is the name of the look where a style is named.
+  const char *id;
+  // The text of its preset.
+  const char *preset;
+} IsophoteLook;
+
+// Fault of a preset, in parts that together make one line: `place: problem; fix`.
+//
+// The buffers are the caller's; what does not fit is cut. All are filled when a function of this extension fails, and
+// none when it succeeds.
+typedef struct IsophoteFault {
+  // File and parameter at fault; empty where the caller knows them alone.
+  struct IsophoteText place;
+  // What is wrong with it.
+  struct IsophoteText problem;
+  // How to put it right; empty where the problem says that.
+  struct IsophoteText fix;
+  // Id of the node whose declaration says what is possible; empty for none.
+  struct IsophoteText node;
+} IsophoteFault;
+
+// The parameters of a graph as a preset sets them. Its number is never 0.
+typedef struct IsophoteStyle {
+  // The handle.
+  uint64_t id;
+} IsophoteStyle;
+
+// The functions of the extension "isophote.presets/1". Tags and ownership are those of `IsophoteApi`.
+//
+// Arguments named `fault` may be null. `place` names a text in messages, as the path of its file would.
+typedef struct IsophotePresetsApi {
+  // Size of this table in bytes.
+  uint32_t struct_size;
+  // [any-thread] All looks that ship, in the order of lists.
+  IsophoteStatus (ISOPHOTE_ABI *looks)(const struct IsophoteLook **looks, uint32_t *count);
+  // [any-thread] The colour that a person wrote, `#rrggbb`, `#rrggbbaa`, or three or four numbers with commas between:
+  // four numbers R, G, B, A, gamma-encoded sRGB, 0 to 1.
+  IsophoteStatus (ISOPHOTE_ABI *color)(const char *text, float *rgba, struct IsophoteFault *fault);
+  // [any-thread] Reads a preset, and writes what it holds as JSON of one form into the caller's buffer:
+  // `{"preset": {"title": {"name", "about", "tags"}, "style", "lengths", "params"}, "faults": [...]}`. A parameter is its
+  // name and `{"still": text}` or `{"keys": {"keys": [[frame, text], ...], "step"}}`, a fault its four parts. The preset is null
+  // where the text is a graph. Fails for text that is no JSON object.
+  IsophoteStatus (ISOPHOTE_ABI *read)(const char *json,
+                         const char *place,
+                         struct IsophoteText *report,
+                         struct IsophoteFault *fault);
+  // [any-thread] Writes the text of a file from a preset in the form of `read`.
+  IsophoteStatus (ISOPHOTE_ABI *write)(const char *preset, struct IsophoteText *json, struct IsophoteFault *fault);
+  // [any-thread] All faults of a preset, also those that the nodes find in its values, as a JSON array like that of `read`.
+  // `graph` is the text of the graph file that the preset names, or null where it names none.
+  IsophoteStatus (ISOPHOTE_ABI *check)(const char *json,
+                          const char *place,
+                          const char *graph,
+                          struct IsophoteText *faults,
+                          struct IsophoteFault *fault);
+  // [any-thread] Opens the node of an id, fed with what it needs and no picture gives, or the look that is named
+  // `look:ID`. The caller owns the style and destroys it.
+  IsophoteStatus (ISOPHOTE_ABI *style_create)(const char *name,
+                                 struct IsophoteStyle *style,
+                                 struct IsophoteFault *fault);
+  // [any-thread] Opens a preset, or a graph as `graph_create_from_json` takes it. `graph` is the text of the graph file
+  // that the preset names, or null where it names none. The caller owns the style and destroys it.
+  IsophoteStatus (ISOPHOTE_ABI *style_create_from_json)(const char *json,
+                                           const char *place,
+                                           const char *graph,
+                                           struct IsophoteStyle *style,
+                                           struct IsophoteFault *fault);
+  // [any-thread] Destroys a style. Graphs made of it live on.
+  IsophoteStatus (ISOPHOTE_ABI *style_destroy)(struct IsophoteStyle style);
+  // [object-thread] Makes the graph of a style with the values of its parameters; those with keyframes have that of the
+  // first. The caller owns it and destroys it.
+  IsophoteStatus (ISOPHOTE_ABI *style_graph)(struct IsophoteStyle style,
+                                struct IsophoteGraph *graph,
+                                struct IsophoteFault *fault);
+  // [object-thread] The reference height of requests for a style: `ISOPHOTE_REFERENCE_HEIGHT`, or 0 where lengths are
+  // pixels of the picture.
+  IsophoteStatus (ISOPHOTE_ABI *style_reference_height)(struct IsophoteStyle style, uint32_t *height);
+  // [object-thread] Sets a parameter of the style's graph for all frames, from text as a person writes it. `name` is its
+  // id, or `node.id` for one node of a graph. `node`, which may be null, receives the index of its node.
+  IsophoteStatus (ISOPHOTE_ABI *style_set)(struct IsophoteStyle style,
+                              struct IsophoteGraph graph,
+                              const char *name,
+                              const char *text,
+                              uint32_t *node,
+                              struct IsophoteFault *fault);
+  // [object-thread] Gives parameters with keyframes their values at a frame in the style's graph. `changes`, which may be
+  // null, receives 1 where there are such, and 0 otherwise.
+  IsophoteStatus (ISOPHOTE_ABI *style_at_frame)(struct IsophoteStyle style,
+                                   struct IsophoteGraph graph,
+                                   int64_t frame,
+                                   uint32_t *changes,
+                                   struct IsophoteFault *fault);
+  // [object-thread] The value at a frame, as text, of the parameter with keyframes that the preset names so.
+  IsophoteStatus (ISOPHOTE_ABI *style_value)(struct IsophoteStyle style,
+                                const char *name,
+                                int64_t frame,
+                                struct IsophoteText *text,
+                                struct IsophoteFault *fault);
+  // [object-thread] Frames of all keys in ascending order: as many as there are into `count`, and as many of them as
+  // `capacity` has room for into `frames`, which may be null when that is 0.
+  IsophoteStatus (ISOPHOTE_ABI *style_frames)(struct IsophoteStyle style,
+                                 int64_t *frames,
+                                 uint32_t capacity,
+                                 uint32_t *count);
+} IsophotePresetsApi;
 
 // What a device must be created with.
 typedef struct IsophoteVulkanNeeds {

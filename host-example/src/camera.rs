@@ -1,4 +1,4 @@
-//! Where the scene is seen from.
+//! Camera from which the scene is seen.
 
 use std::f32::consts::TAU;
 
@@ -24,13 +24,13 @@ impl Camera {
         Self { node: None, orbit: Orbit::turntable(scene, aspect(size), Framing::default()) }
     }
 
-    /// What it sees of a scene.
+    /// View of a scene from it.
     pub fn view(&self, scene: &Scene, pose: &Pose) -> View {
         let own = self.node.and_then(|node| View::from_node(scene, pose, node));
         own.unwrap_or_else(|| self.orbit.view())
     }
 
-    /// What it sees after a share of one turn.
+    /// View from it after a share of one turn.
     pub fn turned(&self, share: f32) -> View {
         self.orbit.turned(share * TAU).view()
     }

@@ -67,11 +67,11 @@ pub struct FrameRunner {
     library: Library,
     request: IsophoteRequest,
     plan: Plan,
-    /// What plans read of frames before, once enough are known.
+    /// Textures of past frames that plans read, once enough are known.
     past: Past,
     /// Frames before the next one that were recorded, at most those that the graph depends on.
     known: usize,
-    /// How many of them the plan reads.
+    /// Number of them that the plan reads.
     planned: usize,
     runner: PlanRunner,
     output: wgpu::TextureView,
@@ -232,7 +232,7 @@ impl FrameRunner {
         &self.plan
     }
 
-    /// What was made on the device so far.
+    /// Number of things made on the device so far.
     pub fn counts(&self) -> Counts {
         self.runner.counts()
     }

@@ -6,7 +6,7 @@
 
 use isophote_files::error::{Error, Result};
 
-/// What later frames will read of a frame.
+/// Textures of a frame that later frames will read.
 #[derive(Clone, Debug, Default, PartialEq, Eq)]
 pub struct Past {
     /// Frames before the one at hand that plans read at most.
@@ -34,14 +34,14 @@ impl Past {
         self.depths.iter().map(|(name, _)| name.as_str()).filter(|name| !is_stage(name))
     }
 
-    /// How many textures of a name take turns, where there are so many turns: one for each frame that it is read of and
-    /// one for the frame at hand, and no number that does not go into the turns.
+    /// Number of textures of a name that take turns, where there are so many turns: one for each frame that it is
+    /// read of and one for the frame at hand, and no number that does not go into the turns.
     fn textures(&self, name: &str, turns: usize) -> usize {
         let depth = self.depths.iter().find(|(known, _)| known == name).map_or(0, |(_, depth)| *depth);
         (depth + 1..turns).find(|count| turns.is_multiple_of(*count)).unwrap_or(turns)
     }
 
-    /// How many turns take the fewest textures.
+    /// Number of turns that takes the fewest textures.
     fn turns(&self) -> usize {
         let least = self.frames + 1;
         let all =
@@ -56,7 +56,7 @@ pub fn split(name: &str) -> Option<(&str, usize)> {
     Some((base, frame.parse().ok()?))
 }
 
-/// Whether an output is kept for later frames.
+/// True where an output is kept for later frames.
 pub fn is_stage(name: &str) -> bool {
     name.strip_prefix("stage").is_some_and(|number| number.parse::<u32>().is_ok())
 }
@@ -77,7 +77,7 @@ pub struct Rings {
     past: Past,
     /// After so many frames all rings begin anew.
     turns: usize,
-    /// Which of them it is.
+    /// Index of the turn.
     turn: usize,
 }
 
@@ -87,12 +87,12 @@ impl Rings {
         Self { rings: Vec::new(), past: past.clone(), turns: past.turns(), turn: 0 }
     }
 
-    /// How many turns there are.
+    /// Number of turns.
     pub fn turns(&self) -> usize {
         self.turns
     }
 
-    /// Which turn it is.
+    /// Index of the turn.
     pub fn turn(&self) -> usize {
         self.turn
     }
@@ -107,7 +107,7 @@ impl Rings {
     /// Makes textures for a name, unless it has them in this format and size; returns how many were made.
     ///
     /// # Errors
-    /// What `make` says.
+    /// The errors of `make`.
     pub fn hold(
         &mut self,
         name: &str,

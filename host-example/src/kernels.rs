@@ -16,7 +16,7 @@ const BLOCK_ALIGNMENT: u64 = 16;
 pub struct Kernels {
     device: wgpu::Device,
     queue: wgpu::Queue,
-    /// Whether kernels hold windows of neighbours in workgroup memory, which pays on hardware alone.
+    /// True where kernels hold windows of neighbours in workgroup memory, which pays on hardware alone.
     shared_windows: bool,
     sampler: wgpu::Sampler,
     /// By name, and by which of the textures that are read have half precision: samplers read no others.
@@ -124,7 +124,8 @@ impl Kernels {
     }
 }
 
-/// What a kernel binds, as its first pass shows it; `textures` are those of the plan, `sampler` is the binding of one.
+/// Bindings of a kernel, as its first pass shows them; `textures` are those of the plan, `sampler` is the binding of
+/// one.
 fn layout_entries(
     pass: &Pass<'_>,
     textures: &[Texture<'_>],
@@ -180,7 +181,7 @@ pub fn texture_format(format: Format) -> wgpu::TextureFormat {
     }
 }
 
-/// What `make` makes, or what the device has to say against it: wgpu reports errors to scopes, and panics where
+/// Result of `make`, or what the device has to say against it: wgpu reports errors to scopes, and panics where
 /// nobody listens.
 ///
 /// # Errors
@@ -197,7 +198,7 @@ pub fn checked<T>(device: &wgpu::Device, make: impl FnOnce() -> Result<T>) -> Re
     }
 }
 
-/// What the library has against a plan, as an error of the host.
+/// Error of the library about a plan, as an error of the host.
 pub fn refused(error: isophote_loader::Error) -> Error {
     error.at("the plan", "choose another style")
 }

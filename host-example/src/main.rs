@@ -30,7 +30,7 @@ struct Options {
     /// Writes frames as PNG files into this folder, and opens no window.
     #[arg(long, value_name = "DIR")]
     frames: Option<PathBuf>,
-    /// How many frames are written; of several, the camera turns once around the scene.
+    /// Number of frames that are written; of several, the camera turns once around the scene.
     #[arg(long, value_name = "N", default_value_t = 1, requires = "frames", value_parser = clap::value_parser!(u32).range(1..=9999))]
     count: u32,
     /// Size of the frames in pixels.

@@ -6,7 +6,7 @@ use isophote_example::kernels::Kernels;
 use isophote_files::error::{AtPlace, Result};
 use isophote_loader::Library;
 use isophote_render::gpu::Gpu;
-use isophote_render::look::Look;
+use isophote_render::lighting::Lighting;
 use isophote_render::renderer::Renderer;
 use isophote_scene::camera::View;
 use isophote_scene::pose::Pose;
@@ -27,7 +27,7 @@ struct Stylized {
 pub struct Painter {
     scene: Scene,
     pose: Pose,
-    look: Look,
+    lighting: Lighting,
     renderer: Renderer,
     stylized: Option<Stylized>,
 }
@@ -56,8 +56,8 @@ impl Painter {
             stylized = Some(Stylized { style, frames });
         }
         let pose = Pose::at_rest(&scene);
-        let look = Look::for_scene(&scene, &pose, view, None, None);
-        let mut painter = Self { scene, pose, look, renderer, stylized };
+        let lighting = Lighting::for_scene(&scene, &pose, view, None, None);
+        let mut painter = Self { scene, pose, lighting, renderer, stylized };
         painter.bind()?;
         gpu.check()?;
         Ok(painter)
@@ -113,7 +113,7 @@ impl Painter {
         if is_rebuilt {
             self.bind()?;
         }
-        self.renderer.encode(encoder, &self.scene, &self.pose, view, &self.look);
+        self.renderer.encode(encoder, &self.scene, &self.pose, view, &self.lighting);
         self.stylized.as_mut().map_or(Ok(()), |stylized| stylized.frames.encode(encoder))
     }
 

@@ -30,7 +30,7 @@ use isophote_files::error::Result;
 use isophote_loader::Plan;
 use isophote_loader::plan::Role;
 
-/// What a runner has done so far. A warm frame changes neither.
+/// Numbers of what a runner has done so far. A warm frame changes neither.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct Counts {
     /// Textures, buffers, bind groups and pipelines made.
@@ -180,7 +180,7 @@ impl PlanRunner {
         Ok(())
     }
 
-    /// What the plan computes, until [`PlanRunner::rebuild`]; it can be sampled and copied from.
+    /// Texture that the plan computes, until [`PlanRunner::rebuild`]; it can be sampled and copied from.
     ///
     /// # Errors
     /// [`Error::Failure`](isophote_files::error::Error::Failure) when the plan has no output.

@@ -50,7 +50,7 @@ impl Style {
         Named { name: &self.name, graph: &self.graph }
     }
 
-    /// Whether a node of the graph can use positions in the scene at rest.
+    /// True where a node of the graph can use positions in the scene at rest.
     ///
     /// # Errors
     /// [`Error::Failure`] when the library fails.

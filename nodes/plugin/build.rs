@@ -1,4 +1,4 @@
-//! How the dynamic library is linked: that it stays in memory once it is loaded, and what it is called by those that
+//! Linking of the dynamic library: it stays in memory once it is loaded, and has a name for those that
 //! link to it.
 //!
 //! Its worker threads and their thread-locals, and those of the graphics drivers it loads, would run
@@ -8,7 +8,7 @@
 //! Programs that link to it look for the version of the C interface that they were built with, so that two versions can
 //! be installed beside each other.
 
-/// Where the version of the C interface is declared.
+/// Path of the file where the version of the C interface is declared.
 const CONSTANTS: &str = "../../include/src/constants.rs";
 
 fn main() {

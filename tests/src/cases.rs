@@ -55,7 +55,7 @@ pub fn setup(spec: &'static NodeSpec, wired: bool) -> Setup {
     }
 }
 
-/// What a graph has for a port: the input of its name, or of its kind.
+/// Input of a graph for a port: that of its name, or of its kind.
 fn graph_input(port: &Port) -> Option<GraphInput> {
     GraphInput::from_id(port.id).or_else(|| GraphInput::from_id(port.kind.id()))
 }
@@ -75,7 +75,7 @@ fn producer(kind: ImageKind) -> &'static NodeSpec {
 /// A set of parameter values with a name for messages.
 #[derive(Clone, Debug)]
 pub struct Setting {
-    /// What distinguishes it.
+    /// Label that distinguishes it.
     pub label: String,
     /// Values by parameter id; the others keep their defaults.
     pub values: Vec<(&'static str, Value)>,

@@ -1,4 +1,4 @@
-//! How far two images differ.
+//! Difference of two images.
 
 use isophote_engine::{Image, Tolerance};
 
@@ -13,7 +13,7 @@ pub struct Difference {
     pub worst: f32,
     /// Greatest |gpu - cpu| as a share of what the tolerance allows there.
     pub ratio: f32,
-    /// Where that was: pixel, channel, both values.
+    /// Place of that: pixel, channel, both values.
     pub place: String,
     /// Values that are not finite in either.
     pub broken: usize,

@@ -6,7 +6,7 @@ use std::sync::{Arc, OnceLock};
 /// The device that all tests of a process share, or `None`, loudly, where there is none.
 ///
 /// # Panics
-/// Where a device is required (`CI=true` or `ISOPHOTE_REQUIRE_GPU=1`) and none can be opened.
+/// Panics where a device is required (`CI=true` or `ISOPHOTE_REQUIRE_GPU=1`) and none can be opened.
 pub fn device(test: &str) -> Option<Arc<Device>> {
     static DEVICE: Opened = OnceLock::new();
     match open(&DEVICE, None) {

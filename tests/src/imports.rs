@@ -1,4 +1,4 @@
-//! Which file of a workspace imports from which, read from the text alone, and the circles among them.
+//! Imports among the files of a workspace, read from the text alone, and the circles among them.
 //!
 //! An import is a `use`, re-exports included, or a path of modules in the code, such as `crate::x::y` or
 //! `x::y` where `x` is a module. It counts for the file in which the module lies that the path names

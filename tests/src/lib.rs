@@ -1,4 +1,4 @@
-//! What the tests of this crate share: generated pictures, parameter sets from the registry, running
+//! Parts that the tests of this crate share: generated pictures, parameter sets from the registry, running
 //! plans pass by pass, comparing images, opening a device, and pictures on disk.
 //!
 //! The tests themselves lie in `tests/`, one file per kind. Everything that can be is generated from

@@ -1,4 +1,4 @@
-//! How marks move and how large they are: noise that a style draws, against the motion of what it is drawn on.
+//! Motion and size of marks: noise that a style draws, against the motion of what it is drawn on.
 
 use crate::run;
 use crate::steadiness::{Shot, carried};
@@ -34,9 +34,9 @@ const SQUARE: i32 = 32;
 /// Farthest that marks are looked for, pixels on each axis.
 pub const FARTHEST: i32 = 4;
 
-/// How far the marks of a frame slide against the surface that they lie on, pixels to the right and down: for every square of the picture that
-/// shows one surface, the place of the greatest correlation of the marks with those of the frame before, carried along the
-/// motion. [`FARTHEST`] or more where they do not move with it at all.
+/// Distance that the marks of a frame slide against the surface that they lie on, pixels to the right and down: for
+/// every square of the picture that shows one surface, the place of the greatest correlation of the marks with those of
+/// the frame before, carried along the motion. [`FARTHEST`] or more where they do not move with it at all.
 ///
 /// # Panics
 /// As [`carried`].
@@ -70,7 +70,7 @@ pub fn slides(shot: &Shot, frame: usize, [before, now]: [&Image; 2]) -> Vec<[f64
     slides
 }
 
-/// Where a function is greatest, between whole places by parabolas.
+/// Place where a function is greatest, between whole places by parabolas.
 fn peak(of: impl Fn(i32, i32) -> f64) -> [f64; 2] {
     let side = 2 * FARTHEST + 1;
     let at = |dx: i32, dy: i32| ((dy + FARTHEST) * side + dx + FARTHEST) as usize;
@@ -91,7 +91,7 @@ fn peak(of: impl Fn(i32, i32) -> f64) -> [f64; 2] {
     [x, y]
 }
 
-/// What marks look like.
+/// Appearance of marks.
 #[derive(Clone, Copy, Debug)]
 pub struct Looks {
     /// Standard deviation of their values.
@@ -100,7 +100,7 @@ pub struct Looks {
     pub width: [f64; 2],
 }
 
-/// What the marks of a picture look like, its border left out.
+/// Appearance of the marks of a picture, its border left out.
 pub fn looks(image: &Image) -> Looks {
     const BORDER: i32 = 40;
     let (w, h) = (image.width() as i32, image.height() as i32);

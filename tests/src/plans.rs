@@ -35,13 +35,13 @@ pub struct Case {
     pub fields: Vec<Option<ImageKind>>,
 }
 
-/// How a node is planned.
+/// Variant in which a node is planned.
 struct Variant {
     setting: Setting,
     wired: bool,
     kind: Kind,
     guides: bool,
-    /// Whether guides are rest positions, too.
+    /// True where guides are rest positions, too.
     rest: bool,
     scale: f32,
 }

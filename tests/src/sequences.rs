@@ -9,7 +9,7 @@ use isophote::{Graph, Request};
 use isophote_engine::cpu::{Control, CpuExecutor};
 use isophote_engine::{Image, Rect};
 
-/// What a frame of a sequence shows, by the input of a graph; `None` for frames and inputs that do not exist.
+/// Content of a frame of a sequence, by the input of a graph; `None` for frames and inputs that do not exist.
 pub type Source<'s> = &'s dyn Fn(GraphInput, i64) -> Option<Image>;
 
 /// A graph on the frames of a sequence, on the CPU.

@@ -8,7 +8,7 @@ use std::path::{Path, PathBuf};
 pub struct Spoiled {
     /// The whole module.
     pub source: String,
-    /// What was changed, for messages.
+    /// Description of the change, for messages.
     pub change: String,
 }
 
@@ -17,7 +17,7 @@ pub fn folder() -> PathBuf {
     Path::new(env!("CARGO_MANIFEST_DIR")).join("../shaders")
 }
 
-/// What is exchanged where it first stands in the function that a kernel is entered by.
+/// Exchanges of text, each where it first stands in the function that a kernel is entered by.
 const EXCHANGES: [(&str, &str); 4] = [(" + ", " - "), (" - ", " + "), (" * ", " + "), (".xy", ".yx")];
 
 /// The shader with one number of its own text changed, for each number that carries meaning; those

@@ -1,6 +1,6 @@
-//! How steady a filter is over time, in numbers: shots whose motion is known, and what a filter makes of them.
+//! Steadiness of a filter over time, in numbers: shots whose motion is known, and what a filter makes of them.
 //!
-//! Three shots: [`footage::demo`] and [`footage::fox`] come from the sample host, with the renderer's motion;
+//! Three shots: [`rendered_shots::demo`] and [`rendered_shots::fox`] come from the sample host, with the renderer's motion;
 //! [`Shot::noisy`] repeats a frame with fresh noise. Pictures are gamma-encoded sRGB in 0..=1, and all measures
 //! are means over red, green and blue.
 //!
@@ -22,10 +22,10 @@
 //! warping error as well, but not without lowering this.
 
 mod carry;
-pub mod footage;
 mod look;
 mod measure;
 mod read;
+pub mod rendered_shots;
 mod shot;
 mod style;
 

@@ -26,7 +26,7 @@ pub struct Step {
     index: usize,
     /// The images read.
     pub inputs: Vec<Arc<Image>>,
-    /// What the CPU twin gave.
+    /// Result of the CPU twin.
     pub outputs: Vec<Arc<Image>>,
 }
 
@@ -81,7 +81,7 @@ impl Step {
         Rect::of_size(width, height)
     }
 
-    /// What the CPU twin gives with the instructions of `level`.
+    /// Result of the CPU twin with the instructions of `level`.
     ///
     /// # Panics
     /// When the executor refuses.
@@ -109,7 +109,7 @@ fn within_half(mut image: Image) -> Image {
     image
 }
 
-/// What one pass gave.
+/// Result of one pass.
 #[derive(Debug)]
 struct Made {
     /// Kernel, parameters and the inputs' values: equal for passes that must give the same.
@@ -244,7 +244,7 @@ impl Results {
     }
 }
 
-/// Which passes lead to those of `kernel`, and these themselves.
+/// Mask of the passes that lead to those of `kernel`, and of these themselves.
 fn needed(plan: &Plan, kernel: &'static Kernel) -> Vec<bool> {
     let mut read = vec![false; plan.images().len()];
     let mut needed = vec![false; plan.passes().len()];
@@ -283,7 +283,7 @@ pub fn input(name: &str, kind: Kind, [width, height]: [u32; 2]) -> Image {
     }
 }
 
-/// What a pass does, apart from the values that it reads.
+/// Description of a pass, apart from the values that it reads.
 fn description(plan: &Plan, index: usize) -> u64 {
     let pass = &plan.passes()[index];
     let images = pass.inputs.iter().chain(&pass.outputs).map(|id| plan.desc(*id));

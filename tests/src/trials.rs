@@ -10,17 +10,17 @@ use std::process::ExitCode;
 use std::sync::{Arc, Mutex, PoisonError};
 use std::time::{Duration, Instant};
 
-/// How many of the slowest trials are named at the end.
+/// Number of the slowest trials that are named at the end.
 const SLOWEST: usize = 5;
 
-/// What came out of a trial that did not panic.
+/// Report of a trial that did not panic.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub enum Report {
     /// Everything holds.
     Passed,
     /// Nothing was tried, and why.
     Skipped(String),
-    /// What does not hold.
+    /// Message about what does not hold.
     Failed(String),
 }
 

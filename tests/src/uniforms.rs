@@ -4,7 +4,7 @@ use isophote_engine::Kernel;
 use isophote_engine::plan::Pass;
 use naga::{ArraySize, Handle, Module, ScalarKind, Type, TypeInner};
 
-/// Where the floats of a kernel's uniform block lie, in bytes.
+/// Offsets of the floats of a kernel's uniform block, in bytes.
 ///
 /// # Panics
 /// For a shader that does not parse, which the build refuses.

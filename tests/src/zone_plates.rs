@@ -31,7 +31,7 @@ pub fn picture(variance: f64) -> Image {
     })
 }
 
-/// Where a pixel lies from the centre of its plate.
+/// Position of a pixel relative to the centre of its plate.
 fn from_centre(x: i32, y: i32) -> [f64; 2] {
     let half = f64::from(SIDE) / 4.0;
     let left = if x >= SIDE as i32 / 2 { 2.0 * half } else { 0.0 };

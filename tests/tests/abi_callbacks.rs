@@ -13,7 +13,7 @@ use std::ptr::{null, null_mut};
 use std::sync::Mutex;
 use std::sync::atomic::{AtomicU32, Ordering};
 
-/// What the callbacks below see.
+/// State that the callbacks below see.
 #[derive(Default)]
 struct Watch {
     asked: AtomicU32,

@@ -278,7 +278,7 @@ impl Called<'_> {
         check("new", "gausian", ISOPHOTE_ERROR_UNKNOWN, "did you mean 'gaussian'?");
     }
 
-    /// What is right still works, and can be read back.
+    /// Right values still work, and can be read back.
     fn set_right_values(&self) {
         let Self { api, graph } = *self;
         let (rho, derivative, sobel) = (c("rho"), c("derivative"), c("sobel"));

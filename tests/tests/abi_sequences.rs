@@ -12,7 +12,7 @@ const SIZE: [usize; 2] = [41, 29];
 /// Pixels that everything moves to the right from frame to frame.
 const STEP: i64 = 2;
 
-/// What a host shows, and what it was asked for.
+/// Frames that a host shows, and those that it was asked for.
 struct Film {
     first: i64,
     last: i64,

@@ -22,7 +22,7 @@ const SIZE: [u32; 2] = [48, 40];
 /// Size of the hard ones, of which there are many.
 const HARD_SIZE: [u32; 2] = [24, 20];
 
-/// What enters a plan.
+/// Input of a plan.
 #[derive(Clone, Copy, Debug)]
 enum Entering {
     Ordinary(Kind),
@@ -85,7 +85,7 @@ fn switched_on(spec: &'static NodeSpec) -> Setting {
     Setting { label: "what is off by default".into(), values }
 }
 
-/// What a node makes of what enters, setting by setting.
+/// Results of a node on its inputs, setting by setting.
 fn results(
     spec: &'static NodeSpec,
     settings: impl Iterator<Item = Setting>,

@@ -69,7 +69,7 @@ fn a_number_beyond_the_greatest_float_is_refused() {
     assert!(answer.contains("rounded:1:") && answer.contains("cannot be represented"), "{answer}");
 }
 
-/// What a browser says of the modules; `None` where there is no browser and need not be one.
+/// Messages of a browser about the modules; `None` where there is no browser and need not be one.
 fn compiled_by_a_browser(modules: &[[&str; 2]]) -> Option<String> {
     let Some(program) = browser() else {
         assert!(std::env::var_os("ISOPHOTE_REQUIRE_GPU").is_none(), "none of {BROWSERS:?} is installed");

@@ -51,7 +51,7 @@ fn main() -> ExitCode {
     trials.run()
 }
 
-/// Whether a tool that the tests need is there; where it must be, its absence fails.
+/// True where a tool that the tests need is there; where it must be, its absence fails.
 fn has(tool: &str) -> bool {
     if Command::new(tool).arg("--version").output().is_ok_and(|o| o.status.success()) {
         return true;
@@ -96,7 +96,7 @@ fn compile(source: &str) -> Option<PathBuf> {
     Some(program)
 }
 
-/// What a run printed; its failure fails the test.
+/// Text that a run printed; its failure fails the test.
 fn printed(output: &Output, what: &str) -> String {
     let errors = String::from_utf8_lossy(&output.stderr);
     assert!(output.status.success(), "{what}: {}\n{errors}", output.status);
@@ -169,7 +169,7 @@ fn planned(node: &str, settings: &[&str], width: u32, height: u32) -> Planned {
     Planned::new(&graph, Request::new(width, height)).unwrap()
 }
 
-/// What the programs compute, through the Rust crate.
+/// Result that the programs compute, through the Rust crate.
 fn reference(planned: &Planned, rgb: &[u8]) -> Vec<u8> {
     let [width, height] = planned.plan().size();
     let mut image = Image::new(width, height, 4).unwrap();
@@ -186,11 +186,11 @@ fn reference(planned: &Planned, rgb: &[u8]) -> Vec<u8> {
 
 /// A run of one of the programs that stylize a picture.
 struct Run {
-    /// What it printed.
+    /// Text that it printed.
     text: String,
     /// The picture, 8-bit RGB.
     before: Vec<u8>,
-    /// What it wrote.
+    /// Bytes that it wrote.
     after: Vec<u8>,
 }
 
@@ -236,7 +236,7 @@ fn a_c_program_lists_the_nodes_and_stylizes_under_valgrind() {
     }
 }
 
-/// Whether a file of a package is there; where it must be, its absence fails.
+/// True where a file of a package is there; where it must be, its absence fails.
 fn has_file(path: &str, package: &str) -> bool {
     if Path::new(path).exists() {
         return true;

@@ -1,4 +1,4 @@
-//! What nodes and kernels declare: complete, in range, and good for every graph file.
+//! Declarations of nodes and kernels: complete, in range, and good for every graph file.
 
 use isophote::kernels::KERNELS;
 use isophote::spec::NodeSpec;

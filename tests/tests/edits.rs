@@ -173,7 +173,7 @@ fn a_warm_frame_creates_nothing_and_submits_once(spec: &'static NodeSpec) -> Opt
     Some(())
 }
 
-/// What was created and submitted, without the uniforms that were written.
+/// Counts of what was created and submitted, without the uniforms that were written.
 fn made(counts: Counts) -> [u64; 6] {
     let Counts { buffers, textures, bind_groups, pipelines, query_sets, submissions, .. } = counts;
     [buffers, textures, bind_groups, pipelines, query_sets, submissions]

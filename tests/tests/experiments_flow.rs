@@ -5,7 +5,7 @@ use isophote::optical_flow::{Quality, estimate};
 use isophote_engine::{Class, Image, Plan, PlanBuilder};
 use isophote_tests::device::device;
 use isophote_tests::run;
-use isophote_tests::steadiness::{Shot, carried, footage};
+use isophote_tests::steadiness::{Shot, carried, rendered_shots};
 use isophote_tests::table::Table;
 
 /// Longest motion that is looked for along x and along y, pixels; that of a request.
@@ -59,8 +59,8 @@ fn mean_error(shot: &Shot, quality: Quality) -> f64 {
 #[test]
 fn rendered_motion_is_estimated_no_worse_than_by_opencv() {
     let Some(_) = device("rendered frames") else { return };
-    let mut all = vec![Known { shot: footage::demo().unwrap(), opencv: [0.360, 0.420] }];
-    match footage::fox() {
+    let mut all = vec![Known { shot: rendered_shots::demo().unwrap(), opencv: [0.360, 0.420] }];
+    match rendered_shots::fox() {
         Some(shot) => all.push(Known { shot: shot.unwrap(), opencv: [2.032, 1.699] }),
         None => eprintln!("\n*** SKIPPED: no fox beside the checkout ***\n"),
     }

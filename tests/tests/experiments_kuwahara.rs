@@ -38,7 +38,7 @@ fn fourier_and_spatial_sums_agree() {
 const RADIUS: f32 = 6.0;
 const SIDE: u32 = 31;
 
-/// How much each pixel of the disc counts in the filter by `pass` where all sectors weigh the same: its response to a
+/// Weight of each pixel of the disc in the filter by `pass` where all sectors weigh the same: its response to a
 /// single white pixel on black, at the distance (x, y) from it, without an orientation.
 fn response(pass: Pass, sectors: u32) -> impl Fn(i32, i32) -> f64 {
     let middle = SIDE as i32 / 2;

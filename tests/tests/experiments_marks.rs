@@ -10,10 +10,10 @@ use isophote_tests::marks::{FARTHEST, Looks, drawn, grey, looks, slides};
 use isophote_tests::pictures::from_fn;
 use isophote_tests::run;
 use isophote_tests::sequences::Player;
-use isophote_tests::steadiness::{Frame, Shot, footage};
+use isophote_tests::steadiness::{Frame, Shot, rendered_shots};
 use isophote_tests::table::Table;
 
-/// What is drawn: a name for tables, the node with its parameters, the grey that shows most of its marks, and the
+/// Drawing of a node: a name for tables, the node with its parameters, the grey that shows most of its marks, and the
 /// direction across them.
 type Drawing = (&'static str, &'static str, &'static [(&'static str, &'static str)], f32, [f64; 2]);
 
@@ -49,7 +49,7 @@ fn marked(shot: &Shot, graph: &Graph, value: f32, has_rest: bool) -> Vec<Image> 
 #[test]
 fn marks_do_not_slide_on_surfaces() {
     let Some(_) = device("the demo scene") else { return };
-    let mut shot = footage::demo().unwrap();
+    let mut shot = rendered_shots::demo().unwrap();
     // Five pairs tell as much as nine.
     shot.frames.truncate(6);
     let columns = ["style", "on the screen", "at rest positions", "nine of ten squares"];
@@ -107,7 +107,7 @@ fn pan(like: &Shot) -> Shot {
 #[test]
 fn marks_are_carried_where_motion_alone_is_known() {
     let Some(_) = device("the demo scene") else { return };
-    let demo = footage::demo().unwrap();
+    let demo = rendered_shots::demo().unwrap();
     let columns =
         ["style", "demo scene: on the screen", "carried", "pan by 3.4 pixels: on the screen", "carried"];
     // Layers that fade into one another make long marks longer or shorter, which is no sliding.

@@ -4,7 +4,7 @@
 //! `ISOPHOTE_STYLES=cartoon,ink` runs those styles alone, `ISOPHOTE_PICTURES=FOLDER` writes what they draw.
 
 use isophote_tests::device::device;
-use isophote_tests::steadiness::{Entry, Row, Shot, Style, footage, table};
+use isophote_tests::steadiness::{Entry, Row, Shot, Style, rendered_shots, table};
 use isophote_tests::table::Table;
 
 /// Styles and filters.
@@ -14,10 +14,11 @@ const STYLES: [&str; 7] =
 /// The most that the steady ones may have of the warping error of the same style without, and of its answer to noise.
 const MOST: [f64; 2] = [0.98, 0.65];
 
-/// What presets for sequences set.
+/// Setting of presets for sequences.
 const STEADINESS: (&str, &str) = ("steadiness", "0.5");
 
-/// What real time knows of other frames: those before, of which two count and more have motion that carries marks.
+/// Frames that real time knows beside the present one: those before, of which two count and more have motion that
+/// carries marks.
 const AROUND: [u32; 2] = [8, 0];
 
 /// A style's frames for themselves, and steady ones.
@@ -73,7 +74,7 @@ fn print(title: &str, pairs: &[Pair]) {
 #[test]
 fn steady_styles_exaggerate_less_along_the_path_of_the_camera() {
     let Some(_) = device("the demo scene") else { return };
-    let pairs = measured(&footage::demo().unwrap());
+    let pairs = measured(&rendered_shots::demo().unwrap());
     print(
         "Warping error over that of the plain frames: demo scene, camera on its path, the last two frames count",
         &pairs,
@@ -89,7 +90,7 @@ fn steady_styles_exaggerate_less_along_the_path_of_the_camera() {
 #[test]
 fn steady_styles_exaggerate_less_on_a_running_fox() {
     let Some(_) = device("the fox") else { return };
-    let Some(shot) = footage::fox() else {
+    let Some(shot) = rendered_shots::fox() else {
         eprintln!("\n*** SKIPPED: no fox beside the checkout ***\n");
         return;
     };
@@ -105,7 +106,7 @@ fn steady_styles_exaggerate_less_on_a_running_fox() {
 #[test]
 fn steady_styles_draw_less_noise() {
     let Some(_) = device("the static shot") else { return };
-    let shot = footage::demo().unwrap();
+    let shot = rendered_shots::demo().unwrap();
     let shot = Shot::noisy(&shot.frames[shot.frames.len() / 2], 6, 0.01);
     let pairs = measured(&shot);
     print("Warping error over that of the plain frames: static shot with 1 % noise", &pairs);

@@ -22,7 +22,7 @@ fn cone() -> Image {
     })
 }
 
-/// How far outwards stream lines of `integrator` lead, in pixels, weighted along the line.
+/// Distance outwards that stream lines of `integrator` lead, in pixels, weighted along the line.
 fn drift(integrator: &str, radius: f64) -> f64 {
     let params = [("sigma", "8"), ("integrator", integrator), ("adapt", "none"), ("max_angle", "0")];
     let picture = cone();

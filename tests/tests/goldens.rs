@@ -73,13 +73,13 @@ fn plan(spec: &'static NodeSpec, input: &Image) -> Planned {
     run::planned(&setup.graph, Request { guides, frames: Frames::around(2, 2), max_motion: 8.0, ..request })
 }
 
-/// Whether a node does something to neighbouring frames with its defaults.
+/// True where a node does something to neighbouring frames with its defaults.
 fn is_of_time(spec: &NodeSpec) -> bool {
     let is_steady = spec.params().any(|p| p.id == "steadiness" && p.default != Value::Float(0.0));
     is_steady || spec.output.kind == ImageKind::Motion
 }
 
-/// What enters a plan: the picture; or where it knows of time a camera that moves over it, with noise on each frame.
+/// Inputs of a plan: the picture; or where it knows of time a camera that moves over it, with noise on each frame.
 fn inputs(spec: &NodeSpec, plan: &Plan, picture: &Image) -> Vec<(String, Image)> {
     let enters = |port: &Port| {
         let way = match GraphInput::from_id(port.base()) {

@@ -53,7 +53,7 @@ fn handles_are_of_types_of_their_own() {
     }
 }
 
-/// What compilers say when they are asked for more is printed, and read when the header changes.
+/// Messages of compilers that are asked for more warnings are printed, and read when the header changes.
 #[test]
 fn what_stricter_warnings_say_is_shown() {
     for (compiler, [standard, _]) in COMPILERS {

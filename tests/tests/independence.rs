@@ -31,7 +31,7 @@ const DIRECTED: &[(&str, &str, &str)] = &[
     ("blueprint", "abstraction=xy", "the separable filter runs along x first (§ 3.3)"),
 ];
 
-/// What belongs to the place in nodes of which the rest does not, turned off: paper, grids, noise.
+/// Parameters that belong to the place in nodes of which the rest does not, turned off: paper, grids, noise.
 const PLACED: &[(&str, &[&str])] = &[
     ("blueprint", &["grid", "paper_texture"]),
     ("watercolor", &["clouds", "granulation", "wobble"]),

@@ -18,7 +18,7 @@ fn main() -> ExitCode {
     trials.run()
 }
 
-/// How the results of a kernel with the other instruction sets depart from those with the widest, which are
+/// Departures of the results of a kernel with the other instruction sets from those with the widest, which are
 /// those of its steps.
 fn departures_of(kernel: &'static Kernel) -> Vec<String> {
     let steps = sweep::steps(kernel);

@@ -47,7 +47,7 @@ type OfTheBinary = (&'static str, fn(&Binary));
 /// A test of an effect, by its name.
 type OfAnEffect = (&'static str, fn(&Binary, Expected));
 
-/// What holds for the binary, whatever its effects.
+/// Tests of the binary, whatever its effects.
 const OF_THE_BINARY: &[OfTheBinary] = named! {
     regions::a_bounding_box_shows_the_marks_of_the_project,
     controls::tiles_are_supported_as_saved_values_say,
@@ -78,7 +78,7 @@ const OF_THE_BINARY: &[OfTheBinary] = named! {
     vectors::vectors_are_in_pixels_of_the_full_size,
 };
 
-/// What holds for every effect.
+/// Tests of every effect.
 const OF_EVERY_EFFECT: &[OfAnEffect] = named! {
     aspect::oblong_pixels_show_what_square_ones_show,
     aspect::guides_have_oblong_pixels_too,

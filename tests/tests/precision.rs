@@ -1,4 +1,4 @@
-//! What graphics devices gain by fused passes and by half precision, and that pictures keep their quality.
+//! Gains of graphics devices by fused passes and by half precision, and the quality that pictures keep.
 
 use isophote::registry;
 use isophote::spec::ImageKind;

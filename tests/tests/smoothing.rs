@@ -1,4 +1,4 @@
-//! What diffusion, mean curvature flow and morphology promise: the maximum principle, the law by which
+//! Promises of diffusion, mean curvature flow and morphology: the maximum principle, the law by which
 //! discs shrink, the algebra of openings and closings.
 
 use isophote_engine::Image;

@@ -15,7 +15,7 @@ fn texture(x: i32, y: i32) -> f32 {
         .unit() as f32
 }
 
-/// What is seen at a pixel: a value of a texture, motion, depth and number.
+/// Surface seen at a pixel: a value of a texture, motion, depth and number.
 struct Seen {
     value: f32,
     motion: [f32; 2],

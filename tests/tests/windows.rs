@@ -49,7 +49,7 @@ fn small_windows_are_fused_and_large_ones_are_not() {
     );
 }
 
-/// How far values may differ, and which share of them may differ more.
+/// Bounds: the difference that values may have, and the share of them that may differ more.
 fn bound(node: &str) -> (f32, f32) {
     match node {
         "gaussian" => (1e-3, 0.0),

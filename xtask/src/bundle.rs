@@ -27,7 +27,7 @@ pub const FOLDER: &str = "Isophote.ofx.bundle";
 /// The package that draws its icons.
 pub const ICONS: &str = "isophote-icons";
 
-/// Where hosts look for plugins.
+/// Folder where hosts look for plugins.
 const SYSTEM: &str = if cfg!(target_os = "windows") {
     r"C:\Program Files\Common Files\OFX\Plugins"
 } else if cfg!(target_os = "macos") {

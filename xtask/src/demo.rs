@@ -12,7 +12,7 @@ use std::process::Stdio;
 /// Options of `cargo xtask demo`.
 #[derive(clap::Args)]
 pub struct Options {
-    /// Where the pictures go
+    /// Folder that the pictures go to
     #[arg(long, default_value = "target/demo")]
     out: PathBuf,
     /// Frames of each turntable

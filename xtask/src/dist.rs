@@ -12,7 +12,7 @@ use std::path::PathBuf;
 /// Options of `cargo xtask dist`.
 #[derive(clap::Args)]
 pub struct Options {
-    /// Where the archives and their checksums go
+    /// Folder that the archives and their checksums go to
     #[arg(long, value_name = "DIR", default_value = "target/packages")]
     pub out: PathBuf,
     /// The profile of the build: `dev` tries the packing with what the tests have built
@@ -21,7 +21,7 @@ pub struct Options {
 }
 
 impl Options {
-    /// Whether binaries are not those that users get.
+    /// True where binaries are not those that users get.
     pub fn is_draft(&self) -> bool {
         self.profile != RELEASED
     }

@@ -1,4 +1,4 @@
-//! What a chore says when it fails: one line with what, where and why.
+//! Error of a chore: one line with what, where and why.
 
 use std::fmt;
 

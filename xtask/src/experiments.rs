@@ -12,7 +12,7 @@ pub struct Options {
     print: bool,
 }
 
-/// What stands above the tables.
+/// Text above the tables.
 const OPENING: &str = "# Experiments
 
 The experiments of J. E. Kyprianidis' thesis *Structure Adaptive Stylization of Images and Video*, done

@@ -11,7 +11,7 @@ use std::path::{Path, PathBuf};
 pub struct Options {
     /// Pictures beside the demo scene, of its shape: 3 to 2
     pictures: Vec<PathBuf>,
-    /// Where the pictures go
+    /// Folder that the pictures go to
     #[arg(long, default_value = "target/looks")]
     out: PathBuf,
 }

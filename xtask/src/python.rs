@@ -199,7 +199,7 @@ fn run_tests(pytest: &mut Command, filter: Option<&str>) -> Result<()> {
     if status.success() || is_none { Ok(()) } else { Err(Failure(format!("pytest ended with {status}"))) }
 }
 
-/// What the documentation's pages about Python and Blender are run with.
+/// Environment that the documentation's pages about Python and Blender are run in.
 pub struct Documented {
     /// Folder of the wheel and the extension.
     pub packages: PathBuf,
@@ -385,7 +385,7 @@ impl Environment {
         pytest
     }
 
-    /// What a line of Python prints.
+    /// Text that a line of Python prints.
     fn printed(&self, line: &str) -> Result<String> {
         let output = self.program("python").args(["-c", line]).output();
         let output = output.context(|| "Python cannot be started".into())?;

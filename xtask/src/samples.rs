@@ -9,7 +9,7 @@ use std::path::PathBuf;
 /// Options of `cargo xtask samples`.
 #[derive(clap::Args)]
 pub struct Options {
-    /// Where the pictures go
+    /// Folder that the pictures go to
     #[arg(long, default_value = "host-example/window/samples")]
     out: PathBuf,
 }

@@ -7,7 +7,7 @@ use std::path::{Path, PathBuf};
 /// The package that makes the scene.
 pub const PACKAGE: &str = "isophote-demo-scene";
 
-/// Where the scene is written.
+/// Place where the scene is written.
 #[derive(clap::Args)]
 pub struct Options {
     /// Folder to write to

@@ -1,4 +1,4 @@
-//! What the other chores need of the machine: Debian packages, asked for only when the thing they
+//! Needs of the other chores on the machine: Debian packages, asked for only when the thing they
 //! bring is missing.
 
 use crate::error::{Failure, Result};
@@ -27,7 +27,7 @@ pub const C_COMPILER: Need =
 pub const CPP_COMPILER: Need =
     Need { what: "a C++ compiler", present: || program("c++"), packages: &["g++"] };
 
-/// What a C program that uses Vulkan is compiled with, and what checks each of its calls.
+/// Headers that a C program that uses Vulkan is compiled with, and layers that check each of its calls.
 pub const VULKAN_HEADERS: Need = Need {
     what: "the headers and validation layers of Vulkan",
     present: || {
@@ -71,14 +71,14 @@ pub const WASM: Need = Need {
     packages: &["rustc-web", "rust-web-src"],
 };
 
-/// What bundles and tests pages.
+/// Programs that bundle and test pages.
 pub const NODE: Need = Need {
     what: "Node.js with npm",
     present: || program("node") && program("npm"),
     packages: &["nodejs", "npm"],
 };
 
-/// What users of the library build with, and what shows manual pages.
+/// Programs that users of the library build with, and that show manual pages.
 pub const PACKAGING: Need = Need {
     what: "CMake, pkg-config and man",
     present: || ["cmake", "make", "pkg-config", "man"].into_iter().all(program),
@@ -97,7 +97,7 @@ pub const PYTHON: Need = Need {
     packages: &["python3", "python3-venv"],
 };
 
-/// What Blender as a module of Python loads of the system.
+/// Libraries of the system that Blender as a module of Python loads.
 pub const BLENDER: Need = Need {
     what: "the libraries that Blender loads",
     present: || {
@@ -130,7 +130,7 @@ pub const BLENDER: Need = Need {
     ],
 };
 
-/// What reads and writes videos.
+/// Program that reads and writes videos.
 pub const FFMPEG: Need =
     Need { what: "ffmpeg", present: || program("ffmpeg") && program("ffprobe"), packages: &["ffmpeg"] };
 
@@ -204,7 +204,7 @@ pub fn ensure(needs: &[&Need]) -> Result<()> {
     }
 }
 
-/// How to run apt-get: as it is, through a sudo that asks nothing, or not at all.
+/// Command that runs apt-get: as it is, through a sudo that asks nothing, or not at all.
 fn apt() -> Option<&'static [&'static str]> {
     if !program("apt-get") {
         return None;
@@ -227,12 +227,12 @@ fn apt() -> Option<&'static [&'static str]> {
     }
 }
 
-/// Whether the compiler of this build can compile for browsers.
+/// True where the compiler of this build can compile for browsers.
 pub fn has_wasm_target() -> bool {
     sysroot("rustc").is_some_and(|sysroot| sysroot.join("lib/rustlib/wasm32-unknown-unknown/lib").is_dir())
 }
 
-/// Whether the compiler of the system could, from the sources of its standard library.
+/// True where the compiler of the system could, from the sources of its standard library.
 fn has_wasm_sources() -> bool {
     sysroot(SYSTEM_RUSTC)
         .is_some_and(|sysroot| sysroot.join("lib/rustlib/src/rust/library/Cargo.lock").is_file())
@@ -249,7 +249,7 @@ fn program(name: &str) -> bool {
         .is_some_and(|path| std::env::split_paths(&path).any(|dir| dir.join(name).is_file()))
 }
 
-/// Where Debian and its relatives keep libraries; other systems manage their own.
+/// True where a library lies in a folder in which Debian and its relatives keep them; other systems manage their own.
 fn shared_library(name: &str) -> bool {
     if !cfg!(target_os = "linux") {
         return true;

@@ -194,7 +194,7 @@ fn programs() -> Result<Vec<Program>> {
     Ok(programs.collect())
 }
 
-/// Whether one of cargo's messages is about something compiled as a test.
+/// True where one of cargo's messages is about something compiled as a test.
 fn is_test(message: &str) -> bool {
     let profile = message.split_once(r#""profile":{"#).and_then(|(_, rest)| rest.split_once('}'));
     profile.is_some_and(|(profile, _)| profile.contains(r#""test":true"#))
@@ -223,7 +223,7 @@ fn list(programs: &[Program], filter: Option<&str>) -> Result<()> {
 
 /// Tests in another language.
 struct Suite {
-    /// What they are called together.
+    /// Name that they have together.
     name: &'static str,
     tests: fn() -> Result<Vec<String>>,
     /// Runs those whose names contain the filter; without one all.

@@ -41,7 +41,7 @@ pub fn cargo(arguments: &[&str]) -> Result<()> {
     run(&mut cargo_command(arguments))
 }
 
-/// Where a build leaves its programs and libraries: `debug`, or the name of another profile.
+/// Folder where a build leaves its programs and libraries: `debug`, or the name of another profile.
 pub fn target_dir(profile: &str) -> PathBuf {
     let target = std::env::var_os("CARGO_TARGET_DIR").map_or_else(|| root().join("target"), PathBuf::from);
     target.join(profile)
@@ -78,7 +78,7 @@ pub fn build_with_host(profile: &str, more: &[&str]) -> Result<()> {
     run(command.args(chosen(profile)))
 }
 
-/// How cargo is told the profile of that folder.
+/// Arguments that tell cargo the profile of that folder.
 fn chosen(profile: &str) -> Vec<&str> {
     if profile == "debug" { Vec::new() } else { vec!["--profile", profile] }
 }
@@ -143,7 +143,7 @@ pub fn run(command: &mut Command) -> Result<()> {
 /// When the list cannot be read.
 pub fn looks() -> Result<Vec<(String, PathBuf)>> {
     let folder = root().join("nodes/library/looks");
-    let order = folder.join("order.rs");
+    let order = folder.join("order.txt");
     let text = std::fs::read_to_string(&order).context(|| format!("cannot read {}", order.display()))?;
     let list = text.split_once('{').and_then(|(_, rest)| rest.split_once('}'));
     let (ids, _) = list.ok_or_else(|| Failure(format!("{} has no list", order.display())))?;

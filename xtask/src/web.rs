@@ -58,7 +58,7 @@ pub fn pack(profile: &str, out: &Path) -> Result<()> {
 /// File of the page.
 const PAGE: &str = "isophote.html";
 
-/// What is built.
+/// Files that are built.
 struct Built {
     /// Folder of the npm package.
     package: PathBuf,

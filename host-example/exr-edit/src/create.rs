@@ -10,7 +10,7 @@ use exr::prelude::{
 use crate::error::{Error, Result};
 use crate::planes::Plane;
 
-/// What a new file holds.
+/// Content of a new file.
 #[derive(Clone, Debug, Default)]
 pub struct Picture {
     /// Columns of the data window, which begins at the origin.

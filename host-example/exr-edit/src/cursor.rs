@@ -32,12 +32,12 @@ impl<'a> Cursor<'a> {
         self.bytes.len() - self.at
     }
 
-    /// What is left, as it is.
+    /// The bytes that are left, as they are.
     pub fn rest(&self) -> &'a [u8] {
         &self.bytes[self.at..]
     }
 
-    /// Whether nothing is left.
+    /// True where nothing is left.
     pub fn is_empty(&self) -> bool {
         self.at == self.bytes.len()
     }

@@ -1,4 +1,4 @@
-//! What the channels of a part are to hold, and its chunks with that content.
+//! New content of the channels of a part, and its chunks with that content.
 
 use std::collections::HashMap;
 use std::sync::Arc;
@@ -19,7 +19,7 @@ const LARGEST_HALF: f32 = 65504.0;
 /// Bytes for each chunk beside its samples, as when it was decoded.
 const CHUNK: usize = 4 * size_of::<Vec<u8>>();
 
-/// What the channels of a part hold in the file that is written: what they held, or new samples.
+/// Content of the channels of a part in the file that is written: what they held, or new samples.
 #[derive(Clone, Debug)]
 pub struct Edit {
     window: Window,
@@ -28,10 +28,10 @@ pub struct Edit {
     contents: Vec<Content>,
 }
 
-/// What a channel holds.
+/// Content of a channel.
 #[derive(Clone, Debug)]
 enum Content {
-    /// What the channel of this index held.
+    /// Content that the channel of this index held.
     Kept(usize),
     /// New samples, one for each of the channel's own at full resolution.
     New(Vec<f32>),
@@ -40,9 +40,9 @@ enum Content {
 /// A part of a file that changes.
 #[derive(Clone, Copy, Debug)]
 pub struct PartEdit<'a> {
-    /// What the part held.
+    /// Content that the part held.
     pub decoded: &'a Decoded,
-    /// What changes.
+    /// Changes of the part.
     pub edit: &'a Edit,
 }
 
@@ -93,7 +93,7 @@ impl Edit {
         }
     }
 
-    /// Where a channel is, or belongs.
+    /// Place where a channel is, or belongs.
     fn place(&self, name: &str) -> std::result::Result<usize, usize> {
         self.channels.binary_search_by(|c| c.name.as_str().cmp(name))
     }

@@ -1,6 +1,6 @@
-//! Why a file is refused.
+//! Reasons why a file is refused.
 
-/// What can go wrong. Problems are phrases that follow the name of the file.
+/// Problem with a file. Problems are phrases that follow the name of the file.
 #[derive(Debug, thiserror::Error)]
 #[non_exhaustive]
 pub enum Error {
@@ -10,9 +10,9 @@ pub enum Error {
     /// The file is of a kind that is not read or cannot be written again.
     #[error("{problem}; {remedy}")]
     Unsupported {
-        /// What is so.
+        /// The fact that is refused.
         problem: String,
-        /// How to put it right.
+        /// Advice to put it right.
         remedy: String,
     },
     /// Reading or writing would take more than [`Limits::memory`](crate::Limits::memory).

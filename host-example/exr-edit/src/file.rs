@@ -89,7 +89,7 @@ impl File {
         self.bytes.len()
     }
 
-    /// Whether [`decode`](Self::decode) reads the compression of a part.
+    /// True where [`decode`](Self::decode) reads the compression of a part.
     pub fn can_decode(&self, part: usize) -> bool {
         self.parts.get(part).is_some_and(|part| codec::check(part).is_ok())
     }
@@ -130,7 +130,7 @@ impl File {
         self.write_all(&self.head(&changes), &data, out)
     }
 
-    /// What the head of a written file and the tables of its chunks take.
+    /// Memory that the head of a written file and the tables of its chunks take.
     fn reserve_tables(&self, changes: &[Option<&Edit>]) -> Result<Reserved> {
         const GROWTH: usize = 3;
         let lists = changes.iter().flatten().flat_map(|edit| edit.channels()).map(|c| c.name.len() + 18);

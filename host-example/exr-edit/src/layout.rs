@@ -1,4 +1,4 @@
-//! Which pixels each chunk of a part holds, and how they lie in it when it is not compressed.
+//! Pixels that each chunk of a part holds, and their order in it when it is not compressed.
 
 use crate::error::{Error, Result};
 
@@ -19,7 +19,8 @@ pub struct Window {
 }
 
 impl Window {
-    /// Whether samples at every so many columns and rows fill the window: both its origin and its size are multiples.
+    /// True where samples at every so many columns and rows fill the window: both its origin and its size are
+    /// multiples.
     pub(crate) fn fits(&self, sampling: (usize, usize)) -> bool {
         let whole = |origin: i32, length: usize, step: usize| {
             i64::from(origin).rem_euclid(step as i64) == 0 && length.is_multiple_of(step)
@@ -28,7 +29,7 @@ impl Window {
     }
 }
 
-/// How samples of a channel are stored.
+/// Type in which samples of a channel are stored.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Sample {
     /// 32-bit unsigned integers.
@@ -51,7 +52,7 @@ impl Sample {
 pub struct Channel {
     /// Full name with layer and view.
     pub name: String,
-    /// How samples are stored.
+    /// Type in which samples are stored.
     pub sample: Sample,
     /// The flags byte and the reserved bytes, as they were.
     pub flags: [u8; 4],
@@ -59,7 +60,7 @@ pub struct Channel {
     pub sampling: (usize, usize),
 }
 
-/// How a part is cut into tiles.
+/// Division of a part into tiles.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Tiles {
     /// Columns of a whole tile.
@@ -103,7 +104,7 @@ pub struct Run {
 }
 
 impl Block {
-    /// What the chunk says of itself.
+    /// Coordinates that the chunk gives of itself.
     pub fn coordinates(&self, tiled: bool) -> impl Iterator<Item = i64> + use<> {
         let (x, y) = (i64::from(self.number.0), i64::from(self.number.1));
         let all = [x, y, self.level.0 as i64, self.level.1 as i64];
@@ -138,7 +139,7 @@ impl Block {
     }
 }
 
-/// How the blocks of a part follow each other in its table of offsets.
+/// Order of the blocks of a part in its table of offsets.
 #[derive(Debug)]
 pub struct Layout {
     /// Columns and rows of a whole block.
@@ -158,7 +159,7 @@ struct Level {
 }
 
 impl Layout {
-    /// How a part of this window, compression and division is laid out, of at most so many pixels.
+    /// Layout of a part of this window, compression and division, of at most so many pixels.
     ///
     /// # Errors
     /// [`Error::Damaged`] for divisions that cannot be, [`Error::Unsupported`] for too many pixels.

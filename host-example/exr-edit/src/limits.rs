@@ -1,11 +1,11 @@
-//! How much memory a file may take.
+//! Memory that a file may take.
 
 use std::sync::Arc;
 use std::sync::atomic::{AtomicU64, Ordering};
 
 use crate::error::{Error, Result};
 
-/// What reading and writing a file may take of the machine.
+/// Limits on what reading and writing a file may take of the machine.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Limits {
     /// Bytes of memory that all allocations may take together whose size the file decides: its lists of channels and

@@ -48,20 +48,20 @@ pub struct Part {
     pub world_to_camera: Option<[f32; 16]>,
     /// All attributes up to and without the closing zero, as they were.
     pub(crate) header: Range<usize>,
-    /// Where in the file the value of `channels` lies, with its size before it.
+    /// Range in the file of the value of `channels`, with its size before it.
     pub(crate) channel_list: Range<usize>,
     /// Tiles, or nothing for scan lines.
     pub(crate) tiles: Option<Tiles>,
     /// All chunks, in the order of the offset table.
     pub(crate) chunks: Vec<Chunk>,
-    /// What lists and texts take.
+    /// Memory that lists and texts take.
     pub(crate) reserved: Reserved,
 }
 
 /// A piece of a part that is compressed by itself.
 #[derive(Debug)]
 pub struct Chunk {
-    /// Which pixels it holds.
+    /// Pixels that it holds.
     pub block: Block,
     /// Its coordinates and the part's number, as they were.
     pub prefix: Range<usize>,

@@ -44,7 +44,7 @@ impl Plane {
         }
     }
 
-    /// Whether there are no samples.
+    /// True where there are no samples.
     pub fn is_empty(&self) -> bool {
         self.len() == 0
     }
@@ -58,7 +58,7 @@ pub struct Decoded {
     /// Samples of each chunk, in the order of [`Block::runs`](crate::layout::Block::runs).
     chunks: Vec<Vec<u8>>,
     budget: Arc<Budget>,
-    /// What the chunks and the planes that were handed out take.
+    /// Memory that the chunks and the planes that were handed out take.
     reserved: Mutex<Reserved>,
 }
 
@@ -90,7 +90,7 @@ impl Decoded {
         self.number
     }
 
-    /// Whether it is this part that was decoded.
+    /// True where it is this part that was decoded.
     pub(crate) fn is_of(&self, part: &Arc<Part>) -> bool {
         Arc::ptr_eq(&self.part, part)
     }

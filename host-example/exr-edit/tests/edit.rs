@@ -1,4 +1,4 @@
-//! What is not changed is kept: bytes of files without edits, samples of channels without new ones.
+//! Content that is not changed is kept: bytes of files without edits, samples of channels without new ones.
 
 mod support;
 

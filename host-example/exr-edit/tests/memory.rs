@@ -9,7 +9,7 @@ use std::cell::RefCell;
 use isophote_exr_edit::{Channel, Edit, Error, File, Limits, PartEdit, Result, Sample};
 use support::{assets, encodings, file};
 
-/// What does not follow from the file: messages of errors, the work lists of threads.
+/// Memory that does not follow from the file: messages of errors, the work lists of threads.
 const SLACK: u64 = 64 << 10;
 
 /// Reads every plane of every part, and writes the file with the first channel of each replaced and one added.
@@ -157,7 +157,7 @@ fn a_bomb_is_refused_before_it_is_unpacked() {
     });
 }
 
-/// Where the value of an attribute begins, behind its size.
+/// Place where the value of an attribute begins, behind its size.
 fn value_of(bytes: &[u8], attribute: &str) -> usize {
     let name = format!("{attribute}\0");
     let at = bytes.windows(name.len()).position(|w| w == name.as_bytes()).expect("the attribute is there");

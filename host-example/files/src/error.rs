@@ -6,11 +6,11 @@ use std::path::Path;
 
 use isophote_loader::abi::{
     ISOPHOTE_ERROR_CANCELLED, ISOPHOTE_ERROR_DEVICE, ISOPHOTE_ERROR_INTERNAL, ISOPHOTE_ERROR_INVALID_HANDLE,
-    ISOPHOTE_ERROR_NO_DEVICE, ISOPHOTE_ERROR_OUT_OF_MEMORY,
+    ISOPHOTE_ERROR_NO_DEVICE, ISOPHOTE_ERROR_OUT_OF_MEMORY, IsophoteStatus,
 };
-use isophote_loader::printable;
+use isophote_loader::{Fault, printable};
 
-/// Why a command could not be carried out.
+/// Reason why a command could not be carried out.
 #[derive(Clone, Debug, thiserror::Error)]
 #[non_exhaustive]
 pub enum Error {
@@ -19,17 +19,17 @@ pub enum Error {
     Input {
         /// The file, option or value at fault.
         place: String,
-        /// What is wrong with it.
+        /// The problem with it.
         problem: String,
-        /// How to put it right.
+        /// Advice to put it right.
         fix: String,
     },
     /// The machine or a device could not do its part (exit code 1).
     #[error("{problem}; {fix}")]
     Failure {
-        /// What went wrong.
+        /// The problem.
         problem: String,
-        /// How to put it right.
+        /// Advice to put it right.
         fix: String,
     },
 }
@@ -53,6 +53,18 @@ impl Error {
     /// An [`Error::Failure`].
     pub fn failure(problem: impl Display, fix: impl Display) -> Self {
         Self::Failure { problem: one_line(problem), fix: one_line(fix) }
+    }
+
+    /// The error that a fault of a preset is; it names its place, and how to put it right, or else these are it.
+    pub fn of_fault(fault: Fault, place: impl Display, fix: impl Display) -> Self {
+        let Fault { place: own, problem, fix: own_fix, node } = fault;
+        let place = if own.is_empty() { place.to_string() } else { own };
+        let fix = match (node.as_str(), own_fix) {
+            ("", own) if own.is_empty() => fix.to_string(),
+            ("", own) => own,
+            (node, _) => format!("`isophote nodes {node}` lists its parameters"),
+        };
+        Self::input(place, problem, fix)
     }
 
     /// The same of a file that names the place at fault.
@@ -88,6 +100,10 @@ impl AtPlace for isophote_loader::Error {
     fn at(self, place: impl Display, fix: impl Display) -> Error {
         let (status, message) = match self {
             Self::Call { status, message } => (status, message),
+            Self::Fault { status, ref fault } if !is_failure(status) => {
+                return Error::of_fault(fault.clone(), place, fix);
+            }
+            Self::Fault { status, fault } => (status, fault.problem),
             other => return other.into(),
         };
         match status {
@@ -106,6 +122,19 @@ impl AtPlace for isophote_loader::Error {
             _ => Error::input(place, message, fix),
         }
     }
+}
+
+/// Tells whether a status says that the machine or the library is at fault, and not what it was given.
+const fn is_failure(status: IsophoteStatus) -> bool {
+    matches!(
+        status,
+        ISOPHOTE_ERROR_NO_DEVICE
+            | ISOPHOTE_ERROR_DEVICE
+            | ISOPHOTE_ERROR_OUT_OF_MEMORY
+            | ISOPHOTE_ERROR_CANCELLED
+            | ISOPHOTE_ERROR_INVALID_HANDLE
+            | ISOPHOTE_ERROR_INTERNAL
+    )
 }
 
 impl From<isophote_loader::Error> for Error {

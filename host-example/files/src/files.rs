@@ -21,7 +21,7 @@ pub enum Existing {
     Replace,
 }
 
-/// What a file is written to by [`write()`].
+/// Sink that [`write()`] has a file written to.
 #[derive(Debug)]
 pub struct Sink<'a> {
     file: &'a mut File,
@@ -147,7 +147,7 @@ pub fn exists(path: &Path) -> Error {
     )
 }
 
-/// Whether a file could be written at this place, as far as can be told without touching anything.
+/// Checks that a file could be written at this place, as far as can be told without touching anything.
 ///
 /// # Errors
 /// [`Error::Input`] when the folder is missing or may not be written, or the place is no file or has one that is to be kept.
@@ -162,7 +162,7 @@ pub fn check(path: &Path, existing: Existing) -> Result<()> {
     refuse_existing(path, &target, existing)
 }
 
-/// Whether a file can be written at this place; asked before any work is done.
+/// Checks that a file can be written at this place; asked before any work is done.
 ///
 /// # Errors
 /// As [`check`]; also when a file cannot be made there.
@@ -185,7 +185,7 @@ fn folder(path: &Path) -> &Path {
     }
 }
 
-/// Where a path leads over symbolic links, whether or not there is a file.
+/// Path that a path leads to over symbolic links, whether or not there is a file.
 fn target(path: &Path) -> Result<PathBuf> {
     let mut target = path.to_owned();
     for _ in 0..MOST_LINKS {

@@ -111,7 +111,7 @@ impl Pattern {
     }
 }
 
-/// Where the number goes: start, length and digits.
+/// Place of the number: start, length and digits.
 fn place(name: &[u8]) -> Option<(usize, usize, usize)> {
     for (start, c) in name.iter().enumerate() {
         let rest = &name[start..];
@@ -167,7 +167,7 @@ pub fn meant(path: &Path) -> Option<PathBuf> {
     names.iter().filter(fits).find_map(|name| numbered(name)).map(|pattern| path.with_file_name(pattern))
 }
 
-/// Whether a path ends as those of pictures do.
+/// True where a path ends as those of pictures do.
 pub fn is_picture(path: &Path) -> bool {
     let extension = path.extension().unwrap_or_default();
     KINDS.iter().any(|kind| extension.eq_ignore_ascii_case(kind))
@@ -203,7 +203,7 @@ impl FrameList {
     /// Reads a list, or a number alone as that many frames from 1.
     ///
     /// # Errors
-    /// What is wrong with the text.
+    /// The problem with the text.
     pub fn or_count(text: &str) -> std::result::Result<Self, String> {
         match text.trim().parse::<usize>() {
             Ok(0) => {

@@ -1,4 +1,4 @@
-//! Which file a path leads to, whatever it is called: by links, by `..`, or in letters of another case.
+//! Identity of the file that a path leads to, whatever it is called: by links, by `..`, or in letters of another case.
 
 use std::fs::{self, File};
 use std::path::Path;
@@ -42,7 +42,7 @@ impl Identity {
     }
 }
 
-/// Whether two paths lead to one file.
+/// True where two paths lead to one file.
 pub fn is_same(a: &Path, b: &Path) -> bool {
     Identity::of(a).is_some_and(|a| Some(a) == Identity::of(b))
 }

@@ -1,4 +1,4 @@
-//! What the system may refuse this process: memory and threads.
+//! Memory and threads that the system may refuse this process.
 
 use std::num::NonZero;
 use std::sync::atomic::AtomicBool;
@@ -13,7 +13,7 @@ use crate::error::{Error, Result};
 /// Threads that a run starts beside those that share a frame: one reads, one writes, one watches for the end.
 const BESIDE: usize = 3;
 
-/// What frames are worked on with.
+/// Threads that frames are worked on with.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Threads {
     /// Several threads.
@@ -23,7 +23,7 @@ pub enum Threads {
 }
 
 /// Lets the process end with exit code 1 where a small allocation fails: the standard library says so and aborts.
-/// What is large is asked for with [`must_have`] before.
+/// Memory for what is large is asked for with [`must_have`] before.
 pub fn end_where_memory_ends() {
     // Where the signal cannot be caught the process aborts.
     let _ = signal_hook::flag::register_conditional_shutdown(SIGABRT, 1, Arc::new(AtomicBool::new(true)));
@@ -76,14 +76,14 @@ pub fn start_threads(wanted: usize) -> Result<Threads> {
     }
 }
 
-/// Whether there is memory for a thread beside its stack: the standard library and the system's own need some when
+/// True where there is memory for a thread beside its stack: the standard library and the system's own need some when
 /// it begins, and panic where there is none.
 pub fn has_room_for_a_thread() -> bool {
     const ROOM: usize = 8 << 20;
     Vec::<u8>::new().try_reserve_exact(ROOM).is_ok()
 }
 
-/// How many threads the system gives this process now, up to `most`.
+/// Number of threads that the system gives this process now, up to `most`.
 fn available(most: usize) -> usize {
     let gate = Arc::new(Mutex::new(()));
     let closed = gate.lock().unwrap_or_else(PoisonError::into_inner);

@@ -24,7 +24,7 @@ pub struct Consent {
 pub struct Made<'a> {
     /// File that it is made from.
     pub from: Option<&'a Path>,
-    /// Where it goes.
+    /// Path that it goes to.
     pub to: &'a Path,
 }
 
@@ -116,7 +116,7 @@ impl Consent {
     /// finished meanwhile stays. `is_done` tells those from others.
     ///
     /// # Errors
-    /// What `write` says.
+    /// The errors of `write`.
     pub fn write(
         self,
         made: Made<'_>,

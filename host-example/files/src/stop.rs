@@ -17,7 +17,7 @@ const TICK: Duration = Duration::from_millis(40);
 /// Time that what is nearly done may take then.
 const GRACE: Duration = Duration::from_millis(300);
 
-/// Whether a run is to end after what is being done now.
+/// Request that a run ends after what is being done now.
 #[derive(Debug, Default)]
 pub struct Stop(Arc<AtomicBool>);
 
@@ -33,7 +33,7 @@ impl Stop {
         stop
     }
 
-    /// Whether it was requested.
+    /// True where it was requested.
     pub fn is_requested(&self) -> bool {
         self.0.load(Ordering::Relaxed)
     }

@@ -106,12 +106,12 @@ impl Temporary {
         Ok(Self { file, _listed: listed })
     }
 
-    /// Where it is for the time being.
+    /// Path of it for the time being.
     pub fn path(&self) -> &Path {
         self.file.path()
     }
 
-    /// What is written to.
+    /// File that is written to.
     pub fn file(&mut self) -> &mut File {
         self.file.as_file_mut()
     }

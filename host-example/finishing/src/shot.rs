@@ -10,7 +10,7 @@ use isophote_loader::Library;
 use isophote_pictures::floats::Picture;
 use isophote_render::background::Background;
 use isophote_render::gpu::Gpu;
-use isophote_render::look::Look;
+use isophote_render::lighting::Lighting;
 use isophote_render::readback::Readback;
 use isophote_render::renderer::Renderer;
 use isophote_render::targets::{Target, Targets};
@@ -18,26 +18,26 @@ use isophote_scene::Scene;
 use isophote_scene::camera::{Direction, Framing, Orbit, View};
 use isophote_scene::pose::Pose;
 
-/// What is rendered of a scene.
+/// Options of a shot, which say what is rendered of a scene.
 #[derive(Clone, Debug)]
 pub struct Options {
     /// Size of the pictures in pixels.
     pub size: (u32, u32),
     /// Number of the first frame, and of frames up to the last.
     pub range: (i64, u64),
-    /// Whether the camera turns once around the scene over all frames.
+    /// True where the camera turns once around the scene over all frames.
     pub turntable: bool,
-    /// How the default camera and turntables frame the scene.
+    /// Framing of the scene by the default camera and by turntables.
     pub framing: Framing,
     /// Node of the camera of the file that is looked through, but for turntables; the default camera otherwise.
     pub camera: Option<usize>,
-    /// Where the sun is, seen from the camera, if not where it usually is.
+    /// Direction of the sun, seen from the camera, if it is not the usual one.
     pub light: Option<Direction>,
     /// Brightness in stops.
     pub exposure: f32,
-    /// What is behind the scene.
+    /// Background of the scene.
     pub background: Background,
-    /// Whether the scene casts its shadow on an invisible ground.
+    /// True where the scene casts its shadow on an invisible ground.
     pub ground: bool,
     /// The animation that plays.
     pub animation: Option<usize>,
@@ -45,9 +45,9 @@ pub struct Options {
     pub start: f32,
     /// Frames per second.
     pub fps: f32,
-    /// Whether pictures are scene-referred, as they are before exposure and tone mapping.
+    /// True where pictures are scene-referred, as they are before exposure and tone mapping.
     pub scene_referred: bool,
-    /// Whether rest positions are rendered whatever the style.
+    /// True where rest positions are rendered whatever the style.
     pub rest_positions: bool,
 }
 
@@ -56,7 +56,7 @@ pub struct Shot {
     options: Options,
     scene: Scene,
     pose: Pose,
-    look: Look,
+    lighting: Lighting,
     camera: Camera,
     /// Number of the frame drawn last, and what it was seen by.
     drawn: Option<(i64, View)>,
@@ -92,10 +92,11 @@ impl Shot {
         let pose = Pose::at_rest(&scene);
         let camera = Camera::choose(&options, &scene);
         let view = camera.view(&scene, &pose, 0.0);
-        let mut look = Look::for_scene(&scene, &pose, &view, options.light, options.background.environment());
-        look.exposure *= options.exposure.exp2();
+        let mut lighting =
+            Lighting::for_scene(&scene, &pose, &view, options.light, options.background.environment());
+        lighting.exposure *= options.exposure.exp2();
         let mut shot = Self {
-            look,
+            lighting,
             camera,
             readback: Readback::default(),
             drawn: None,
@@ -160,7 +161,7 @@ impl Shot {
             self.renderer.forget_motion();
         } else {
             let view = self.go_to(number - 1);
-            self.renderer.pass_over(&self.scene, &self.pose, &view, &self.look);
+            self.renderer.pass_over(&self.scene, &self.pose, &view, &self.lighting);
         }
     }
 
@@ -177,7 +178,7 @@ impl Shot {
             self.bind()?;
         }
         let mut encoder = self.gpu.device.create_command_encoder(&Default::default());
-        self.renderer.encode(&mut encoder, &self.scene, &self.pose, &view, &self.look);
+        self.renderer.encode(&mut encoder, &self.scene, &self.pose, &view, &self.lighting);
         if let Some(stylizer) = &mut self.stylizer {
             stylizer.encode(&mut encoder)?;
         }
@@ -185,13 +186,13 @@ impl Shot {
         Ok(())
     }
 
-    /// What the frame drawn last was seen by.
+    /// View of the frame that was drawn last.
     pub fn view(&self) -> Option<&View> {
         self.drawn.as_ref().map(|(_, view)| view)
     }
 
-    /// What the renderer knows of the pixels of the frame drawn last, as `choose` picks it; nothing where that was
-    /// not rendered.
+    /// Data that the renderer knows of the pixels of the frame drawn last, as `choose` picks them; nothing where they
+    /// were not rendered.
     ///
     /// # Errors
     /// [`isophote_files::error::Error::Failure`] when the device fails.
@@ -201,7 +202,7 @@ impl Shot {
     }
 }
 
-/// Where the pictures are taken from.
+/// Camera that the pictures are taken from.
 enum Camera {
     File(usize, Orbit),
     Framing(Orbit),

@@ -8,6 +8,7 @@ use std::sync::Arc;
 use clap::{Args, Command, ValueEnum};
 use glam::Vec3;
 
+use crate::stylize::preset;
 use isophote_files::error::{Error, Result};
 use isophote_files::output;
 use isophote_pictures::space::{srgb_decode, srgb_encode};
@@ -35,13 +36,13 @@ fn flag(is_set: bool) -> Option<String> {
     is_set.then(String::new)
 }
 
-/// How scenes are read.
+/// Options for reading scenes.
 #[derive(Args, Clone, Debug, Default, PartialEq)]
 pub struct ReadingArgs {
     /// Image that colours an OBJ without textures.
     #[arg(long, value_name = "FILE")]
     pub texture: Option<PathBuf>,
-    /// Which axis of the file points up: z turns scenes of programs that have it so.
+    /// Axis of the file that points up: z turns scenes of programs that have it so.
     #[arg(long, value_name = "AXIS", default_value = "y")]
     pub up: Up,
 }
@@ -82,13 +83,13 @@ impl ReadingArgs {
     }
 }
 
-/// Which moment of which animation of a scene is shown.
+/// Moment and animation of a scene that are shown.
 #[derive(Args, Clone, Debug, Default, PartialEq)]
 pub struct MotionArgs {
     /// Plays the file's animation, in a loop.
     #[arg(long)]
     pub animate: bool,
-    /// Which animation plays, by name or by number from 0; the first if not given.
+    /// Animation that plays, by name or by number from 0; the first if not given.
     #[arg(long, value_name = "NAME")]
     pub animation: Option<String>,
     /// Time of frame 1 in the animation in seconds.
@@ -145,25 +146,25 @@ pub struct StagingArgs {
     /// Height of the default camera and turntables above the horizon in degrees, below 90 [default: 16].
     #[arg(long, value_name = "DEGREES", value_parser = finite, allow_negative_numbers = true)]
     pub elevation: Option<f32>,
-    /// How far away the default camera and turntables are, as a factor on the distance from which the scene fills the
+    /// Distance of the default camera and turntables, as a factor on the distance from which the scene fills the
     /// picture, from 0.1 to 100 [default: 1].
     #[arg(long, value_name = "FACTOR", value_parser = factor)]
     pub distance: Option<f32>,
-    /// What the default camera and turntables look at, in the scene's units [default: the middle of the scene].
+    /// Point that the default camera and turntables look at, in the scene's units [default: the middle of the scene].
     #[arg(long, value_name = "X,Y,Z", value_parser = point, allow_hyphen_values = true)]
     pub target: Option<Vec3>,
     /// Vertical field of view of the default camera and turntables in degrees, from 1 to 150 [default: 34.4].
     #[arg(long, value_name = "DEGREES", value_parser = field_of_view)]
     pub fov: Option<f32>,
-    /// Where the sun is: degrees to the right of the camera as it stands before anything moves, from -360 to 360 (0 is
-    /// behind it), and above the horizon, from -90 to 90 [default: the sun of the file, or -60,40].
+    /// Direction of the sun: degrees to the right of the camera as it stands before anything moves, from -360 to 360 (0
+    /// is behind it), and above the horizon, from -90 to 90 [default: the sun of the file, or -60,40].
     #[arg(long, value_name = "AZIMUTH,ELEVATION", value_parser = light, allow_hyphen_values = true)]
     pub light: Option<Direction>,
     /// Brightness of the scene in stops, from -16 to 16. What EXR files hold of the scene is as bright as it is.
     #[arg(long, value_name = "STOPS", default_value_t = 0.0, value_parser = stops, allow_negative_numbers = true)]
     pub exposure: f32,
-    /// What is behind the scene: sky, transparent, a colour #rrggbb that is shown as it is, or an equirectangular picture
-    /// of the surroundings (Radiance HDR or EXR), which lights the scene, too.
+    /// Background of the scene: sky, transparent, a colour #rrggbb that is shown as it is, or an equirectangular
+    /// picture of the surroundings (Radiance HDR or EXR), which lights the scene, too.
     #[arg(long, value_name = "sky|transparent|#rrggbb|FILE", default_value = "sky")]
     pub background: Behind,
     /// Lets the scene cast its shadow on an invisible ground at its lowest point [default: if it has neither a floor nor
@@ -175,7 +176,7 @@ pub struct StagingArgs {
     pub no_ground: bool,
 }
 
-/// What is behind the scene, as it is written.
+/// Background of the scene, as it is written.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub enum Behind {
     /// The sky that lights it.
@@ -215,11 +216,10 @@ impl FromStr for Behind {
             "transparent" => return Ok(Self::Transparent),
             _ => {}
         }
-        if let Some(digits) = text.strip_prefix('#') {
-            let is_color = digits.len() == 6 && digits.bytes().all(|b| b.is_ascii_hexdigit());
-            let number = u32::from_str_radix(digits, 16).ok().filter(|_| is_color).ok_or(refusal)?;
-            let [_, rgb @ ..] = number.to_be_bytes();
-            return Ok(Self::Color(rgb.map(|v| srgb_decode(f32::from(v) / 255.0)).into()));
+        if text.starts_with('#') {
+            // What is behind the scene has nothing behind it.
+            let [rgb @ .., alpha] = preset::color(text).ok_or(refusal)?;
+            return if alpha == 1.0 { Ok(Self::Color(rgb.map(srgb_decode).into())) } else { Err(refusal) };
         }
         let path = PathBuf::from(text);
         let extension = path.extension().unwrap_or_default();
@@ -249,7 +249,7 @@ impl StagingArgs {
         })
     }
 
-    /// How the default camera and turntables frame the scene.
+    /// Framing of the scene by the default camera and by turntables.
     pub fn framing(&self) -> Framing {
         let usual = Framing::default();
         let or = |degrees: Option<f32>, usual: f32| degrees.map_or(usual, f32::to_radians);
@@ -283,7 +283,7 @@ impl StagingArgs {
         }
     }
 
-    /// What is behind the scene.
+    /// Background of the scene, read from its file where it has one.
     ///
     /// # Errors
     /// [`Error::Input`] for a picture that cannot be read or does not show all directions.
@@ -304,7 +304,7 @@ impl StagingArgs {
         }
     }
 
-    /// Whether the scene casts its shadow on an invisible ground.
+    /// True where the scene casts its shadow on an invisible ground.
     pub fn has_ground(&self, scene: &Scene) -> bool {
         self.ground || !self.no_ground && floor::lacks_floor(scene)
     }

@@ -5,7 +5,7 @@ use crate::primaries::{Change, REC709};
 use crate::read::ImageState;
 use crate::space::{Space, srgb_decode, srgb_encode};
 
-/// What an infinity becomes.
+/// Number that an infinity becomes.
 const LARGEST_HALF: f32 = 65504.0;
 
 /// Turns colours that a graph gave for a picture of `from` in `space` into what a file of `to` holds. PNG and

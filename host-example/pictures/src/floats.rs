@@ -46,7 +46,7 @@ pub fn save(path: &Path, existing: Existing, picture: &Picture) -> Result<()> {
     }
 }
 
-/// Whether [`save`] knows the extension; asked before any work is done.
+/// Checks that [`save`] knows the extension; asked before any work is done.
 ///
 /// # Errors
 /// [`Error::Input`] naming the file and the extensions that are known.
@@ -61,7 +61,7 @@ fn unknown_extension(path: &Path) -> Error {
     Error::file(path, "is not a kind of picture that is written", "name a .png or .exr file")
 }
 
-/// Whether a path names an EXR file.
+/// True where a path names an EXR file.
 pub fn is_exr(path: &Path) -> bool {
     extension(path) == "exr"
 }
@@ -122,7 +122,7 @@ pub struct Layer<'a> {
     pub picture: &'a Picture,
     /// A name for each number of a pixel, such as `N.X`.
     pub names: &'a [&'a str],
-    /// How they are stored.
+    /// Precision in which they are stored.
     pub precision: Precision,
 }
 

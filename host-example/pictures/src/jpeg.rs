@@ -1,4 +1,4 @@
-//! Whether a JPEG file is whole. Decoders fill what is missing with grey and say nothing.
+//! Checks that a JPEG file is whole. Decoders fill what is missing with grey and say nothing.
 
 /// Walks the markers of a JPEG file (ISO/IEC 10918-1, annex B) to the end-of-image marker, and says whether
 /// there is one.

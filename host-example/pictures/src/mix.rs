@@ -7,13 +7,13 @@ use crate::pixels::{Pixels, Samples};
 use crate::read::ImageState;
 use crate::space::{Space, srgb_decode, srgb_encode};
 
-/// What infinities become, as in the library.
+/// Number that infinities become, as in the library.
 const LARGEST_HALF: f32 = 65504.0;
 
-/// What the numbers of a picture mean.
+/// Meaning of the numbers of a picture.
 #[derive(Clone, Copy, Debug)]
 pub struct Meaning {
-    /// Whether they are multiplied by alpha.
+    /// State of the numbers, multiplied by alpha or not.
     pub state: ImageState,
     /// Their space.
     pub space: Space,

@@ -70,7 +70,7 @@ impl Pixels {
         &self.samples
     }
 
-    /// How samples are stored.
+    /// Precision in which samples are stored.
     pub fn precision(&self) -> Precision {
         match self.samples {
             Samples::U8(_) => Precision::U8,
@@ -130,7 +130,7 @@ impl Pixels {
     }
 }
 
-/// Why an image of the library can always be made of [`Pixels`].
+/// Reason why an image of the library can always be made of [`Pixels`].
 const FITS: &str = "pixels hold as many samples as their size says";
 
 impl AsImage for Pixels {
@@ -158,7 +158,7 @@ impl Samples {
         }
     }
 
-    /// Whether there are none.
+    /// True where there are none.
     pub fn is_empty(&self) -> bool {
         self.len() == 0
     }

@@ -1,4 +1,4 @@
-//! Whether a PNG file is whole. Decoders have all pixels before the last chunk, and some of the one before it.
+//! Checks that a PNG file is whole. Decoders have all pixels before the last chunk, and some of the one before it.
 
 /// Length of the signature at the start.
 const SIGNATURE: usize = 8;

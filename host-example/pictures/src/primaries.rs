@@ -42,7 +42,7 @@ impl Change {
     }
 }
 
-/// Whether two sets of primaries are the same but for rounding.
+/// True where two sets of primaries are the same but for rounding.
 pub fn same(a: Chromaticities, b: Chromaticities) -> bool {
     a.iter().zip(b).all(|(a, b)| (a - b).abs() < SAME)
 }

@@ -25,7 +25,7 @@ const EXR: [u8; 4] = [0x76, 0x2f, 0x31, 0x01];
 /// Bytes that a decoder may take for the smallest picture: its tables and texts.
 const LEAST: u64 = 64 << 20;
 
-/// What the numbers of a file stand for.
+/// State of the numbers of a file.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum ImageState {
     /// Encoded for displays, alpha apart from colour: PNG, JPEG, WebP and TIFF of integers.
@@ -37,9 +37,9 @@ pub enum ImageState {
 /// A picture with what is to be kept beside its pixels.
 #[derive(Debug)]
 pub struct Source {
-    /// What is to be filtered: one picture, or one for each view of an EXR file.
+    /// Pictures to be filtered: one, or one for each view of an EXR file.
     pub pictures: Vec<Picture>,
-    /// What the numbers mean.
+    /// State of the numbers.
     pub state: ImageState,
     /// The colour profile of a PNG or JPEG file.
     pub profile: Option<Vec<u8>>,
@@ -51,7 +51,7 @@ impl Source {
     /// Makes sure that there can be results of all pictures.
     ///
     /// # Errors
-    /// Why there can be none.
+    /// The reason why there can be none.
     pub fn check(&self) -> Result<()> {
         self.pictures.iter().find_map(|picture| picture.refused.clone()).map_or(Ok(()), Err)
     }
@@ -186,7 +186,7 @@ impl Opened {
         }
     }
 
-    /// What can be chosen in the file: layers and views of an EXR file, nothing in others.
+    /// Choices that the file offers: layers and views of an EXR file, nothing in others.
     pub fn offers(&self) -> Offers {
         match &self.0 {
             Kind::Exr(file) => file.offers(),
@@ -231,7 +231,7 @@ fn unreadable(path: &Path, problem: &io::Error) -> Error {
     }
 }
 
-/// How to write what somebody may have meant who named this path.
+/// Hint at what somebody may have meant who named this path.
 fn hint(path: &Path) -> String {
     match frames::meant(path) {
         Some(pattern) => format!("write {} for a sequence, or name a picture", pattern.display()),
@@ -239,7 +239,7 @@ fn hint(path: &Path) -> String {
     }
 }
 
-/// Whether a file is a whole picture, and no beginning of one.
+/// True where a file is a whole picture, and no beginning of one.
 pub fn is_whole(path: &Path) -> bool {
     let Ok(bytes) = Unread::open(path).and_then(|file| file.bytes(path)) else { return false };
     if bytes.starts_with(&EXR) {

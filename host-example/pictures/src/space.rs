@@ -1,10 +1,10 @@
-//! Which colours the numbers of a picture stand for.
+//! Colour spaces: the colours that the numbers of a picture stand for.
 
 use clap::ValueEnum;
 
 use crate::primaries::{AP1, Chromaticities, P3, REC2020};
 
-/// What the numbers of a picture mean.
+/// Space of the numbers of a picture.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
 pub enum Space {
     /// Gamma-encoded sRGB.

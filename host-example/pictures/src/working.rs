@@ -15,7 +15,7 @@ pub struct WorkingSpace {
 }
 
 impl WorkingSpace {
-    /// What `space` says, or what the file says without.
+    /// Space that `space` names, or that of the file without.
     pub fn of(space: Option<Space>, state: ImageState, picture: &Picture) -> Self {
         let known = |space| Self { space, change: None };
         let primaries = match (space, state) {

@@ -48,7 +48,7 @@ impl Format {
         }
     }
 
-    /// What its numbers stand for when they come from a picture of another state.
+    /// State of its numbers when they come from a picture of another state.
     pub fn state(self, source: ImageState) -> ImageState {
         match self {
             Self::Png | Self::Jpeg => ImageState::DisplayReferred,

@@ -12,7 +12,7 @@ const AFTER_HELP: &str = "Files that are there already stay unless --force is gi
 #[derive(Debug, Parser)]
 #[command(name = "isophote", version, about, after_help = AFTER_HELP)]
 pub struct Cli {
-    /// What to do.
+    /// Command to carry out.
     #[command(subcommand)]
     command: Command,
 }

@@ -1,4 +1,4 @@
-//! What `render` writes, `apply` reads: frames with their guides in one file.
+//! Frames that `render` writes with their guides in one file, which `apply` reads.
 
 mod support;
 

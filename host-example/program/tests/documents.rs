@@ -12,9 +12,9 @@ use isophote_example::history::Past;
 use isophote_example::kernels::Kernels;
 use isophote_example::plan_runner::PlanRunner;
 use isophote_finishing::apply::backend::Backend;
-use isophote_finishing::apply::filter::{self, Filter, Look};
+use isophote_finishing::apply::filter::{self, Filter, MaskedStyle};
+use isophote_finishing::apply::frame_cache::{CachedFrame, Window};
 use isophote_finishing::apply::memory::Budget;
-use isophote_finishing::apply::reel::{Held, Window, guide_bit};
 use isophote_finishing::stylize::style::Style;
 use isophote_loader::abi::IsophoteRequest;
 use isophote_loader::{Control, Input, Library};
@@ -42,7 +42,7 @@ fn floats(width: u32, height: u32, channels: u32, data: Vec<f32>) -> Pixels {
     Pixels::new(width, height, channels, Samples::F32(data)).expect("as many numbers as pixels")
 }
 
-/// What the style makes of a frame, handed over as the window does, with these guides.
+/// Result of the style on a frame, handed over as the window does, with these guides.
 fn stylized(frame: &Frame, name: &str, (channels, precision): (u32, Precision)) -> Pixels {
     let library = library();
     let mut style = Style::load(&library, name, &[]).expect("a style");
@@ -61,7 +61,7 @@ fn stylized(frame: &Frame, name: &str, (channels, precision): (u32, Precision)) 
     target
 }
 
-/// What `apply` makes of a file, before it is put back into the primaries of the file.
+/// Result of `apply` on a file, before it is put back into the primaries of the file.
 fn applied(path: &Path, name: &str, space: Option<Space>, backend: Backend) -> Pixels {
     let library = library();
     let style = Style::load(&library, name, &[]).expect("a style");
@@ -69,10 +69,11 @@ fn applied(path: &Path, name: &str, space: Option<Space>, backend: Backend) -> P
     let source = read::read(path, &Selection { wanted, ..Selection::default() }).expect("a picture");
     let budget = Budget::new(u64::MAX, 1);
     let format = if source.exr.is_some() { Format::Exr } else { Format::Tiff };
-    let own = Arc::new(Held::new(None, source, true, budget.share()));
+    let own = Arc::new(CachedFrame::new(None, source, true, budget.share()));
     let exr = own.take_exr();
     let window = Window { frames: vec![Arc::clone(&own)], own };
-    let mut filter = Filter::new(library, vec![Look::whole(style)], backend, space, 0).expect("a filter");
+    let mut filter =
+        Filter::new(library, vec![MaskedStyle::whole(style)], backend, space, 0).expect("a filter");
     let filtered = filter.run("picture", &window, exr.as_ref(), format, &mut |_| {}).expect("a result");
     filtered.results.into_iter().next().expect("a picture")
 }
@@ -105,14 +106,15 @@ fn uploaded(gpu: &Gpu, (width, height): (u32, u32), channels: u32, data: &[f32])
     texture.create_view(&wgpu::TextureViewDescriptor::default())
 }
 
-/// What the style makes of a frame on a device of the host's own, as the window does it.
+/// Result of the style on a frame, on a device of the host's own, as the window does it.
 fn on_the_device(frame: &Frame, name: &str) -> Vec<f32> {
     let (library, gpu) = (library(), Gpu::open().expect("a graphics adapter"));
     let style = Style::load(&library, name, &[]).expect("a style");
     let usable = filter::usable_guides(&library, &style).expect("the library answers");
     let size = (frame.width, frame.height);
     let wanted: Vec<_> = frame.guides.iter().filter(|image| usable.contains(&image.guide)).collect();
-    let guides = wanted.iter().fold(0, |all, image| all | guide_bit(image.guide.id()));
+    let names = wanted.iter().map(|image| image.guide.id());
+    let guides = library.guide_bits(names).expect("the library knows them");
     let usual = style.request(&library, size).expect("a request");
     let request = frame.request(IsophoteRequest { guides, ..usual });
     let plan = style.plan(&library, &request, 0).expect("a plan");

@@ -1,4 +1,4 @@
-//! What the window writes: by another process, the same as on the command line, and nothing that is not whole.
+//! Files that the window writes: by another process, the same as on the command line, and nothing that is not whole.
 
 mod support;
 
@@ -8,7 +8,7 @@ use std::time::{Duration, Instant};
 
 use isophote_window::document::kind::Kind;
 use isophote_window::document::{Document, Options};
-use isophote_window::export::{Export, Job, Progress, State};
+use isophote_window::export::{Export, ExportJob, Progress, State};
 
 use support::{cube, folder, isophote, listing, picture, succeeds};
 
@@ -17,10 +17,10 @@ const PATIENCE: Duration = Duration::from_secs(120);
 const LOOK: &str =
     r#"{"style": "cartoon", "lengths": "pixels", "parameters": {"posterize": 5, "sigma_d": 2}}"#;
 
-fn job(kind: Kind, input: &Path, output: &Path) -> Job {
+fn job(kind: Kind, input: &Path, output: &Path) -> ExportJob {
     // It finds the library beside the program.
     support::library();
-    let mut job = Job::new(kind, input, output, Some(LOOK.into()));
+    let mut job = ExportJob::new(kind, input, output, Some(LOOK.into()));
     job.program = Some(PathBuf::from(env!("CARGO_BIN_EXE_isophote")));
     if kind != Kind::Scene {
         job.arguments = vec!["--backend".into(), "cpu".into()];
@@ -41,12 +41,12 @@ fn wait_until(export: &Export, is_so: impl Fn(&Progress) -> bool) -> Progress {
     }
 }
 
-fn ended(job: Job) -> Progress {
+fn ended(job: ExportJob) -> Progress {
     let export = Export::start(job).unwrap_or_else(|e| panic!("{e}"));
     wait_until(&export, |progress| progress.state != State::Running)
 }
 
-fn done(job: Job) -> f64 {
+fn done(job: ExportJob) -> f64 {
     let progress = ended(job);
     assert_eq!((&progress.state, progress.done), (&State::Done, progress.total));
     progress.total
@@ -221,14 +221,14 @@ fn failures_are_told_in_the_words_of_the_verb() {
     let at = |name: &str| folder.path().join(name);
     picture(40, 30).save(at("in.0001.png")).expect("the folder is writable");
     fs::write(at("in.0002.png"), "no picture").expect("the folder is writable");
-    let fails = |job: Job, words: &[&str]| {
+    let fails = |job: ExportJob, words: &[&str]| {
         let State::Failed(text) = ended(job).state else { panic!("nothing is wrong") };
         assert!(words.iter().all(|word| text.contains(word)), "{text}");
     };
     fails(job(Kind::Picture, &at("missing.png"), &at("out.png")), &["missing.png"]);
     fails(job(Kind::Picture, &at("in.0001.png"), &at("no/out.png")), &["no/out.png", "cannot be written"]);
     fails(job(Kind::Picture, &at("in.0001.png"), &at("out.gif")), &["out.gif", ".png"]);
-    let bad = |text: &str| Job {
+    let bad = |text: &str| ExportJob {
         preset: Some(text.into()),
         ..job(Kind::Picture, &at("in.0001.png"), &at("out.png"))
     };
@@ -240,7 +240,7 @@ fn failures_are_told_in_the_words_of_the_verb() {
     let mut none = job(Kind::Picture, &at("in.0001.png"), &at("out.png"));
     none.program = Some(at("nowhere"));
     fails(none, &["cannot be started"]);
-    let plain = Job { preset: None, ..job(Kind::Picture, &at("in.0001.png"), &at("out.png")) };
+    let plain = ExportJob { preset: None, ..job(Kind::Picture, &at("in.0001.png"), &at("out.png")) };
     assert!(Export::start(plain).is_err());
     assert_eq!(listing(folder.path()), ["in.0001.png", "in.0002.png", "out.0001.png"]);
 }

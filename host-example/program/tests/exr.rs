@@ -243,7 +243,7 @@ fn parts_under_other_compressions_pass_untouched() {
     }
 }
 
-/// What the library gives for a picture in linear light.
+/// Result of the library for a picture in linear light.
 fn by_the_library(color: &Pixels, guides: &[(&str, &Pixels)]) -> Pixels {
     let library = Library::from_file(support::library()).expect("the library");
     let mut graph = library.single("cartoon").expect("the node");

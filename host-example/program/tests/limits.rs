@@ -1,4 +1,4 @@
-//! What the system refuses: memory, threads and room on a disk. The program ends in order or does with less.
+//! Resources that the system refuses: memory, threads and room on a disk. The program ends in order or does with less.
 
 #![cfg(target_os = "linux")]
 
@@ -30,7 +30,7 @@ fn within(mebibytes: u64, command: &Command) -> Output {
         .expect("the shell can be started")
 }
 
-/// Whether the system can load the program at all where it may have so many MiB of addresses.
+/// True where the system can load the program at all where it may have so many MiB of addresses.
 fn loads(mebibytes: u64, command: &Command) -> bool {
     let mut version = Command::new(command.get_program());
     version.arg("--version").current_dir(command.get_current_dir().expect("a folder"));
@@ -187,7 +187,7 @@ fn a_full_disk_leaves_no_half_of_any_file() {
     }
 }
 
-/// What is printed is a result, too.
+/// A result on standard output needs room like one in a file.
 #[test]
 fn a_full_disk_takes_no_result_from_standard_output() {
     let folder = folder();

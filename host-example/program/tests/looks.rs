@@ -5,9 +5,7 @@ mod support;
 
 use std::fs;
 
-use isophote_finishing::stylize::lengths::Lengths;
-use isophote_finishing::stylize::looks::{self, Look};
-use isophote_finishing::stylize::preset::Track;
+use isophote_finishing::stylize::preset::{self, Lengths, Preset, Track};
 use isophote_finishing::stylize::style::{Setting, Style};
 use isophote_loader::catalogue::{Param, ParamKind};
 use isophote_loader::{Control, Input, Library};
@@ -25,8 +23,23 @@ fn library() -> Library {
     Library::from_file(support::library()).expect("the library")
 }
 
+/// A look with the preset that it is.
+struct Look {
+    id: &'static str,
+    json: &'static str,
+    preset: Preset,
+}
+
+impl Look {
+    fn style(&self) -> String {
+        format!("look:{}", self.id)
+    }
+}
+
 fn looks() -> Vec<Look> {
-    looks::all().expect("every look can be read")
+    let preset = |look: &preset::Look| preset::of_look(look).expect("every look can be read");
+    let look = |look: preset::Look| Look { id: look.id, json: look.json, preset: preset(&look) };
+    library().looks().expect("the looks").into_iter().map(look).collect()
 }
 
 /// The value that a look has for a parameter.
@@ -166,7 +179,7 @@ fn looks_take_the_place_of_styles_and_presets() {
     let kept = fs::read_to_string(folder.path().join("mine.json")).expect("the preset was written");
     let looks = looks();
     let linocut = looks.iter().find(|look| look.id == "linocut").expect("the look is there");
-    assert_eq!(kept, linocut.preset.to_json());
+    assert_eq!(kept, linocut.json);
     // As one of several, with a parameter of its own.
     let layered = r#"[{"style": "gaussian"}, {"preset": "look:linocut", "params": {"tone": 0.9}}]"#;
     fs::write(folder.path().join("layers.json"), layered).expect("a file can be written");

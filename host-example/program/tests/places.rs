@@ -1,4 +1,4 @@
-//! Where files are read and written: what is left untouched, links, pipes, names that are no text, and standard
+//! Places where files are read and written: what is left untouched, links, pipes, names that are no text, and standard
 //! output that nobody reads.
 
 #![cfg(unix)]

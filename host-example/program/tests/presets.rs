@@ -5,6 +5,10 @@ mod support;
 use std::fs;
 use std::path::Path;
 
+use isophote_finishing::stylize::style::Style;
+use isophote_loader::Library;
+use serde_json::Value;
+
 use support::{cube, fails, folder, isophote, listing, picture, succeeds};
 
 fn preset(folder: &Path, arguments: &[&str]) -> String {
@@ -188,4 +192,40 @@ fn a_title_is_written_kept_and_shown() {
         fails(&mut command, 2, &[wrong[0], "on one line"]);
     }
     assert_eq!(listing(folder.path()), ["a.json", "b.json"]);
+}
+
+#[test]
+fn presets_are_read_as_by_the_other_faces() {
+    let folder = folder();
+    let library = Library::from_file(support::library()).expect("the library");
+    let table =
+        fs::read_to_string(support::root().join("tests/data/presets.json")).expect("the table is there");
+    let table: Vec<Value> = serde_json::from_str(&table).expect("it is a list");
+    let file = folder.path().join("preset.json");
+    for case in &table {
+        fs::write(&file, case["preset"].to_string()).expect("a file can be written");
+        let why = &case["why"];
+        let opened = Style::any(&library, &file, &[]).and_then(|style| {
+            style.at_frame(case["frame"].as_i64().unwrap_or_default())?;
+            Ok(style.graph.to_json().expect("the graph is whole"))
+        });
+        let mut check = isophote();
+        check.args(["preset", "check"]).arg(&file);
+        if let Some(words) = case["error"].as_str() {
+            let error = opened.expect_err("it cannot be used").to_string();
+            assert!(error.contains(words), "{why}: {error}");
+            let output = check.output().expect("the program starts");
+            assert_eq!(output.status.code(), Some(2), "{why}");
+            assert!(support::errors(&output).contains(words), "{why}");
+            continue;
+        }
+        succeeds(&mut check);
+        let graph: Value = serde_json::from_str(&opened.expect("it can be used")).expect("a graph is JSON");
+        let nodes = graph["nodes"].as_array().expect("it has nodes").iter();
+        let values: serde_json::Map<String, Value> = nodes
+            .filter(|node| node["params"].is_object())
+            .map(|node| (node["name"].as_str().unwrap_or_default().to_owned(), node["params"].clone()))
+            .collect();
+        assert_eq!(Value::Object(values), case["values"], "{why}");
+    }
 }

@@ -1,4 +1,4 @@
-//! What is replaced: nothing that is there unless that was asked for, and never what is read.
+//! Files that are replaced: none that is there unless that was asked for, and never one that is read.
 
 mod support;
 

@@ -1,4 +1,4 @@
-//! How scenes are seen and lit: `render` with its options for camera, light, background and ground.
+//! Views and light of scenes: `render` with its options for camera, light, background and ground.
 
 mod support;
 

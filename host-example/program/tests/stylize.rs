@@ -8,14 +8,14 @@ use std::sync::Arc;
 use isophote_example::kernels::Kernels;
 use isophote_example::plan_runner::Counts;
 use isophote_finishing::stylize::Stylizer;
-use isophote_finishing::stylize::lengths::Lengths;
+use isophote_finishing::stylize::preset::Lengths;
 use isophote_finishing::stylize::style::{Setting, Style};
 use isophote_loader::abi::{ISOPHOTE_SPACE_LINEAR, IsophoteRequest};
 use isophote_loader::{Control, Input, Library};
 use isophote_pictures::floats::Picture;
 use isophote_pictures::pixels::{Pixels, Precision, Samples};
 use isophote_render::gpu::Gpu;
-use isophote_render::look::Look;
+use isophote_render::lighting::Lighting;
 use isophote_render::readback::Readback;
 use isophote_render::renderer::Renderer;
 use isophote_render::targets::Targets;
@@ -32,7 +32,7 @@ struct Stage {
     gpu: Gpu,
     scene: Scene,
     pose: Pose,
-    look: Look,
+    lighting: Lighting,
     orbit: Orbit,
     renderer: Renderer,
     library: Library,
@@ -51,10 +51,10 @@ impl Stage {
         let scene = Scene::load(&support::cube(folder), None).expect("the cube is a scene");
         let pose = Pose::at_rest(&scene);
         let orbit = Orbit::turntable(&scene, SIZE.0 as f32 / SIZE.1 as f32, Framing::default());
-        let look = Look::for_scene(&scene, &pose, &orbit.view(), None, None);
+        let lighting = Lighting::for_scene(&scene, &pose, &orbit.view(), None, None);
         let renderer = Renderer::new(&gpu.device, &gpu.queue, &scene, SIZE).expect("the scene fits");
         let library = Library::from_file(support::library()).expect("the library");
-        Self { gpu, scene, pose, look, orbit, renderer, library }
+        Self { gpu, scene, pose, lighting, orbit, renderer, library }
     }
 
     fn stylizer(&self, kernels: &Arc<Kernels>, name: &str) -> Stylizer {
@@ -68,7 +68,7 @@ impl Stage {
     fn frame(&mut self, stylizer: &mut Stylizer, angle: f32) {
         let mut encoder = self.gpu.device.create_command_encoder(&Default::default());
         let view = self.orbit.turned(angle).view();
-        self.renderer.encode(&mut encoder, &self.scene, &self.pose, &view, &self.look);
+        self.renderer.encode(&mut encoder, &self.scene, &self.pose, &view, &self.lighting);
         stylizer.encode(&mut encoder).expect("the style can be recorded");
         self.gpu.queue.submit([encoder.finish()]);
     }

@@ -13,7 +13,7 @@ fn ffmpeg(folder: &Path, args: &str) {
     succeeds(command.current_dir(folder).args(["-v", "error", "-y"]).args(args.split(' ')));
 }
 
-/// What ffprobe says of a stream.
+/// Output of ffprobe about a stream.
 fn probe(file: &Path, stream: &str, entries: &str) -> String {
     let mut command = Command::new("ffprobe");
     command.args(["-v", "error", "-select_streams", stream, "-show_entries", &format!("stream={entries}")]);

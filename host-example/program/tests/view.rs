@@ -55,7 +55,7 @@ const CANVAS: Part = [0, 60, 350, 300];
 const LEFT: Part = [0, 80, 160, 300];
 /// Far along the first slider of its panel.
 const SLIDER: [i32; 2] = [590, 146];
-/// Where the pointer shows nothing.
+/// Place where the pointer shows nothing.
 const ASIDE: [i32; 2] = [320, 408];
 
 #[test]
@@ -161,7 +161,7 @@ fn a_look_is_taken_from_the_grid_where_it_was_seen_on_the_picture() {
     assert!(!said.contains("error:") && !said.contains("warning:"), "{said}");
 }
 
-/// Whether most pixels are more blue than red, in whichever order the screen has its colours.
+/// True where most pixels are more blue than red, in whichever order the screen has its colours.
 fn is_blue(pixels: &[u8]) -> bool {
     let blue = pixels.chunks_exact(4).filter(|pixel| pixel[0].abs_diff(pixel[2]) > 60).count();
     blue * 4 > pixels.len() / 2

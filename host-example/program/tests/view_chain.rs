@@ -7,7 +7,7 @@ use egui_kittest::kittest::Queryable;
 use isophote_loader::Library;
 use isophote_scene::Scene;
 use isophote_window::chain::{self, Chain, Watched};
-use isophote_window::look::Look;
+use isophote_window::look::EditedLook;
 use isophote_window::scenery::{Scenery, Staging};
 use isophote_window::session::Session;
 use isophote_window::settings::Settings;
@@ -20,7 +20,7 @@ fn library() -> Library {
 
 fn session(look: &str) -> Session {
     let library = library();
-    let look = Look::open(&library, look.as_ref()).unwrap();
+    let look = EditedLook::open(&library, look.as_ref()).unwrap();
     Session::new(library, vec![look], Settings::default()).unwrap()
 }
 
@@ -36,14 +36,17 @@ fn add(session: &mut Session, node: &str) {
 fn graphs_that_are_lists_are_read_as_such_and_others_are_not() {
     let library = library();
     let graph = |name: &str| support::root().join(format!("host-example/graphs/{name}.json"));
-    let look = Look::open(&library, &graph("ink")).unwrap();
+    let look = EditedLook::open(&library, &graph("ink")).unwrap();
     let chain = look.chain(&library).unwrap().unwrap();
     let names: Vec<&str> = chain.links.iter().map(|link| link.name.as_str()).collect();
     assert_eq!(names, ["smooth", "lines"]);
     assert!(chain.has("tensor"));
     assert_eq!(Chain::read(&library, &chain.json()).unwrap(), chain);
     for other in ["poster", "flow"] {
-        assert!(Look::open(&library, &graph(other)).unwrap().chain(&library).unwrap().is_none(), "{other}");
+        assert!(
+            EditedLook::open(&library, &graph(other)).unwrap().chain(&library).unwrap().is_none(),
+            "{other}"
+        );
     }
     for broken in
         ["", "{}", r#"{"nodes": [], "output": "a"}"#, r#"{"nodes": [{"name": "a"}], "output": "a"}"#]
@@ -57,7 +60,7 @@ fn every_node_that_fits_can_follow_every_look() {
     let library = library();
     let fitting = chain::fitting(&library);
     assert!(fitting.len() > 15);
-    let mut chain = Look::open(&library, "cartoon".as_ref()).unwrap().chain(&library).unwrap().unwrap();
+    let mut chain = EditedLook::open(&library, "cartoon".as_ref()).unwrap().chain(&library).unwrap().unwrap();
     for node in &fitting {
         chain.add(&library, node.id, chain.end()).unwrap();
     }
@@ -69,14 +72,20 @@ fn every_node_that_fits_can_follow_every_look() {
 #[test]
 fn nodes_are_added_moved_passed_by_and_removed_step_by_step() {
     let mut session = session("cartoon");
-    let knob = session.knobs.iter().find(|knob| matches!(knob.default, Value::Float(_))).unwrap().clone();
-    let value = knob.default.others(&knob.param.kind).swap_remove(0);
-    session.set(&knob, &value);
+    let parameter = session
+        .parameters
+        .iter()
+        .find(|parameter| matches!(parameter.default, Value::Float(_)))
+        .unwrap()
+        .clone();
+    let value = parameter.default.others(&parameter.param.kind).swap_remove(0);
+    session.set(&parameter, &value);
     session.let_go();
     add(&mut session, "bilateral");
     add(&mut session, "bilateral");
     assert_eq!(names(&session), ["cartoon", "bilateral", "bilateral_2"]);
-    let kept = session.knobs.iter().find(|own| own.name == format!("cartoon.{}", knob.name)).unwrap();
+    let kept =
+        session.parameters.iter().find(|own| own.name == format!("cartoon.{}", parameter.name)).unwrap();
     assert_eq!(session.look().value(kept), value);
 
     session.relink(|chain, _| {
@@ -108,7 +117,7 @@ fn nodes_are_added_moved_passed_by_and_removed_step_by_step() {
         session.undo();
     }
     assert_eq!(session.look().preset.style, "cartoon");
-    assert_eq!(session.look().value(&knob), value);
+    assert_eq!(session.look().value(&parameter), value);
 }
 
 #[test]
@@ -119,16 +128,17 @@ fn what_the_window_saves_and_copies_is_what_apply_reads() {
     let mut session = session("cartoon");
     add(&mut session, "bilateral");
     session.relink(|chain, library| chain.add(library, "kuwahara", 0).map(drop));
-    let knob = session.knobs.iter().find(|knob| knob.name.starts_with("kuwahara.")).unwrap().clone();
-    let value = knob.default.others(&knob.param.kind).swap_remove(0);
-    session.set(&knob, &value);
+    let parameter =
+        session.parameters.iter().find(|parameter| parameter.name.starts_with("kuwahara.")).unwrap().clone();
+    let value = parameter.default.others(&parameter.param.kind).swap_remove(0);
+    session.set(&parameter, &value);
     let line = command::line(&session);
     assert!(line.contains("isophote-graph") && line.contains("kuwahara."), "{line}");
 
     let file = folder.path().join("mine.json");
     let mut look = session.look().clone();
     look.save(&file, look.preset.title.clone()).unwrap();
-    let opened = Look::open(&session.library, &file).unwrap();
+    let opened = EditedLook::open(&session.library, &file).unwrap();
     assert_eq!(opened, look);
     assert_eq!(
         opened.chain(&session.library).unwrap().unwrap().json(),
@@ -146,7 +156,7 @@ fn what_the_window_saves_and_copies_is_what_apply_reads() {
     };
     let saved = apply(file.as_os_str(), &[], "saved.png");
     let live = session.look();
-    let written = apply(live.preset.style.as_ref(), &live.settings(&session.knobs), "written.png");
+    let written = apply(live.preset.style.as_ref(), &live.settings(&session.parameters), "written.png");
     assert!(saved == written);
     assert!(saved != apply("cartoon".as_ref(), &[], "plain.png"));
 }
@@ -190,13 +200,14 @@ fn files_that_change_are_read_again_and_broken_ones_leave_the_look() {
     let file = folder.path().join("mine.json");
     std::fs::write(&file, r#"{"style": "cartoon", "parameters": {"posterize": 4}}"#).unwrap();
     let mut session = session(file.to_str().unwrap());
-    let read = |session: &Session| Look::open(&session.library, &file);
+    let read = |session: &Session| EditedLook::open(&session.library, &file);
     let (look, steps) = (session.look().clone(), session.can());
     session.reload(&file, read(&session));
     assert_eq!((session.look(), session.can()), (&look, steps), "nothing has changed");
 
-    let knob = session.knobs.iter().find(|knob| knob.name == "posterize").unwrap().clone();
-    session.set(&knob, &Value::parse(&knob.param.kind, "7").unwrap());
+    let parameter =
+        session.parameters.iter().find(|parameter| parameter.name == "posterize").unwrap().clone();
+    session.set(&parameter, &Value::parse(&parameter.param.kind, "7").unwrap());
     session.let_go();
     let edited = session.look().clone();
     std::fs::write(&file, r#"{"style": "cartoon", "parameters": {"posterize": "#).unwrap();
@@ -204,7 +215,7 @@ fn files_that_change_are_read_again_and_broken_ones_leave_the_look() {
     assert_eq!(session.look(), &edited);
     std::fs::write(&file, r#"{"style": "cartoon", "parameters": {"posterize": 9}}"#).unwrap();
     session.reload(&file, read(&session));
-    assert_eq!(session.look().value(&knob).text(), "9");
+    assert_eq!(session.look().value(&parameter).text(), "9");
     assert!(!session.look().is_changed());
     session.undo();
     assert_eq!(session.look(), &edited, "what was not saved comes back");
@@ -220,8 +231,8 @@ fn a_graph_file_that_changes_beside_its_preset_is_another_look() {
     let mut session = session(file.to_str().unwrap());
     assert_eq!(session.look().files(), [file.clone(), graph.clone()]);
     std::fs::write(&graph, ink.replace("2.5", "4.5")).unwrap();
-    let read = Look::open(&session.library, &file);
+    let read = EditedLook::open(&session.library, &file);
     session.reload(&file, read);
-    let knob = session.knobs.iter().find(|knob| knob.name == "tensor.rho").unwrap();
-    assert_eq!(session.look().value(knob).text(), "4.5");
+    let parameter = session.parameters.iter().find(|parameter| parameter.name == "tensor.rho").unwrap();
+    assert_eq!(session.look().value(parameter).text(), "4.5");
 }

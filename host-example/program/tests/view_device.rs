@@ -14,8 +14,8 @@ use isophote_render::gpu::Gpu;
 use isophote_scene::Scene;
 use isophote_window::app::{App, Event};
 use isophote_window::document::{Document, Options};
-use isophote_window::look::Look;
-use isophote_window::reel::Reel;
+use isophote_window::look::EditedLook;
+use isophote_window::playback::Playback;
 use isophote_window::scenery::{Scenery, Staging};
 use isophote_window::session::Session;
 use isophote_window::settings::Settings;
@@ -115,12 +115,12 @@ fn alone(name: &str, test: impl FnOnce(&Path)) {
 /// A session of some styles with a picture.
 fn session(folder: &Path, styles: &[&str], size: (u32, u32)) -> Session {
     let library = Library::from_file(support::library()).unwrap();
-    let looks = styles.iter().map(|name| Look::open(&library, name.as_ref()).unwrap()).collect();
+    let looks = styles.iter().map(|name| EditedLook::open(&library, name.as_ref()).unwrap()).collect();
     let mut session = Session::new(library, looks, Settings::default()).unwrap();
     let file = folder.join("photo.png");
     support::picture(size.0, size.1).save(&file).unwrap();
     let document = Document::open(&file, &Options::default()).unwrap();
-    session.show_reel(Reel::new(document).unwrap());
+    session.show_playback(Playback::new(document).unwrap());
     session
 }
 
@@ -136,8 +136,8 @@ fn is_at_rest(app: &mut App) -> bool {
 /// Gives a parameter a value, as a slider does.
 fn set(app: &mut App, name: &str, value: f32) {
     let session = app.session_mut();
-    let knob = session.knobs.iter().find(|knob| knob.name == name).unwrap().clone();
-    session.set(&knob, &Value::Float(value));
+    let parameter = session.parameters.iter().find(|parameter| parameter.name == name).unwrap().clone();
+    session.set(&parameter, &Value::Float(value));
 }
 
 /// Destroys the device; returns how many there were so far.
@@ -146,7 +146,7 @@ fn lose(app: &App) -> usize {
     app.devices()
 }
 
-/// What was so when a device was lost: how many devices there had been, what was to be seen, pictures shown.
+/// State in which a device was lost: how many devices there had been, what was to be seen, pictures shown.
 type Loss = Rc<RefCell<(usize, Vec<u8>, usize)>>;
 
 /// A picture whose look is edited, loses its device, and has it again.
@@ -172,8 +172,8 @@ fn lost_at_rest(folder: &Path, loss: &Loss) -> Vec<(&'static str, Step)> {
             return false;
         }
         let session = app.session();
-        let knob = session.knobs.iter().find(|knob| knob.name == "line_amount").unwrap();
-        assert_eq!(session.look().value(knob), Value::Float(0.9));
+        let parameter = session.parameters.iter().find(|parameter| parameter.name == "line_amount").unwrap();
+        assert_eq!(session.look().value(parameter), Value::Float(0.9));
         assert_eq!((session.name.as_str(), session.can()), ("photo.png", [true, true]));
         see_after() == *picture
     };
@@ -257,7 +257,7 @@ fn a_device_that_is_lost_at_once_again_and_again_ends_the_window_with_the_reason
     });
 }
 
-/// What there is on the device, kind by kind.
+/// Number of objects on the device, kind by kind.
 fn objects(gpu: &Gpu) -> Vec<(&'static str, usize)> {
     let report = gpu.instance.generate_report().unwrap();
     let hub = report.hub_report();
@@ -284,7 +284,7 @@ fn resident() -> u64 {
     line.split_whitespace().nth(1).unwrap().parse::<u64>().unwrap() << 10
 }
 
-/// What the process and the device hold at a moment.
+/// Memory and objects that the process and the device hold at a moment.
 struct Held {
     memory: u64,
     objects: Vec<(&'static str, usize)>,
@@ -348,10 +348,12 @@ fn repeat(
     })
 }
 
-/// What a move may leave behind in the mean. Software drivers keep some kilobytes of every pass that they have recorded, also
-/// where the same picture is drawn again and again; a picture of this size has 96 KiB, and its plan a texture or more.
+/// Bytes that a move may leave behind in the mean. Software drivers keep some kilobytes of every pass that they have
+/// recorded, also where the same picture is drawn again and again; a picture of this size has 96 KiB, and its plan a
+/// texture or more.
 const OF_A_MOVE: u64 = 40 << 10;
-/// What a switch may leave behind in the mean, of styles with ten times as many passes and textures of 96 KiB each.
+/// Bytes that a switch may leave behind in the mean, of styles with ten times as many passes and textures of 96 KiB
+/// each.
 const OF_A_SWITCH: u64 = 400 << 10;
 
 #[test]

@@ -15,8 +15,8 @@ use egui_kittest::kittest::Queryable;
 use isophote_loader::Library;
 use isophote_window::document::{Document, Options};
 use isophote_window::leaving::Leaving;
-use isophote_window::look::Look;
-use isophote_window::reel::Reel;
+use isophote_window::look::EditedLook;
+use isophote_window::playback::Playback;
 use isophote_window::session::Session;
 use isophote_window::settings::Settings;
 use isophote_window::ui;
@@ -46,9 +46,9 @@ fn size() -> String {
 /// A session like that of a window that was opened with styles and a picture.
 fn session(styles: &[&Path], file: &Path) -> Session {
     let library = Library::from_file(support::library()).unwrap();
-    let looks = styles.iter().map(|style| Look::open(&library, style).unwrap()).collect();
+    let looks = styles.iter().map(|style| EditedLook::open(&library, style).unwrap()).collect();
     let mut session = Session::new(library, looks, Settings::default()).unwrap();
-    session.show_reel(Reel::new(Document::open(file, &Options::default()).unwrap()).unwrap());
+    session.show_playback(Playback::new(Document::open(file, &Options::default()).unwrap()).unwrap());
     session
 }
 
@@ -239,8 +239,8 @@ fn a_window_closes_when_its_export_is_done_if_that_was_answered() {
 /// Gives the first parameter of a look another value.
 fn change(session: &mut Session) {
     let number = |value: &Value| matches!(value, Value::Float(_));
-    let knob = session.knobs.iter().find(|knob| number(&knob.default)).unwrap().clone();
-    session.set(&knob, &knob.default.others(&knob.param.kind)[0]);
+    let parameter = session.parameters.iter().find(|parameter| number(&parameter.default)).unwrap().clone();
+    session.set(&parameter, &parameter.default.others(&parameter.param.kind)[0]);
     session.let_go();
 }
 
@@ -313,7 +313,7 @@ fn what_is_taken_back_is_lost_no_more_and_what_was_saved_before_is_again() {
     assert!(session.unsaved().is_empty());
     // Somebody else writes the file, and the look of before is brought back.
     fs::write(&mine, r#"{"style": "blueprint", "parameters": {"line_width": 5}}"#).unwrap();
-    let read = Look::open(&session.library, &mine);
+    let read = EditedLook::open(&session.library, &mine);
     session.reload(&mine, read);
     assert!(session.unsaved().is_empty());
     session.undo();

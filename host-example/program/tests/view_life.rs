@@ -1,4 +1,4 @@
-//! What a window lives through: being hidden, of any size, closed at work, and pictures as large as they come.
+//! Life of a window: being hidden, of any size, closed at work, and pictures as large as they come.
 #![cfg(target_os = "linux")]
 
 mod support;
@@ -10,8 +10,8 @@ use std::time::Duration;
 use egui::accesskit::Role;
 use isophote_loader::Library;
 use isophote_window::document::{Document, Options};
-use isophote_window::look::Look;
-use isophote_window::reel::Reel;
+use isophote_window::look::EditedLook;
+use isophote_window::playback::Playback;
 use isophote_window::session::Session;
 use isophote_window::settings::Settings;
 
@@ -34,9 +34,9 @@ fn size() -> String {
 /// A session like that of a window that was opened with a style and a picture.
 fn session(style: &Path, file: &Path) -> Session {
     let library = Library::from_file(support::library()).unwrap();
-    let look = Look::open(&library, style).unwrap();
+    let look = EditedLook::open(&library, style).unwrap();
     let mut session = Session::new(library, vec![look], Settings::default()).unwrap();
-    session.show_reel(Reel::new(Document::open(file, &Options::default()).unwrap()).unwrap());
+    session.show_playback(Playback::new(Document::open(file, &Options::default()).unwrap()).unwrap());
     session
 }
 
@@ -45,7 +45,7 @@ fn pictures_that_come_with_the_program_are_opened_by_mouse_and_by_keys() {
     let Some(display) = Display::open("1000x700") else { return };
     let start = || {
         let library = Library::from_file(support::library()).unwrap();
-        let look = Look::open(&library, "none".as_ref()).unwrap();
+        let look = EditedLook::open(&library, "none".as_ref()).unwrap();
         Session::new(library, vec![look], Settings::default()).unwrap()
     };
     let folders = [folder(), folder()];

@@ -9,15 +9,15 @@ use std::path::{Path, PathBuf};
 use egui::accesskit::Role;
 use egui_kittest::Harness;
 use egui_kittest::kittest::{NodeT, Queryable};
-use isophote_finishing::stylize::preset::Preset;
+use isophote_finishing::stylize::preset::{self as file, Preset};
 use isophote_loader::Library;
 use isophote_window::browser::entry::{Content, Group};
-use isophote_window::browser::listing::{self, Listing, Question};
+use isophote_window::browser::listing::{self, Listing, ListingRequest};
 use isophote_window::document::{Document, Options};
 use isophote_window::leaving::Leaving;
-use isophote_window::look::Look;
-use isophote_window::reel::Reel;
-use isophote_window::session::{Session, Wish};
+use isophote_window::look::EditedLook;
+use isophote_window::playback::Playback;
+use isophote_window::session::{Request, Session};
 use isophote_window::settings::Settings;
 use isophote_window::ui;
 use isophote_window::value::Value;
@@ -46,18 +46,19 @@ fn presets() -> TempDir {
 }
 
 fn read(folder: &Path) -> Listing {
-    listing::read(Question { library: library(), folders: vec![folder.to_owned()] })
+    listing::read(ListingRequest { library: library(), folders: vec![folder.to_owned()] })
 }
 
 /// A window with a picture and the looks of a folder, in which two looks are at hand.
 fn session(folder: &Path) -> Session {
     let library = library();
-    let looks = ["none", "cartoon", "ink"].map(|name| Look::open(&library, name.as_ref()).expect("a style"));
+    let looks =
+        ["none", "cartoon", "ink"].map(|name| EditedLook::open(&library, name.as_ref()).expect("a style"));
     let mut session = Session::new(library, looks.into(), Settings::default()).expect("a session");
     let picture = folder.join("picture.png");
     support::picture(90, 60).save(&picture).expect("the folder is writable");
     let document = Document::open(&picture, &Options::default()).expect("a picture");
-    session.show_reel(Reel::new(document).expect("a picture"));
+    session.show_playback(Playback::new(document).expect("a picture"));
     session.settings.add_look_folder(folder);
     session.toggle_browser();
     session.list(read(folder));
@@ -97,8 +98,8 @@ fn shown(session: &Session) -> Vec<String> {
     session.browser.groups().into_iter().flat_map(|(_, list)| list).map(|entry| entry.name.clone()).collect()
 }
 
-fn preset(file: &Path) -> Preset {
-    Preset::parse(file, &fs::read_to_string(file).expect("the file is there")).expect("a preset")
+fn preset(path: &Path) -> Preset {
+    file::parse(path, &fs::read_to_string(path).expect("the file is there")).expect("a preset")
 }
 
 #[test]
@@ -176,9 +177,13 @@ fn a_click_shows_a_look_and_undo_brings_back_what_it_replaced() {
     let folder = presets();
     let mut session = session(folder.path());
     session.choose(1);
-    let knob =
-        session.knobs.iter().find(|knob| matches!(knob.default, Value::Float(_))).expect("a number").clone();
-    session.set(&knob, &knob.default.others(&knob.param.kind)[0]);
+    let parameter = session
+        .parameters
+        .iter()
+        .find(|parameter| matches!(parameter.default, Value::Float(_)))
+        .expect("a number")
+        .clone();
+    session.set(&parameter, &parameter.default.others(&parameter.param.kind)[0]);
     session.let_go();
     let edited = session.look().clone();
     session.choose(2);
@@ -260,7 +265,7 @@ fn names_and_tags_are_written_to_the_file() {
     let session = harness.state_mut();
     assert!(session.browser.is_outdated && session.look().name == "Twilight" && !session.look().is_changed());
     // The window's own writing is no change from outside.
-    let again = Look::open(&session.library, &file);
+    let again = EditedLook::open(&session.library, &file);
     session.reload(&file, again);
     assert_eq!(session.look().name, "Twilight");
     session.list(read(folder.path()));
@@ -300,7 +305,7 @@ fn a_file_is_deleted_only_when_that_was_asked_and_undo_brings_it_back() {
     // It is kept until the window is closed, whatever is opened meanwhile.
     let session = harness.state_mut();
     let picture = Document::open(&folder.path().join("picture.png"), &Options::default()).expect("a picture");
-    session.show_reel(Reel::new(picture).expect("a picture"));
+    session.show_playback(Playback::new(picture).expect("a picture"));
     session.undo();
     assert_eq!(fs::read(&file).expect("it is back"), bytes);
     session.redo();
@@ -339,9 +344,13 @@ fn a_look_is_saved_with_its_name_and_nothing_is_replaced_unasked() {
     );
     assert!(session.settings.look_folders.contains(&looks), "its folder is offered");
     // To its own file it is saved at once, under its name.
-    let knob =
-        session.knobs.iter().find(|knob| matches!(knob.default, Value::Float(_))).expect("a number").clone();
-    session.set(&knob, &knob.default.others(&knob.param.kind)[0]);
+    let parameter = session
+        .parameters
+        .iter()
+        .find(|parameter| matches!(parameter.default, Value::Float(_)))
+        .expect("a number")
+        .clone();
+    session.set(&parameter, &parameter.default.others(&parameter.param.kind)[0]);
     session.save_look(false);
     assert!(session.saving.is_none() && !session.look().is_changed());
     assert_eq!(preset(&file).title.name.as_deref(), Some("Late Evening"));
@@ -369,7 +378,9 @@ fn looks_that_ship_are_copied_to_files_of_ones_own() {
     click(&mut harness, Role::Button, "Save a copy…");
     click(&mut harness, Role::Button, "Save");
     let copy = preset(&folder.path().join("linocut-copy.json"));
-    let shipped = isophote_finishing::stylize::looks::find("linocut").expect("it ships").preset;
+    let looks = file::looks().expect("the looks");
+    let shipped = looks.iter().find(|look| look.id == "linocut").expect("it ships");
+    let shipped = file::of_look(shipped).expect("it is a preset");
     assert_eq!(
         (copy.style, copy.params, copy.title.tags),
         (shipped.style, shipped.params, shipped.title.tags)
@@ -415,7 +426,7 @@ fn up_to_six_looks_are_compared_and_one_is_taken() {
     // Another picture is seen by the same looks.
     let other = folder.path().join("picture.png");
     let document = Document::open(&other, &Options::default()).expect("a picture");
-    harness.state_mut().show_reel(Reel::new(document).expect("a picture"));
+    harness.state_mut().show_playback(Playback::new(document).expect("a picture"));
     harness.run_ok();
     assert!(harness.query_by_role_and_label(Role::Button, "Take Linocut").is_some());
     // Escape goes back to where it came from.
@@ -435,7 +446,7 @@ fn folders_are_added_and_taken_off_the_list() {
     let folder = presets();
     let mut harness = harness(session(folder.path()));
     click(&mut harness, Role::Button, "Add a folder…");
-    assert_eq!(harness.state().wishes, [Wish::ChooseFolder]);
+    assert_eq!(harness.state().requests, [Request::ChooseFolder]);
     let shown: PathBuf = folder.path().components().collect();
     click(&mut harness, Role::Button, &format!("Remove {} from the list", shown.display()));
     assert!(harness.state().settings.look_folders.is_empty() && harness.state().browser.is_outdated);

@@ -12,10 +12,10 @@ use isophote_loader::Library;
 use isophote_pictures::floats::{self, Layer, Picture, Precision};
 use isophote_scene::Scene;
 use isophote_window::document::{Document, Options};
-use isophote_window::look::Look;
-use isophote_window::reel::Reel;
+use isophote_window::look::EditedLook;
+use isophote_window::playback::Playback;
 use isophote_window::scenery::{Scenery, Staging};
-use isophote_window::session::{Session, Wish};
+use isophote_window::session::{Request, Session};
 use isophote_window::settings::Settings;
 use isophote_window::ui;
 use isophote_window::value::Value;
@@ -26,7 +26,7 @@ fn session() -> Session {
     let mut names = vec!["none".to_owned()];
     let catalogue = library.catalogue().unwrap();
     names.extend(catalogue.nodes.iter().filter(|n| n.group == "styles").map(|n| n.id.to_owned()));
-    let looks = names.iter().map(|name| Look::open(&library, name.as_ref()).unwrap()).collect();
+    let looks = names.iter().map(|name| EditedLook::open(&library, name.as_ref()).unwrap()).collect();
     let mut session = Session::new(library, looks, Settings::default()).unwrap();
     let folder = support::folder();
     let scene = Scene::load(&support::cube(folder.path()), None).unwrap();
@@ -63,8 +63,8 @@ fn every_parameter_of_every_style_is_found_by_its_label() {
         open_headings(&mut harness, &mut closed);
         let session = harness.state();
         let mut labels: HashMap<&str, usize> = HashMap::new();
-        for knob in &session.knobs {
-            *labels.entry(knob.param.label).or_default() += 1;
+        for parameter in &session.parameters {
+            *labels.entry(parameter.param.label).or_default() += 1;
         }
         assert!(labels.len() > 10);
         let name = session.look().name.clone();
@@ -84,26 +84,31 @@ fn a_value_is_undone_redone_and_set_back() {
     harness.state_mut().choose(1);
     harness.run_ok();
     let session = harness.state_mut();
-    let knob = session.knobs.iter().find(|knob| matches!(knob.default, Value::Float(_))).unwrap().clone();
-    let Value::Float(before) = session.look().value(&knob) else { unreachable!() };
+    let parameter = session
+        .parameters
+        .iter()
+        .find(|parameter| matches!(parameter.default, Value::Float(_)))
+        .unwrap()
+        .clone();
+    let Value::Float(before) = session.look().value(&parameter) else { unreachable!() };
     for step in 1..4 {
-        session.set(&knob, &Value::Float(before + 0.125 * step as f32));
+        session.set(&parameter, &Value::Float(before + 0.125 * step as f32));
     }
     session.let_go();
     let after = Value::Float(before + 0.375);
-    assert_eq!(session.look().value(&knob), after);
-    assert!(session.look().differs(&knob) && session.look().is_changed());
+    assert_eq!(session.look().value(&parameter), after);
+    assert!(session.look().differs(&parameter) && session.look().is_changed());
     session.undo();
-    assert_eq!(session.look().value(&knob), Value::Float(before), "a drag is one step");
+    assert_eq!(session.look().value(&parameter), Value::Float(before), "a drag is one step");
     session.redo();
-    assert_eq!(session.look().value(&knob), after);
+    assert_eq!(session.look().value(&parameter), after);
     harness.run_ok();
     harness.get_by_label("Reset all").click();
     harness.run_ok();
-    assert!(!harness.state().look().differs(&knob));
+    assert!(!harness.state().look().differs(&parameter));
     harness.get_by_label("Undo").click();
     harness.run_ok();
-    assert_eq!(harness.state().look().value(&knob), after);
+    assert_eq!(harness.state().look().value(&parameter), after);
 }
 
 #[test]
@@ -112,13 +117,19 @@ fn controls_can_be_used_by_programs_that_read_windows_aloud() {
     let index = harness.state().looks.iter().position(|look| look.name == "Cartoon").unwrap();
     harness.state_mut().choose(index);
     harness.run_ok();
-    let knob = harness.state().knobs.iter().find(|knob| knob.param.label == "Posterize").unwrap().clone();
+    let parameter = harness
+        .state()
+        .parameters
+        .iter()
+        .find(|parameter| parameter.param.label == "Posterize")
+        .unwrap()
+        .clone();
     let slider = harness
         .query_all_by_label("Posterize")
         .find(|node| node.accesskit_node().role() == egui::accesskit::Role::Slider);
     slider.unwrap().click();
     harness.run_ok();
-    assert!(harness.state().look().differs(&knob), "a click in the middle of a slider sets it");
+    assert!(harness.state().look().differs(&parameter), "a click in the middle of a slider sets it");
     harness.get_by_label("Wipe").click();
     harness.run_ok();
     assert_eq!(harness.query_all_by_label("Wipe").count(), 2, "the line of the wipe has a name, too");
@@ -133,20 +144,20 @@ fn a_saved_look_is_the_same_look_and_its_command_is_short() {
     let file = folder.path().join("mine.json");
     let mut session = session();
     session.choose(1);
-    let knobs = session.knobs.clone();
-    let changed = knobs.iter().filter(|knob| !matches!(knob.default, Value::Choice(_)));
-    for knob in changed.take(4) {
-        let other = knob.default.others(&knob.param.kind).swap_remove(0);
-        session.set(knob, &other);
+    let parameters = session.parameters.clone();
+    let changed = parameters.iter().filter(|parameter| !matches!(parameter.default, Value::Choice(_)));
+    for parameter in changed.take(4) {
+        let other = parameter.default.others(&parameter.param.kind).swap_remove(0);
+        session.set(parameter, &other);
     }
     let mut look = session.look().clone();
-    assert_eq!(look.settings(&knobs).len(), 4);
+    assert_eq!(look.settings(&parameters).len(), 4);
     look.save(&file, look.preset.title.clone()).unwrap();
-    assert!(!look.is_changed() && look.settings(&knobs).is_empty());
-    let opened = Look::open(&session.library, &file).unwrap();
+    assert!(!look.is_changed() && look.settings(&parameters).is_empty());
+    let opened = EditedLook::open(&session.library, &file).unwrap();
     assert_eq!(opened, look);
     std::fs::write(&file, r#"{"style": "cartoon", "parameters": {"later": 1}}"#).unwrap();
-    let error = Look::open(&session.library, &file).unwrap_err().to_string();
+    let error = EditedLook::open(&session.library, &file).unwrap_err().to_string();
     assert!(error.contains("later"), "{error}");
 }
 
@@ -164,7 +175,7 @@ fn an_export_is_asked_for_in_a_window_of_its_own() {
     assert_eq!(plan.frames().as_deref(), Some("96"));
     harness.get_by_label("Start the export").click();
     harness.run_ok();
-    assert_eq!(harness.state().wishes, [Wish::Export]);
+    assert_eq!(harness.state().requests, [Request::Export]);
 }
 
 #[test]
@@ -174,14 +185,17 @@ fn layers_are_chosen_from_a_list() {
     write_layers(&file);
     let mut session = session();
     let document = Document::open(&file, &Options::default()).unwrap();
-    session.show_reel(Reel::new(document).unwrap());
+    session.show_playback(Playback::new(document).unwrap());
     let mut harness = harness(session);
     harness.get_by_role_and_label(egui::accesskit::Role::ComboBox, "Layer").click();
     harness.run_ok();
     harness.get_by_label("beauty").click();
     harness.run_ok();
-    let wishes = &harness.state().wishes;
-    assert!(matches!(&wishes[..], [Wish::ChooseLayer(layer, None)] if layer.name == "beauty"), "{wishes:?}");
+    let requests = &harness.state().requests;
+    assert!(
+        matches!(&requests[..], [Request::ChooseLayer(layer, None)] if layer.name == "beauty"),
+        "{requests:?}"
+    );
 }
 
 /// Writes a picture with a layer beside the main one.

@@ -10,7 +10,7 @@ use std::time::{Duration, Instant};
 use egui::{Color32, ColorImage};
 use isophote_loader::Library;
 use isophote_window::document::{Document, Options, reduce};
-use isophote_window::look::Look;
+use isophote_window::look::EditedLook;
 use isophote_window::preview::picture::Picture;
 use isophote_window::preview::queue::Queue;
 use isophote_window::preview::render::{FINENESS, Order, Renderer};
@@ -28,8 +28,8 @@ fn library() -> Library {
     Library::from_file(support::library()).expect("the library")
 }
 
-fn look(name: &str) -> Arc<Look> {
-    Arc::new(Look::open(&library(), name.as_ref()).expect("a look"))
+fn look(name: &str) -> Arc<EditedLook> {
+    Arc::new(EditedLook::open(&library(), name.as_ref()).expect("a look"))
 }
 
 fn picture(width: u32, height: u32) -> Arc<Picture> {
@@ -134,7 +134,7 @@ fn steady_and_animated_looks_have_previews_and_alpha_shows_squares() {
     let text = r#"{"style": "cartoon", "parameters": {"steadiness": 0.5, "posterize": {"1": 2, "9": 8}}}"#;
     std::fs::write(&file, text).expect("the folder is writable");
     let picture = picture(60, 40);
-    let look = Arc::new(Look::open(&library(), &file).expect("a look"));
+    let look = Arc::new(EditedLook::open(&library(), &file).expect("a look"));
     let image = rendered(&picture, &Order::whole(look, (60, 40), 1));
     assert!(difference(&image, &rendered(&picture, &Order::whole(self::look("none"), (60, 40), 1))) > 1.0);
     let clear = image::RgbaImage::from_pixel(32, 16, image::Rgba([255, 0, 0, 0]));

@@ -11,8 +11,8 @@ use std::time::{Duration, Instant};
 use egui::accesskit::Role;
 use isophote_loader::Library;
 use isophote_window::document::{Document, Options};
-use isophote_window::look::Look;
-use isophote_window::reel::Reel;
+use isophote_window::look::EditedLook;
+use isophote_window::playback::Playback;
 use isophote_window::session::Session;
 use isophote_window::settings::Settings;
 
@@ -42,10 +42,10 @@ fn a_photograph_is_dropped_looked_at_saved_reopened_and_exported() {
     let command = || view(folder.path(), &format!("{}x{}", SIZE.0, SIZE.1));
     let session = || {
         let library = Library::from_file(support::library()).unwrap();
-        let look = Look::open(&library, &at("mine.json")).unwrap();
+        let look = EditedLook::open(&library, &at("mine.json")).unwrap();
         let mut session = Session::new(library, vec![look], Settings::default()).unwrap();
         let document = Document::open(&at("photo.png"), &Options::default()).unwrap();
-        session.show_reel(Reel::new(document).unwrap());
+        session.show_playback(Playback::new(document).unwrap());
         session
     };
 

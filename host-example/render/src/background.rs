@@ -1,4 +1,4 @@
-//! What is seen where no surface is.
+//! Background: what is seen where no surface is.
 
 use std::sync::Arc;
 
@@ -10,7 +10,7 @@ use crate::targets::{COLOR_FORMAT, SAMPLES};
 use isophote_files::error::{Error, Result};
 use isophote_scene::environment::Environment;
 
-/// What is behind a scene.
+/// Background of a scene.
 #[derive(Clone, Debug, Default)]
 pub enum Background {
     /// The sky that lights it.
@@ -36,14 +36,14 @@ impl Background {
 
 /// A background on the GPU.
 pub struct Backdrop {
-    /// What the colours begin with.
+    /// Colour that pictures begin with.
     pub clear: wgpu::Color,
-    /// What is put behind them after tone mapping, premultiplied, where they have transparent parts.
+    /// Colour that is put behind them after tone mapping, premultiplied, where they have transparent parts.
     pub behind: Option<Vec4>,
     drawn: Drawn,
 }
 
-/// What is drawn behind everything.
+/// Backdrop that is drawn behind everything.
 enum Drawn {
     Nothing,
     Sky,

@@ -1,4 +1,4 @@
-//! What graphics drivers want of the environment, so that they keep quiet.
+//! Variables of the environment that keep graphics drivers quiet.
 
 /// Starts the program anew with a place for sockets where the environment names none. Mesa's layer that orders devices
 /// looks there for Wayland's, and complains on standard error when it does not know where to look.

@@ -7,7 +7,7 @@ use std::sync::{Arc, Mutex, PoisonError};
 use isophote_files::error::{Error, Result};
 use isophote_files::limits;
 
-/// What to install on a machine without any adapter.
+/// Advice for a machine without any adapter.
 const NO_ADAPTER: &str = "install a graphics driver; a software one will do (on Debian: apt install mesa-vulkan-drivers libvulkan1)";
 
 /// Bytes that a driver may take to be opened, of which those that compute on the CPU take most.
@@ -33,7 +33,7 @@ struct Faults {
     lost: Option<String>,
 }
 
-/// What wgpu says of the kinds of drivers that it looked for, without those that this program was not made for.
+/// Message of wgpu about the kinds of drivers that it looked for, without those that this program was not made for.
 fn reason(error: &wgpu::RequestAdapterError) -> String {
     let text = error.to_string();
     let said = text.split([';', ',']).map(str::trim).filter(|kind| !kind.contains("not compiled in"));
@@ -92,7 +92,7 @@ impl Gpu {
         Ok(Self { instance, adapter, device, queue, faults })
     }
 
-    /// Whether the device has reported an error since the last call, which is then forgotten. A lost device
+    /// Error that the device has reported since the last call, if any, which is then forgotten. A lost device
     /// stays lost.
     ///
     /// # Errors

@@ -4,32 +4,32 @@
 use glam::{Vec3, Vec4};
 
 use crate::layouts::Layouts;
-use crate::look::Look;
+use crate::lighting::Lighting;
 use crate::pipelines::{SCENE, behind_everything, module};
 use crate::targets::{COLOR_FORMAT, SAMPLES};
 use isophote_scene::Scene;
 use isophote_scene::camera::View;
 use isophote_scene::model::Projection;
 
-/// How much of the light that the sun's shadow takes away is taken: a full shadow is heavier than any model needs.
+/// Share of the light that the sun's shadow takes away which is taken: a full shadow is heavier than any model needs.
 const STRENGTH: f32 = 0.75;
 
 /// Lowest sun whose shadow falls on the ground, as the sine of its height.
 const LOWEST: f32 = 0.03;
 
-/// How far shadows reach, in radii of the scene.
+/// Reach of shadows, in radii of the scene.
 const REACH: f32 = 8.0;
 
-/// How far the ground lies below the lowest point, in radii of the scene, so that a floor that is there hides it.
+/// Depth of the ground below the lowest point, in radii of the scene, so that a floor that is there hides it.
 const BELOW: f32 = 1e-3;
 
 /// The ground of a frame: its least corner with the darkness of full shadow, its greatest with how far shadows reach.
 pub type Plane = [Vec4; 2];
 
 /// The part of the ground that shadows may fall on; nothing where they cannot be seen.
-pub fn plane(scene: &Scene, look: &Look, view: &View) -> Option<Plane> {
-    let sun = look.sun_direction;
-    let sun_color = look.sun_color.filter(|_| sun.y > LOWEST)?;
+pub fn plane(scene: &Scene, lighting: &Lighting, view: &View) -> Option<Plane> {
+    let sun = lighting.sun_direction;
+    let sun_color = lighting.sun_color.filter(|_| sun.y > LOWEST)?;
     let (bounds, radius) = (&scene.bounds, scene.bounds.radius());
     let height = bounds.min.y - BELOW * radius;
     let is_above = match view.projection {
@@ -54,7 +54,7 @@ pub fn plane(scene: &Scene, look: &Look, view: &View) -> Option<Plane> {
     let (low, high) = (within(low), within(high));
     let weight = Vec3::new(0.2126, 0.7152, 0.0722);
     let key = weight.dot(sun_color) * sun.y;
-    let fill = weight.dot(look.zenith + look.horizon) * 0.5 * look.sky_scale;
+    let fill = weight.dot(lighting.zenith + lighting.horizon) * 0.5 * lighting.sky_scale;
     let darkness = STRENGTH * key / (key + fill).max(1e-6);
     Some([low.with_y(height).extend(darkness), high.with_y(height).extend(reach)])
 }

@@ -5,7 +5,7 @@
 //! | [`renderer`] | scene on a device, drawn frame by frame |
 //! | [`gpu`] | device of a program's own |
 //! | [`drivers`] | environment that drivers want |
-//! | [`look`] | lights and exposure of a frame |
+//! | [`lighting`] | lights and exposure of a frame |
 //! | [`background`] | sky, colour or surroundings behind the scene |
 //! | [`targets`] | textures that a frame is drawn into |
 //! | [`readback`] | textures to pictures in main memory |
@@ -20,7 +20,7 @@ pub mod drivers;
 pub mod gpu;
 mod ground;
 pub mod layouts;
-pub mod look;
+pub mod lighting;
 pub mod pipelines;
 pub mod readback;
 pub mod renderer;

@@ -24,7 +24,7 @@ pub enum Pass {
     Rest,
 }
 
-/// What distinguishes the pipelines of a pass.
+/// Properties that distinguish the pipelines of a pass.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 pub struct Variant {
     /// The pass.
@@ -69,7 +69,7 @@ pub struct Pipelines {
     pub background: wgpu::RenderPipeline,
 }
 
-/// What every shader of the scene begins with.
+/// Beginning of every shader of the scene.
 pub const SCENE: &str = include_str!("../shaders/scene.wgsl");
 const MATERIAL: &str = include_str!("../shaders/material.wgsl");
 const SKY: &str = include_str!("../shaders/sky.wgsl");
@@ -146,7 +146,7 @@ impl Pipelines {
         self.made.get(&variant)
     }
 
-    /// What a pass runs and writes.
+    /// Shaders that a pass runs, and targets that it writes.
     fn stage(&self, variant: Variant) -> Stage<'_> {
         let target = |format, blend| {
             Some(wgpu::ColorTargetState { format, blend, write_mask: wgpu::ColorWrites::ALL })

@@ -9,7 +9,7 @@ use glam::Mat4;
 
 use crate::background::{Backdrop, Background};
 use crate::layouts::{Layouts, bind_buffer};
-use crate::look::Look;
+use crate::lighting::Lighting;
 use crate::pipelines::{Pass, Pipelines, Variant};
 use crate::shadow::{Cascades, ShadowMaps};
 use crate::targets::{REST_FORMAT, Target, Targets};
@@ -18,7 +18,7 @@ use crate::tone_map::ToneMap;
 use crate::uniforms::{FrameBlock, InstanceBlock, LightBlock};
 use crate::upload::GpuPrimitive;
 use crate::visible::Visible;
-use crate::{ground, layouts, look, rest, uniforms, upload};
+use crate::{ground, layouts, lighting, rest, uniforms, upload};
 use isophote_files::error::Result;
 use isophote_scene::camera::View;
 use isophote_scene::pose::Pose;
@@ -33,7 +33,7 @@ pub struct Renderer {
     backdrop: Backdrop,
     /// Draws the shadow on the ground, where there is to be one.
     ground: Option<wgpu::RenderPipeline>,
-    /// Whether this frame has one.
+    /// True where this frame has one.
     shows_ground: bool,
     targets: Targets,
     primitives: Vec<Vec<GpuPrimitive>>,
@@ -103,7 +103,7 @@ impl Renderer {
         }
         let (joints, joint_count) = joint_offsets(scene);
         let (weights, weight_count) = weight_offsets(scene);
-        let light_count = look::visible_lights(scene).count();
+        let light_count = lighting::visible_lights(scene).count();
         let buffers =
             Buffers::new(device, &layouts, scene.draws.len(), joint_count, weight_count, light_count);
         let shadow_maps = ShadowMaps::new(device, &layouts);
@@ -134,7 +134,7 @@ impl Renderer {
         })
     }
 
-    /// What the last frame was rendered into.
+    /// Targets that the last frame was rendered into.
     pub fn targets(&self) -> &Targets {
         &self.targets
     }
@@ -186,8 +186,8 @@ impl Renderer {
     }
 
     /// Makes a frame that is not rendered the one before the next, which its motion starts from.
-    pub fn pass_over(&mut self, scene: &Scene, pose: &Pose, view: &View, look: &Look) {
-        let frame = self.write_buffers(scene, pose, view, look);
+    pub fn pass_over(&mut self, scene: &Scene, pose: &Pose, view: &View, lighting: &Lighting) {
+        let frame = self.write_buffers(scene, pose, view, lighting);
         self.history.view_projection = Some(frame.view_projection);
     }
 
@@ -199,9 +199,9 @@ impl Renderer {
         scene: &Scene,
         pose: &Pose,
         view: &View,
-        look: &Look,
+        lighting: &Lighting,
     ) {
-        let frame = self.write_buffers(scene, pose, view, look);
+        let frame = self.write_buffers(scene, pose, view, lighting);
         for draw in 0..scene.draws.len() {
             for pass in [Pass::Shadow, Pass::Depth, Pass::Surface, Pass::Geometry] {
                 self.pipelines.prepare(&self.device, self.variant(scene, draw, pass));
@@ -224,7 +224,7 @@ impl Renderer {
         self.history.view_projection = Some(frame.view_projection);
     }
 
-    fn write_buffers(&mut self, scene: &Scene, pose: &Pose, view: &View, look: &Look) -> FrameBlock {
+    fn write_buffers(&mut self, scene: &Scene, pose: &Pose, view: &View, lighting: &Lighting) -> FrameBlock {
         let scratch = &mut self.scratch;
         let first = self.history.models.len() != scene.draws.len();
         fill_joints(scene, pose, &self.joints, self.joint_count, &mut scratch.joints, first);
@@ -253,13 +253,14 @@ impl Renderer {
                 object_id: index as u32 + 1,
             });
         }
-        uniforms::lights(scene, pose, look, &mut scratch.lights);
+        uniforms::lights(scene, pose, lighting, &mut scratch.lights);
         let size = (self.targets.width, self.targets.height);
-        let cascades = Cascades::new(scene, look, view, size.0 as f32 / size.1 as f32);
-        self.cascades = look.sun_color.map(|_| cascades);
-        let ground = self.ground.as_ref().and_then(|_| ground::plane(scene, look, view));
+        let cascades = Cascades::new(scene, lighting, view, size.0 as f32 / size.1 as f32);
+        self.cascades = lighting.sun_color.map(|_| cascades);
+        let ground = self.ground.as_ref().and_then(|_| ground::plane(scene, lighting, view));
         self.shows_ground = ground.is_some();
-        let mut frame = FrameBlock::new(view, look, &cascades, ground, size, self.history.view_projection);
+        let mut frame =
+            FrameBlock::new(view, lighting, &cascades, ground, size, self.history.view_projection);
         frame.settings.y = scratch.lights.len() as f32;
         let write = |buffer: &wgpu::Buffer, bytes: &[u8]| {
             if !bytes.is_empty() {
@@ -271,7 +272,7 @@ impl Renderer {
         write(&self.buffers.joints, bytemuck::cast_slice(&scratch.joints));
         write(&self.buffers.weights, bytemuck::cast_slice(&scratch.weights));
         write(&self.buffers.lights, bytemuck::cast_slice(&scratch.lights));
-        self.tone_map.set(&self.queue, look.exposure, self.backdrop.behind);
+        self.tone_map.set(&self.queue, lighting.exposure, self.backdrop.behind);
         frame
     }
 
@@ -372,7 +373,7 @@ impl Renderer {
     }
 }
 
-/// Where the joints of each skinned node begin, and how many there are in all.
+/// Index at which the joints of each skinned node begin, and the number of all.
 fn joint_offsets(scene: &Scene) -> (Vec<Option<u32>>, usize) {
     let mut total = 0;
     let offsets = scene
@@ -388,7 +389,7 @@ fn joint_offsets(scene: &Scene) -> (Vec<Option<u32>>, usize) {
     (offsets, total)
 }
 
-/// Where the morph weights of each node begin, and how many there are in all.
+/// Index at which the morph weights of each node begin, and the number of all.
 fn weight_offsets(scene: &Scene) -> (Vec<u32>, usize) {
     let mut total = 0;
     let offsets = scene

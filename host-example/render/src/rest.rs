@@ -1,4 +1,4 @@
-//! Where surfaces are before anything moves, so that marks can stick to them.
+//! Positions of surfaces before anything moves, so that marks can stick to them.
 
 use glam::Mat4;
 

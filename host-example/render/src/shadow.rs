@@ -6,7 +6,7 @@ use glam::{Mat4, Vec2, Vec3};
 
 use crate::buffers;
 use crate::layouts::{Layouts, bind_buffer, bind_sampler, bind_view};
-use crate::look::Look;
+use crate::lighting::Lighting;
 use crate::targets::DEPTH_FORMAT;
 use isophote_scene::Scene;
 use isophote_scene::camera::View;
@@ -21,7 +21,7 @@ const RESOLUTION: u32 = 2048;
 /// Share of a cascade's depth over which it fades into the next.
 const FADE: f32 = 0.1;
 
-/// Where the maps of one frame lie.
+/// Places of the maps of one frame.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Cascades {
     /// World to the clip space of each map.
@@ -30,16 +30,16 @@ pub struct Cascades {
     pub texels: [f32; CASCADES],
     /// Depth in the view at which each map ends; the last one in use holds the whole scene.
     pub ends: [f32; CASCADES],
-    /// How many maps are in use.
+    /// Number of maps in use.
     pub count: usize,
 }
 
 impl Cascades {
     /// Maps for a view of the scene in pictures of this aspect.
-    pub fn new(scene: &Scene, look: &Look, view: &View, aspect: f32) -> Self {
+    pub fn new(scene: &Scene, lighting: &Lighting, view: &View, aspect: f32) -> Self {
         let center = scene.bounds.center();
-        let up = if look.sun_direction.y.abs() > 0.99 { Vec3::X } else { Vec3::Y };
-        let to_light = camera::look_at_mat4(center + look.sun_direction, center, up);
+        let up = if lighting.sun_direction.y.abs() > 0.99 { Vec3::X } else { Vec3::Y };
+        let to_light = camera::look_at_mat4(center + lighting.sun_direction, center, up);
         let whole = light_box(scene, to_light);
         let mut cascades = Self {
             matrices: [Mat4::IDENTITY; CASCADES],
@@ -71,7 +71,7 @@ impl Cascades {
         self.count += 1;
     }
 
-    /// Whether a sphere can cast a shadow into a map.
+    /// True where a sphere can cast a shadow into a map.
     pub fn reaches(&self, cascade: usize, center: Vec3, radius: f32) -> bool {
         let matrix = self.matrices[cascade];
         let place = matrix.transform_point3(center).truncate().abs();
@@ -219,10 +219,10 @@ mod tests {
     fn an_object_has_one_map_and_a_landscape_three() {
         let object = scene(1.0);
         let orbit = Orbit::framing(&object, 1.5, Framing::default());
-        assert_eq!(Cascades::new(&object, &Look::default(), &orbit.view(), 1.5).count, 1);
+        assert_eq!(Cascades::new(&object, &Lighting::default(), &orbit.view(), 1.5).count, 1);
         let landscape = scene(1000.0);
         let inside = Orbit { target: landscape.bounds.center(), distance: 5.0, ..orbit };
-        let cascades = Cascades::new(&landscape, &Look::default(), &inside.view(), 1.5);
+        let cascades = Cascades::new(&landscape, &Lighting::default(), &inside.view(), 1.5);
         assert_eq!(cascades.count, 3);
         assert!(cascades.texels[0] < 0.1 * cascades.texels[2], "{:?}", cascades.texels);
         // What lies before the camera is in the first map, and everything in the last.

@@ -4,7 +4,7 @@
 use glam::{Mat4, Quat, Vec2, Vec3};
 
 use crate::gpu::Gpu;
-use crate::look::Look;
+use crate::lighting::Lighting;
 use crate::readback::Readback;
 use crate::renderer::Renderer;
 use crate::targets::Target;
@@ -94,7 +94,7 @@ fn render(gpu: &Gpu, scene: &Scene, times: &[f32]) -> impl FnMut(&str) -> Pictur
     for &time in times {
         pose.update(scene, Some(0), time);
         let mut encoder = gpu.device.create_command_encoder(&Default::default());
-        renderer.encode(&mut encoder, scene, &pose, &view(), &Look::default());
+        renderer.encode(&mut encoder, scene, &pose, &view(), &Lighting::default());
         gpu.queue.submit([encoder.finish()]);
     }
     gpu.wait().unwrap();
@@ -154,7 +154,7 @@ fn the_geometry_buffer_says_what_is_where() {
     assert_eq!(covered, 24);
 }
 
-/// Where the surface at every covered pixel of a frame at time 0.5 was at rest must be what `at_rest` says of
+/// The position at rest of the surface at every covered pixel of a frame at time 0.5 must be what `at_rest` says of
 /// where it is.
 fn assert_rest(gpu: &Gpu, scene: &Scene, what: &str, at_rest: impl Fn(Vec2) -> Vec2) {
     let mut read = render(gpu, scene, &[0.5]);
@@ -243,10 +243,10 @@ fn motion_is_the_same_after_a_frame_that_was_passed_over() {
     let mut renderer = Renderer::new(&gpu.device, &gpu.queue, &moving, SIZE).unwrap();
     let mut pose = Pose::default();
     pose.update(&moving, Some(0), 0.25);
-    renderer.pass_over(&moving, &pose, &view(), &Look::default());
+    renderer.pass_over(&moving, &pose, &view(), &Lighting::default());
     pose.update(&moving, Some(0), 0.5);
     let mut encoder = gpu.device.create_command_encoder(&Default::default());
-    renderer.encode(&mut encoder, &moving, &pose, &view(), &Look::default());
+    renderer.encode(&mut encoder, &moving, &pose, &view(), &Lighting::default());
     gpu.queue.submit([encoder.finish()]);
     let passed = Readback::default().read(&gpu, &renderer.targets().motion.texture).unwrap();
     assert!(passed.data.iter().any(|v| *v != 0.0));
@@ -331,7 +331,7 @@ fn sizes_beyond_the_device_are_refused_and_resizing_works() {
     for size in [(1, 1), (130, 7), (64, 48)] {
         renderer.resize(size).unwrap();
         let mut encoder = gpu.device.create_command_encoder(&Default::default());
-        renderer.encode(&mut encoder, &scene, &Pose::at_rest(&scene), &view(), &Look::default());
+        renderer.encode(&mut encoder, &scene, &Pose::at_rest(&scene), &view(), &Lighting::default());
         gpu.queue.submit([encoder.finish()]);
         let picture = readback.read(&gpu, &renderer.targets().color.texture).unwrap();
         assert_eq!((picture.width, picture.height), size);

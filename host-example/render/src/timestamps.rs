@@ -1,4 +1,4 @@
-//! What the device's own clock says of passes.
+//! Times of passes by the device's own clock.
 
 use crate::gpu::Gpu;
 use isophote_files::error::{Error, Result};
@@ -75,7 +75,7 @@ impl Timestamps {
         self.readable.map_async(wgpu::MapMode::Read, .., |_| {});
     }
 
-    /// What each pass took, in seconds, once the device has done them.
+    /// Time that each pass took, in seconds, once the device has done them.
     ///
     /// # Errors
     /// [`Error::Failure`] when the device fails.
@@ -94,7 +94,7 @@ impl Timestamps {
     }
 }
 
-/// Where the timestamps of a pass are.
+/// Places of the timestamps of a pass.
 fn places(index: usize) -> [u32; 2] {
     let first = index as u32 * 2;
     [first, first + 1]

@@ -4,7 +4,7 @@ use bytemuck::{Pod, Zeroable};
 use glam::{Mat4, Vec3, Vec4};
 
 use crate::ground::Plane;
-use crate::look::{Look, visible_lights};
+use crate::lighting::{Lighting, visible_lights};
 use crate::shadow::{CASCADES, Cascades};
 use isophote_scene::camera::View;
 use isophote_scene::model::Projection;
@@ -121,7 +121,7 @@ impl FrameBlock {
     /// The block of a frame of `size` pixels. `previous` is the view-projection matrix of the frame before.
     pub fn new(
         view: &View,
-        look: &Look,
+        lighting: &Lighting,
         shadow: &Cascades,
         ground: Option<Plane>,
         size: (u32, u32),
@@ -145,31 +145,31 @@ impl FrameBlock {
             sun_matrices: shadow.matrices,
             eye: to_world.w_axis.truncate().extend(if perspective { 1.0 } else { 0.0 }),
             backward: to_world.z_axis.truncate().normalize_or(Vec3::Z).extend(0.0),
-            sun_direction: look.sun_direction.extend(0.0),
-            sun_color: look.sun_color.map_or(Vec4::ZERO, |c| c.extend(1.0)),
-            zenith: look.zenith.extend(0.0),
-            horizon: look.horizon.extend(0.0),
-            ground: look.ground.extend(0.0),
+            sun_direction: lighting.sun_direction.extend(0.0),
+            sun_color: lighting.sun_color.map_or(Vec4::ZERO, |c| c.extend(1.0)),
+            zenith: lighting.zenith.extend(0.0),
+            horizon: lighting.horizon.extend(0.0),
+            ground: lighting.ground.extend(0.0),
             sky_ray,
             size: Vec4::new(width, height, 1.0 / width, 1.0 / height),
             cascade_ends: Vec3::from(shadow.ends).extend(0.0),
             cascade_texels: Vec3::from(shadow.texels).extend(0.0),
-            irradiance: look.irradiance.map_or([Vec4::ZERO; 9], |light| light.map(|v| v.extend(1.0))),
+            irradiance: lighting.irradiance.map_or([Vec4::ZERO; 9], |light| light.map(|v| v.extend(1.0))),
             ground_plane: ground.unwrap_or_default(),
-            settings: Vec4::new(look.exposure, 0.0, shadow.count as f32, look.sky_scale),
+            settings: Vec4::new(lighting.exposure, 0.0, shadow.count as f32, lighting.sky_scale),
         }
     }
 }
 
 /// The lights of the file, without the one that is the sun.
-pub fn lights(scene: &Scene, pose: &Pose, look: &Look, out: &mut Vec<LightBlock>) {
+pub fn lights(scene: &Scene, pose: &Pose, lighting: &Lighting, out: &mut Vec<LightBlock>) {
     out.clear();
-    let mut sun = look.sun_color.is_some();
+    let mut sun = lighting.sun_color.is_some();
     for (node, light) in visible_lights(scene) {
         if light.kind == LightKind::Directional && std::mem::take(&mut sun) {
             continue;
         }
-        out.push(light_block(&light, pose.world[node], look.light_scale));
+        out.push(light_block(&light, pose.world[node], lighting.light_scale));
     }
 }
 

@@ -18,7 +18,7 @@ pub struct GpuPrimitive {
     pub bind_group: wgpu::BindGroup,
     /// Middle and radius in the space of the mesh, at rest.
     pub sphere: (Vec3, f32),
-    /// Whether joints or morph targets move its vertices out of that sphere.
+    /// True where joints or morph targets move its vertices out of that sphere.
     pub deforms: bool,
 }
 

@@ -1,4 +1,4 @@
-//! Which draws a frame needs and in which order: solid ones from near to far, so that hidden surfaces are
+//! The draws that a frame needs, in order: solid ones from near to far, so that hidden surfaces are
 //! rejected before they are shaded, and blended ones from far to near over them.
 
 use glam::{Mat4, Vec3, Vec4};

@@ -2,7 +2,7 @@
 
 use glam::{Quat, Vec3, Vec4};
 
-/// How values between two key frames are found.
+/// The way in which values between two key frames are found.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Interpolation {
     /// Keeps the earlier value.
@@ -13,7 +13,7 @@ pub enum Interpolation {
     CubicSpline,
 }
 
-/// What a channel drives.
+/// Property that a channel drives.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Property {
     /// Translation of a node: 3 numbers.
@@ -33,7 +33,7 @@ pub struct Channel {
     pub node: usize,
     /// The property.
     pub property: Property,
-    /// How values are interpolated.
+    /// Interpolation of the values.
     pub interpolation: Interpolation,
     /// Strictly increasing times in seconds; at least one.
     pub times: Vec<f32>,

@@ -9,10 +9,10 @@ use isophote_files::identity::Identity;
 
 const GIB: u64 = 1 << 30;
 
-/// How to fix a scene that was refused.
+/// Advice for a scene that was refused.
 pub const TOO_LARGE: &str = "use smaller images, or split the scene";
 
-/// What is left of the memory of a scene. What was taken is not given back: the sum bounds the peak.
+/// Rest of the memory of a scene. What was taken is not given back: the sum bounds the peak.
 pub struct Budget {
     total: u64,
     left: Cell<u64>,

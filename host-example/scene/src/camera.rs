@@ -37,7 +37,7 @@ impl View {
         self.world_to_view.inverse().w_axis.truncate()
     }
 
-    /// Where the camera stands around the vertical, as [`Orbit::azimuth`].
+    /// Angle of the camera around the vertical, as [`Orbit::azimuth`].
     pub fn azimuth(&self) -> f32 {
         let backward = self.world_to_view.row(2);
         backward.x.atan2(backward.z)
@@ -63,7 +63,7 @@ pub fn file_camera(scene: &Scene) -> Option<usize> {
     file_cameras(scene).next()
 }
 
-/// What the camera at a node is called: by its node, or else by itself.
+/// Names of the camera at a node: that of its node, and its own.
 fn names(scene: &Scene, node: usize) -> [&str; 2] {
     let entry = &scene.nodes[node];
     let own = entry.camera.and_then(|camera| scene.cameras.get(camera)).map_or("", |camera| &camera.name);
@@ -90,9 +90,9 @@ pub fn list_file_cameras(scene: &Scene) -> Vec<String> {
 /// A camera on a sphere around a target.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Orbit {
-    /// What it looks at.
+    /// Point that it looks at.
     pub target: Vec3,
-    /// How far away it is.
+    /// Distance of the camera from it.
     pub distance: f32,
     /// Angle about the vertical in radians; 0 looks from +Z, growing towards +X.
     pub azimuth: f32,
@@ -102,7 +102,7 @@ pub struct Orbit {
     pub vertical_fov: f32,
 }
 
-/// Where an orbit looks from, in radians as in [`Orbit`].
+/// Direction from which an orbit looks, in radians as in [`Orbit`].
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Direction {
     /// About the vertical.
@@ -127,16 +127,16 @@ impl Direction {
     }
 }
 
-/// How the default camera and turntables frame a scene.
+/// Framing of a scene by the default camera and by turntables.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Framing {
     /// From where.
     pub direction: Direction,
-    /// How far away, as a factor on the distance from which the scene fills the picture.
+    /// Distance, as a factor on that from which the scene fills the picture.
     pub distance: f32,
     /// Vertical field of view in radians.
     pub vertical_fov: f32,
-    /// What is in the middle of the picture instead of the scene.
+    /// Point in the middle of the picture instead of the scene.
     pub target: Option<Vec3>,
 }
 

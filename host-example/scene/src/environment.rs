@@ -28,7 +28,7 @@ const MOST_MEAN: f32 = 0.45;
 /// scene stands for.
 const BRIGHTEST: f32 = 4.0;
 
-/// How one-sided the light must be for its direction to be that of a sun, and how high that must stand.
+/// Least one-sidedness of light whose direction is that of a sun, and least height of that.
 const ONE_SIDED: f32 = 0.25;
 const LOWEST_SUN: f32 = 0.1;
 

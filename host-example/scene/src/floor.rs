@@ -1,4 +1,4 @@
-//! Whether a scene brings a floor of its own, or is a model that stands on nothing.
+//! Tells a scene that brings a floor of its own from a model that stands on nothing.
 
 use glam::{Vec2, Vec3};
 
@@ -14,13 +14,13 @@ const SHARE: f32 = 0.6;
 /// Highest floor, as a share of the scene's height: what is higher is a pedestal.
 const HIGHEST: f32 = 0.03;
 
-/// How many times as wide as high landscapes are at least. They are floors at any height.
+/// Ratio of width to height that landscapes have at least. They are floors at any height.
 const WIDE: f32 = 2.5;
 
-/// How steep a floor may be: the least height of its unit normal.
+/// Steepest slope of a floor: the least height of its unit normal.
 const STEEPEST: f32 = 0.3;
 
-/// Whether there is no floor: along its sides, seen from above, the scene has nothing low that faces up.
+/// True where there is no floor: along its sides, seen from above, the scene has nothing low that faces up.
 /// Scenes with lights or backdrops of their own are whole, and taken as they are.
 pub fn lacks_floor(scene: &Scene) -> bool {
     if scene.nodes.iter().any(|node| node.visible && (node.backdrop || node.light.is_some())) {

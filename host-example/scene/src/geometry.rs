@@ -1,4 +1,4 @@
-//! What files leave out of their meshes: normals, tangents, and triangle lists made of strips and fans.
+//! Parts of meshes that files leave out: normals, tangents, and triangle lists made of strips and fans.
 
 use std::collections::HashMap;
 
@@ -6,7 +6,7 @@ use glam::{Vec2, Vec3};
 
 use super::model::Primitive;
 
-/// How the indices of a primitive form triangles.
+/// The way in which the indices of a primitive form triangles.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Topology {
     /// Three indices per triangle.

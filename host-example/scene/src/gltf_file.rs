@@ -69,7 +69,7 @@ pub fn load(path: &Path, budget: &Budget) -> Result<Scene> {
     Ok(scene)
 }
 
-/// What a file says, before any of its buffers is read.
+/// Declarations of a file, before any of its buffers is read.
 struct Parsed {
     document: gltf::Document,
     /// The channels of each animation, which the document leaves out.
@@ -273,7 +273,7 @@ fn read_nodes(
     Ok(())
 }
 
-/// Whether the extras of a node mark it as a backdrop; extras of other programs can hold anything.
+/// True where the extras of a node mark it as a backdrop; extras of other programs can hold anything.
 fn is_backdrop(extras: &json::Extras) -> bool {
     let value = extras.as_ref().and_then(|raw| serde_json::from_str::<serde_json::Value>(raw.get()).ok());
     value.is_some_and(|value| value["backdrop"] == true)

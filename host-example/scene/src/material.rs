@@ -6,7 +6,7 @@ use glam::{Affine2, Vec2, Vec3, Vec4};
 
 use super::budget::Budget;
 
-/// How the bytes of an image are to be read.
+/// Color space in which the bytes of an image are to be read.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 pub enum ColorSpace {
     /// sRGB-encoded colour: base colour and emission.
@@ -28,7 +28,7 @@ pub struct Image {
     pub rgba: Vec<u8>,
 }
 
-/// What kept an image from being decoded.
+/// Problem that kept an image from being decoded.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub enum DecodeProblem {
     /// A format that this program does not read; the scene can do without.
@@ -79,7 +79,7 @@ impl Image {
     }
 }
 
-/// How a texture continues outside of [0, 1].
+/// Continuation of a texture outside of [0, 1].
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
 pub enum Wrap {
     /// Tiles.
@@ -91,7 +91,7 @@ pub enum Wrap {
     Clamp,
 }
 
-/// How a texture is sampled.
+/// Sampling of a texture.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 pub struct Sampler {
     /// Along U.
@@ -117,7 +117,7 @@ impl Default for Sampler {
 pub struct Texture {
     /// Index into [`super::Scene::images`]; `None` when it could not be decoded.
     pub image: Option<usize>,
-    /// How it is sampled.
+    /// Sampling of it.
     pub sampler: Sampler,
 }
 
@@ -126,7 +126,7 @@ pub struct Texture {
 pub struct TextureUse {
     /// Index into [`super::Scene::textures`].
     pub texture: usize,
-    /// Which set of texture coordinates, 0 or 1.
+    /// Number of the set of texture coordinates, 0 or 1.
     pub uv_set: u32,
     /// Applied to the coordinates before sampling (KHR_texture_transform).
     pub transform: Affine2,
@@ -146,7 +146,7 @@ impl TextureUse {
     }
 }
 
-/// How alpha is treated.
+/// Treatment of alpha.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub enum AlphaMode {
     /// Ignored.
@@ -190,7 +190,7 @@ pub struct Material {
     pub emissive_texture: Option<TextureUse>,
     /// Treatment of alpha.
     pub alpha_mode: AlphaMode,
-    /// Whether the back is shown, with its normal turned.
+    /// True where the back is shown, with its normal turned.
     pub double_sided: bool,
     /// Shows the base colour as it is (KHR_materials_unlit).
     pub unlit: bool,

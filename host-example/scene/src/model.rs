@@ -47,7 +47,7 @@ pub struct Influence {
     pub weights: [f32; 4],
 }
 
-/// What one morph target adds to a vertex at weight 1.
+/// Change of a vertex by one morph target at weight 1.
 #[repr(C)]
 #[derive(Clone, Copy, Debug, Default, PartialEq, bytemuck::Pod, bytemuck::Zeroable)]
 pub struct MorphDelta {
@@ -68,7 +68,7 @@ pub struct Primitive {
     pub indices: Vec<u32>,
     /// `influence_sets` entries per vertex, the sets of one vertex side by side; empty when not skinned.
     pub influences: Vec<Influence>,
-    /// How many groups of four joints each vertex has.
+    /// Number of groups of four joints that each vertex has.
     pub influence_sets: usize,
     /// One list of `vertices.len()` deltas per morph target.
     pub morph_targets: Vec<Vec<MorphDelta>>,
@@ -161,9 +161,9 @@ pub struct Node {
     pub light: Option<usize>,
     /// Morph weights at rest; as many as the mesh has targets.
     pub weights: Vec<f32>,
-    /// Whether the node belongs to the scene that is shown.
+    /// True where the node belongs to the scene that is shown.
     pub visible: bool,
-    /// Whether it is a backdrop, such as sky or hills, that views of the whole scene need not frame. In glTF
+    /// True for a backdrop, such as sky or hills, that views of the whole scene need not frame. In glTF
     /// a node says so by `"extras": { "backdrop": true }`.
     pub backdrop: bool,
 }
@@ -194,7 +194,7 @@ pub struct Skin {
     pub inverse_bind: Vec<Mat4>,
 }
 
-/// How the view is projected.
+/// Projection of the view.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Projection {
     /// Pinhole camera without a far plane.
@@ -220,7 +220,7 @@ pub enum Projection {
 pub struct Camera {
     /// Name from the file, or empty.
     pub name: String,
-    /// How it projects.
+    /// Projection of the camera.
     pub projection: Projection,
 }
 
@@ -264,7 +264,7 @@ pub struct Draw {
     pub primitive: usize,
 }
 
-/// Where the visible geometry is, over all of its animations.
+/// Bounds of the visible geometry, over all of its animations.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Bounds {
     /// Least corner.
@@ -316,7 +316,7 @@ pub struct Scene {
     pub draws: Vec<Draw>,
     /// Extent of everything visible but backdrops.
     pub bounds: Bounds,
-    /// What was read but could not be honoured, one line each.
+    /// Warnings about what was read but could not be honoured, one line each.
     pub warnings: Vec<String>,
     /// The files that it was read from, where the system tells them apart.
     pub files: Vec<Identity>,

@@ -172,7 +172,7 @@ pub fn bounds(scene: &Scene) -> Option<Bounds> {
     finite.then(|| Bounds { min, max, extremes: extremes.into_iter().map(|(_, p)| p).collect() })
 }
 
-/// What an animation moves; cameras and lights move nothing visible.
+/// Draws that an animation moves; cameras and lights move nothing visible.
 fn moving_draws(scene: &Scene, animation: &animation::Animation) -> Vec<Draw> {
     let mut moving = vec![false; scene.nodes.len()];
     for channel in &animation.channels {

@@ -18,9 +18,9 @@ use super::clicks;
 use super::leaving::Leaving;
 use super::pace::Pace;
 use super::panel::Textures;
+use super::playback::Playback;
 use super::record::Hold;
-use super::reel::Reel;
-use super::session::{Session, Wish};
+use super::session::{Request, Session};
 use super::stage::{Drawn, Stage};
 use super::ui;
 use super::worker::Wake;
@@ -35,7 +35,7 @@ pub const FIX: &str = "start the viewer in a desktop session";
 /// Time between two updates of the title.
 const TITLE: Duration = Duration::from_millis(250);
 
-/// What arrives at the window besides its own events.
+/// Events that arrive at the window besides its own.
 #[derive(Debug)]
 pub enum Event {
     /// Something was done beside the window.
@@ -60,7 +60,7 @@ pub struct App {
     size: Option<(u32, u32)>,
     // Dropped in order: the device before the window.
     stage: Option<Stage>,
-    /// What the controls have on the device.
+    /// Textures of the controls on the device.
     textures: Textures,
     input: Option<State>,
     window: Option<Arc<Window>>,
@@ -77,7 +77,7 @@ pub struct App {
     hidden: bool,
     /// When the next frame is wanted, if nothing happens before.
     due: Option<Instant>,
-    /// What the title tells, and since when.
+    /// The title of the window, and since when it stands.
     titled: Option<(Instant, String)>,
     /// Events for the next frame.
     late: Vec<egui::Event>,
@@ -111,12 +111,12 @@ impl App {
         })
     }
 
-    /// What is shown, for whoever asked for a report.
+    /// The session that is shown, for whoever asked for a report.
     pub fn session(&self) -> &Session {
         &self.session
     }
 
-    /// What is shown, to be changed as the controls do. The window sees it with the next event.
+    /// The session that is shown, to be changed as the controls do. The window sees it with the next event.
     pub fn session_mut(&mut self) -> &mut Session {
         self.due = Some(Instant::now());
         &mut self.session
@@ -132,12 +132,12 @@ impl App {
         self.devices
     }
 
-    /// What was made on the device for the look.
+    /// Number of things made on the device for the look.
     pub fn counts(&self) -> Option<Counts> {
         self.stage.as_ref().map(Stage::counts)
     }
 
-    /// Whether nothing is left to be drawn, built, opened or uploaded.
+    /// True where nothing is left to be drawn, built, opened or uploaded.
     pub fn is_idle(&self) -> bool {
         let is_due = self.due.is_some_and(|due| due <= Instant::now());
         let is_at_work = self.stage.as_ref().is_none_or(|stage| stage.is_waiting() || stage.is_busy());
@@ -172,7 +172,7 @@ impl App {
         if !context.egui_is_using_pointer() && !context.text_edit_focused() {
             session.let_go();
         }
-        let copied = self.background.grant(session);
+        let copied = self.background.carry_out(session);
         copied.into_iter().for_each(|text| input.set_clipboard_text(text));
         session.advance();
         let scale = self.pace.scale(session);
@@ -188,10 +188,10 @@ impl App {
         let delay = delay.filter(|delay| *delay < Duration::from_secs(3600));
         self.due = delay.map(|delay| Instant::now() + delay);
         if drawn == Drawn::Skipped {
-            self.entitle();
+            self.update_title();
             self.want(Duration::from_millis(10));
         }
-        if self.session.reel.as_ref().is_some_and(Reel::is_waiting) {
+        if self.session.playback.as_ref().is_some_and(Playback::is_waiting) {
             self.want(Duration::from_millis(20));
         }
         if !problems.is_empty() || !self.late.is_empty() || self.session.busy != was_busy {
@@ -232,7 +232,7 @@ impl App {
             let size = window.inner_size();
             session.record.count(&look, (size.width, size.height), took);
         }
-        self.entitle();
+        self.update_title();
         self.revivals = 0;
         if let Some(delay) = self.pace.next(drawn, took) {
             self.want(delay);
@@ -243,12 +243,12 @@ impl App {
         Ok(())
     }
 
-    /// What a window does that is not seen: what was dropped on it is opened, and its title says so.
+    /// Does the window's work that is not seen: opens what was dropped on it, and has its title say so.
     fn attend(&mut self) {
         self.background.collect(&mut self.session);
         // There is nothing to copy from what is not seen.
-        let _ = self.background.grant(&mut self.session);
-        self.entitle();
+        let _ = self.background.carry_out(&mut self.session);
+        self.update_title();
     }
 
     /// Follows the export that the window waits for before it closes; says whether it closes now.
@@ -263,7 +263,7 @@ impl App {
     }
 
     /// Lets the title tell what is shown: at once, or with a later frame where it did so a moment ago.
-    fn entitle(&mut self) {
+    fn update_title(&mut self) {
         let (Some(window), title) = (&self.window, self.session.title()) else { return };
         let pause = self.titled.as_ref().map(|(at, _)| TITLE.saturating_sub(at.elapsed()));
         match pause {
@@ -340,7 +340,7 @@ impl ApplicationHandler<Event> for App {
             }
             WindowEvent::DroppedFile(path) => {
                 if !self.session.leaving.is_shown() {
-                    self.session.wishes.push(Wish::Open(path));
+                    self.session.requests.push(Request::Open(path));
                 }
                 Ok(())
             }

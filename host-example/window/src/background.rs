@@ -1,4 +1,4 @@
-//! What the window does beside drawing: opening files, asking for names, saving. Nothing of it holds the window up.
+//! Work of the window beside drawing: opening files, asking for names, saving. Nothing of it holds the window up.
 
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
@@ -12,19 +12,20 @@ use super::dialogs;
 use super::document::kind::Kind;
 use super::document::{Document, Options};
 use super::export::{self, Export, Progress, State};
-use super::idle::{self, Question};
-use super::look::Look;
+use super::idle::{self, IdleControls, IdleRequest};
+use super::look::EditedLook;
 use super::look_work::LookWork;
 use super::pictures;
 use super::plan::What;
-use super::reel::Reel;
+use super::playback::Playback;
 use super::samples::{self, SAMPLES, Sample};
 use super::saving::Saving;
 use super::scenery::{Scenery, Staging};
-use super::session::{Session, Wish};
+use super::session::{Request, Session};
 use super::watch::Watch;
 use super::worker::{Wake, Worker};
 use isophote_files::error::{Error, Result};
+use isophote_finishing::stylize::preset;
 use isophote_loader::Library;
 use isophote_loader::abi::IsophoteRequest;
 use isophote_pictures::exr::Selection;
@@ -32,8 +33,8 @@ use isophote_render::background::Background as Surround;
 use isophote_scene::environment::Environment;
 use isophote_scene::{Scene, camera, floor};
 
-/// What is to be opened.
-enum Job {
+/// Something to be opened.
+enum OpenJob {
     Demo,
     /// A picture that comes with the program, whose file is in a folder.
     Sample(&'static Sample, PathBuf),
@@ -45,18 +46,18 @@ enum Job {
     Surroundings(PathBuf),
 }
 
-/// What was opened.
+/// Something that was opened.
 enum Opened {
     Scene(Box<Scene>, Option<PathBuf>),
-    Pictures(Box<Reel>),
-    Again(Box<Reel>),
+    Pictures(Box<Playback>),
+    Again(Box<Playback>),
     /// One of several, with what is wrong with others and how many were left.
     Among(Box<Opened>, Vec<Error>, usize),
-    Look(Box<Look>),
+    Look(Box<EditedLook>),
     Surroundings(Surround, PathBuf),
 }
 
-/// What a dialog is for.
+/// Purpose of a dialog.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 enum Dialog {
     File,
@@ -68,7 +69,7 @@ enum Dialog {
 }
 
 impl Dialog {
-    /// What to do where the system has no dialogs.
+    /// Advice where the system has no dialogs.
     const fn otherwise(self) -> &'static str {
         match self {
             Self::File | Self::Look => "drop the file on the window, or install zenity or xdg-desktop-portal",
@@ -80,20 +81,20 @@ impl Dialog {
 
 /// The work beside the window.
 pub struct Background {
-    opener: Worker<Job, Result<Opened>>,
-    critic: Worker<Question, idle::Answer>,
+    opener: Worker<OpenJob, Result<Opened>>,
+    idle_search: Worker<IdleRequest, IdleControls>,
     /// Reads looks again whose files have changed.
-    reader: Worker<(Library, PathBuf), (PathBuf, Result<Look>)>,
+    reader: Worker<(Library, PathBuf), (PathBuf, Result<EditedLook>)>,
     watch: Watch,
     looks: LookWork,
     /// Makes the pictures of the start small.
     reducer: Worker<(), Vec<Arc<ColorImage>>>,
-    /// What the critic was asked last.
-    asked: Option<(Look, Option<IsophoteRequest>)>,
+    /// The last request to the search for idle controls.
+    asked: Option<(EditedLook, Option<IsophoteRequest>)>,
     chosen: Receiver<(Dialog, Result<Option<PathBuf>>)>,
     choose: Sender<(Dialog, Result<Option<PathBuf>>)>,
     export: Option<Export>,
-    /// Whether a dialog is open.
+    /// True while a dialog is open.
     choosing: bool,
     wake: Wake,
 }
@@ -107,9 +108,9 @@ impl Background {
         let (choose, chosen) = channel();
         Ok(Self {
             opener: Worker::new("open", Arc::clone(wake), open)?,
-            critic: Worker::new("controls", Arc::clone(wake), idle::answer)?,
+            idle_search: Worker::new("controls", Arc::clone(wake), idle::idle_controls)?,
             reader: Worker::new("look again", Arc::clone(wake), |(library, path): (Library, PathBuf)| {
-                let read = Look::open(&library, &path);
+                let read = EditedLook::open(&library, &path);
                 (path, read)
             })?,
             watch: Watch::new(wake)?,
@@ -131,7 +132,7 @@ impl Background {
         export.poll().state != State::Running
     }
 
-    /// What is being done.
+    /// The work that is being done, in words.
     pub fn busy(&self) -> Option<&'static str> {
         self.opener.is_busy().then_some("Opening").or(self.export.as_ref().map(|_| "Exporting"))
     }
@@ -149,12 +150,12 @@ impl Background {
                 }
             };
             match dialog {
-                Dialog::File => self.opener.ask(Job::Files(session.library.clone(), vec![path])),
+                Dialog::File => self.opener.ask(OpenJob::Files(session.library.clone(), vec![path])),
                 Dialog::Look => {
                     session.settings.look_folder = path.parent().map(Path::to_owned);
-                    self.opener.ask(Job::Look(session.library.clone(), path));
+                    self.opener.ask(OpenJob::Look(session.library.clone(), path));
                 }
-                Dialog::Surroundings => self.opener.ask(Job::Surroundings(path)),
+                Dialog::Surroundings => self.opener.ask(OpenJob::Surroundings(path)),
                 Dialog::LookFolder => {
                     session.settings.add_look_folder(&path);
                     session.browser.is_outdated = true;
@@ -189,29 +190,29 @@ impl Background {
         if let Some((source, read)) = self.reader.answer() {
             session.reload(&source, read);
         }
-        if let Some(answer) = self.critic.answer()
-            && answer.look == *session.look()
-            && answer.asked == asked(session)
+        if let Some(found) = self.idle_search.answer()
+            && found.look == *session.look()
+            && found.asked == asked(session)
         {
-            session.idle = answer.idle;
+            session.idle = found.idle;
         }
         let asked = asked(session);
         let is_known = self.asked.as_ref().is_some_and(|(look, of)| look == session.look() && *of == asked);
         if !is_known && session.has_picture() {
             self.asked = Some((session.look().clone(), asked));
             let (library, look) = (session.library.clone(), session.look().clone());
-            self.critic.ask(Question { library, look, asked });
+            self.idle_search.ask(IdleRequest { library, look, asked });
         }
     }
 
     /// Does what the controls have asked for, and returns what is to be put on the clipboard.
-    pub fn grant(&mut self, session: &mut Session) -> Option<String> {
+    pub fn carry_out(&mut self, session: &mut Session) -> Option<String> {
         let mut copied = None;
         let mut files = Vec::new();
-        for wish in std::mem::take(&mut session.wishes) {
-            match wish {
-                Wish::Open(path) => files.push(path),
-                Wish::ChooseLayer(layer, view) => {
+        for request in std::mem::take(&mut session.requests) {
+            match request {
+                Request::Open(path) => files.push(path),
+                Request::ChooseLayer(layer, view) => {
                     if let Some(file) = &session.file {
                         let name = Some(layer.name).filter(|name| !name.is_empty());
                         let selection = Selection {
@@ -220,40 +221,40 @@ impl Background {
                             view,
                             ..Selection::default()
                         };
-                        self.opener.ask(Job::Again(file.clone(), Box::new(selection)));
+                        self.opener.ask(OpenJob::Again(file.clone(), Box::new(selection)));
                     }
                 }
-                Wish::ChooseOutput => self.choose(Dialog::Export, session),
-                Wish::OpenDemo => self.opener.ask(Job::Demo),
-                Wish::OpenSample(index) => {
+                Request::ChooseOutput => self.choose(Dialog::Export, session),
+                Request::OpenDemo => self.opener.ask(OpenJob::Demo),
+                Request::OpenSample(index) => {
                     if let Some(sample) = SAMPLES.get(index) {
-                        self.opener.ask(Job::Sample(sample, session.settings.place_for_samples()));
+                        self.opener.ask(OpenJob::Sample(sample, session.settings.place_for_samples()));
                     }
                 }
-                Wish::ChooseFile => self.choose(Dialog::File, session),
-                Wish::ChooseLook => self.choose(Dialog::Look, session),
-                Wish::ChooseSurroundings => self.choose(Dialog::Surroundings, session),
-                Wish::ChooseFolder => self.choose(Dialog::LookFolder, session),
-                Wish::ChooseLookFile => self.choose(Dialog::Save, session),
-                Wish::Export => self.export(session),
-                Wish::CancelExport => {
+                Request::ChooseFile => self.choose(Dialog::File, session),
+                Request::ChooseLook => self.choose(Dialog::Look, session),
+                Request::ChooseSurroundings => self.choose(Dialog::Surroundings, session),
+                Request::ChooseFolder => self.choose(Dialog::LookFolder, session),
+                Request::ChooseLookFile => self.choose(Dialog::Save, session),
+                Request::Export => self.export(session),
+                Request::CancelExport => {
                     if let Some(export) = &mut self.export {
                         export.cancel();
                     }
                 }
-                Wish::CopyCommand => {
+                Request::CopyCommand => {
                     copied = Some(command::line(session));
                     session.notes.say("Copied the command line of this picture");
                 }
             }
         }
         if !files.is_empty() {
-            self.opener.ask(Job::Files(session.library.clone(), files));
+            self.opener.ask(OpenJob::Files(session.library.clone(), files));
         }
         if !session.has_picture() && !std::mem::replace(&mut session.thumbnails.are_asked, true) {
             self.reducer.ask(());
         }
-        if let Err(error) = self.looks.grant(session) {
+        if let Err(error) = self.looks.carry_out(session) {
             session.notes.complain(&error);
         }
         copied
@@ -264,15 +265,18 @@ impl Background {
         let Some(plan) = session.plan.take() else { return };
         let Some(file) = &session.file else { return };
         let look = session.look();
-        let preset =
-            if look.is_plain() { Ok(None) } else { look.whole().map(|preset| Some(preset.to_json())) };
+        let preset = if look.is_plain() {
+            Ok(None)
+        } else {
+            look.whole().and_then(|preset| preset::text(&preset).map(Some))
+        };
         let started = preset.and_then(|preset| {
-            let mut job = export::Job::new(plan.kind, file, Path::new(&plan.path), preset);
+            let mut job = export::ExportJob::new(plan.kind, file, Path::new(&plan.path), preset);
             (job.frames, job.turntable) = (plan.frames(), plan.what == What::Turntable);
-            let mut words: Vec<String> = match &session.reel {
-                Some(reel) => {
-                    job.rate = reel.rate;
-                    command::selection(reel)
+            let mut words: Vec<String> = match &session.playback {
+                Some(playback) => {
+                    job.rate = playback.rate;
+                    command::selection(playback)
                 }
                 None => {
                     let [width, height] = plan.size;
@@ -283,7 +287,7 @@ impl Background {
             };
             match plan.what {
                 What::Animation => words.extend(command::animation(session)),
-                What::Picture if session.reel.is_none() => words.extend(command::moment(session)),
+                What::Picture if session.playback.is_none() => words.extend(command::moment(session)),
                 What::Picture | What::Turntable | What::Frames => {}
             }
             words.extend(command::precision(session));
@@ -375,20 +379,20 @@ fn is_look(path: &Path) -> bool {
     path.extension().is_some_and(|extension| extension.eq_ignore_ascii_case("json"))
 }
 
-fn open(job: Job) -> Result<Opened> {
+fn open(job: OpenJob) -> Result<Opened> {
     Ok(match job {
-        Job::Demo => Opened::Scene(Box::new(demo::scene()?), None),
-        Job::Sample(sample, folder) => {
+        OpenJob::Demo => Opened::Scene(Box::new(demo::scene()?), None),
+        OpenJob::Sample(sample, folder) => {
             let document = Document::open(&sample.file_in(&folder)?, &Options::default())?;
-            Opened::Pictures(Box::new(Reel::new(document)?))
+            Opened::Pictures(Box::new(Playback::new(document)?))
         }
-        Job::Files(library, files) => first_of(&library, files)?,
-        Job::Again(path, selection) => {
+        OpenJob::Files(library, files) => first_of(&library, files)?,
+        OpenJob::Again(path, selection) => {
             let options = Options { selection: *selection, ..Options::default() };
-            Opened::Again(Box::new(Reel::new(Document::open(&path, &options)?)?))
+            Opened::Again(Box::new(Playback::new(Document::open(&path, &options)?)?))
         }
-        Job::Look(library, path) => Opened::Look(Box::new(Look::open(&library, &path)?)),
-        Job::Surroundings(path) => {
+        OpenJob::Look(library, path) => Opened::Look(Box::new(EditedLook::open(&library, &path)?)),
+        OpenJob::Surroundings(path) => {
             let environment = Arc::new(Environment::read(&path)?);
             Opened::Surroundings(Surround::Environment(environment), path)
         }
@@ -412,18 +416,18 @@ fn first_of(library: &Library, files: Vec<PathBuf>) -> Result<Opened> {
 /// Opens a scene, a picture, a sequence, a video or a look.
 fn file(library: &Library, path: PathBuf) -> Result<Opened> {
     if is_look(&path) {
-        return Ok(Opened::Look(Box::new(Look::open(library, &path)?)));
+        return Ok(Opened::Look(Box::new(EditedLook::open(library, &path)?)));
     }
     let document = Document::open(&path, &Options::default())?;
     Ok(match document.kind() {
         Kind::Scene => Opened::Scene(Box::new(Scene::load(&path, None)?), Some(path)),
-        _ => Opened::Pictures(Box::new(Reel::new(document)?)),
+        _ => Opened::Pictures(Box::new(Playback::new(document)?)),
     })
 }
 
-/// What looks on the picture that is open are asked for.
+/// Request of looks on the picture that is open.
 fn asked(session: &Session) -> Option<IsophoteRequest> {
-    let (frame, _) = session.reel.as_ref()?.frame(false)?;
+    let (frame, _) = session.playback.as_ref()?.frame(false)?;
     session.library.request((1, 1)).ok().map(|usual| pictures::request(frame, 1.0, usual))
 }
 
@@ -439,9 +443,9 @@ fn take(session: &mut Session, opened: Opened) {
                     .say(format!("{files} dropped; the first that opens is shown, {}", session.name));
             }
         }
-        Opened::Again(reel) => {
-            if session.file.as_deref() == Some(reel.document.path()) {
-                session.show_again(*reel);
+        Opened::Again(playback) => {
+            if session.file.as_deref() == Some(playback.document.path()) {
+                session.show_again(*playback);
             }
         }
         Opened::Scene(scene, file) => {
@@ -459,7 +463,7 @@ fn take(session: &mut Session, opened: Opened) {
             let aspect = area.width.max(1.0) / area.height.max(1.0);
             session.show_scene(Scenery::new(*scene, staging, aspect), file, name);
         }
-        Opened::Pictures(reel) => session.show_reel(*reel),
+        Opened::Pictures(playback) => session.show_playback(*playback),
         Opened::Look(look) => session.take(Arc::from(look)),
         Opened::Surroundings(background, path) => {
             session.relight("surroundings", |lighting| {

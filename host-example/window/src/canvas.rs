@@ -3,7 +3,7 @@
 use isophote_render::layouts::{self, bind_buffer, bind_view};
 use isophote_render::{buffers, pipelines};
 
-/// What the numbers of a picture are.
+/// Meaning of the numbers of a picture.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Numbers {
     /// Linear light, Rec.709.
@@ -42,13 +42,13 @@ pub struct Area {
 pub struct Shown<'a> {
     /// The picture.
     pub view: &'a wgpu::TextureView,
-    /// What it holds.
+    /// Meaning of its numbers.
     pub numbers: Numbers,
-    /// Where it lies.
+    /// Area where it lies.
     pub place: Area,
 }
 
-/// How pictures are put on the canvas.
+/// Arrangement of pictures on the canvas.
 #[derive(Clone, Copy, Debug)]
 pub struct Arrangement<'a> {
     /// The part of the window that is the canvas.
@@ -65,7 +65,7 @@ pub struct Arrangement<'a> {
     pub square: f32,
 }
 
-/// What surrounds pictures, gamma-encoded.
+/// Grey that surrounds pictures, gamma-encoded.
 pub const SURROUND: f32 = 0.105;
 
 /// The pass with what it binds.

@@ -21,16 +21,16 @@ const SOURCE: &str = "@color";
 pub struct Link {
     /// Its name within the graph.
     pub name: String,
-    /// What it is called.
+    /// Name for people.
     pub label: &'static str,
-    /// Whether the picture passes it by.
+    /// True where the picture passes it by.
     pub bypassed: bool,
-    /// Whether another node can follow it.
+    /// True where another node can follow it.
     pub is_colour: bool,
     entry: Map<String, Json>,
 }
 
-/// Which part of the list is looked at.
+/// Part of the list that is looked at.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub enum Watched {
     /// The picture as it leaves the node of this name.
@@ -221,13 +221,13 @@ impl Chain {
         true
     }
 
-    /// Where a new node is best put: at the end, or before a last node that yields no colours.
+    /// Best place for a new node: at the end, or before a last node that yields no colours.
     pub fn end(&self) -> usize {
         let before = self.links.last().is_some_and(|link| !link.is_colour);
         self.links.len() - usize::from(before)
     }
 
-    /// Whether there is a node of this name, in the list or beside it.
+    /// True where there is a node of this name, in the list or beside it.
     pub fn has(&self, name: &str) -> bool {
         self.find(name).is_some() || self.feeders.iter().any(|feeder| name_of(feeder) == name)
     }

@@ -2,12 +2,12 @@
 
 use std::path::{Path, PathBuf};
 
-use super::reel::Reel;
+use super::playback::Playback;
 use super::scenery::Scenery;
 use super::session::Session;
 use isophote_finishing::staging::{Behind, MotionArgs, StagingArgs};
-use isophote_finishing::stylize::lengths::Lengths;
 use isophote_finishing::stylize::precision::Precision;
+use isophote_finishing::stylize::preset::Lengths;
 use isophote_render::background::Background;
 use isophote_scene::floor;
 
@@ -17,11 +17,11 @@ pub fn line(session: &Session) -> String {
     let style = look.rebuilt().map_or_else(|| quoted_path(&look.source), quoted);
     let mut words = vec!["isophote".to_owned()];
     let input = session.file.as_deref().map_or_else(|| "SCENE.gltf".into(), quoted_path);
-    match &session.reel {
-        Some(reel) => {
+    match &session.playback {
+        Some(playback) => {
             words.extend(["apply".to_owned(), style, input]);
-            words.push(quoted_path(&output(reel)));
-            words.extend(selection(reel).iter().map(|word| quoted(word)));
+            words.push(quoted_path(&output(playback)));
+            words.extend(selection(playback).iter().map(|word| quoted(word)));
         }
         None => {
             words.extend(["render".to_owned(), input, "picture.png".to_owned()]);
@@ -33,8 +33,8 @@ pub fn line(session: &Session) -> String {
             }
         }
     }
-    let knobs = look.knobs(&session.library).unwrap_or_default();
-    words.extend(look.settings(&knobs).iter().map(|setting| format!("--set {}", quoted(setting))));
+    let parameters = look.parameters(&session.library).unwrap_or_default();
+    words.extend(look.settings(&parameters).iter().map(|setting| format!("--set {}", quoted(setting))));
     if look.preset.lengths == Some(Lengths::Pixels) {
         words.push("--lengths pixels".into());
     }
@@ -51,8 +51,8 @@ pub fn precision(session: &Session) -> Vec<String> {
 }
 
 /// A name for the result beside the input.
-pub fn output(reel: &Reel) -> PathBuf {
-    let path = reel.path();
+pub fn output(playback: &Playback) -> PathBuf {
+    let path = playback.path();
     let stem = path.file_stem().unwrap_or_default().to_string_lossy();
     // The place of a sequence's numbers stays at the end.
     let name = match stem.split_once('.') {
@@ -61,13 +61,13 @@ pub fn output(reel: &Reel) -> PathBuf {
     };
     let known = ["png", "jpg", "jpeg", "tif", "tiff", "exr"];
     let extension = path.extension().unwrap_or_default().to_string_lossy().to_lowercase();
-    let is_kept = known.contains(&extension.as_str()) || reel.frames().is_some();
+    let is_kept = known.contains(&extension.as_str()) || playback.frames().is_some();
     path.with_file_name(format!("{name}.{}", if is_kept { &extension } else { "png" }))
 }
 
 /// Options of `apply` for the layer and the view that were chosen.
-pub fn selection(reel: &Reel) -> Vec<String> {
-    let selection = reel.document.selection();
+pub fn selection(playback: &Playback) -> Vec<String> {
+    let selection = playback.document.selection();
     let mut words = Vec::new();
     for (option, value) in [("--layer", &selection.layer), ("--view", &selection.view)] {
         words.extend(value.iter().flat_map(|value| [option.to_owned(), value.clone()]));
@@ -127,7 +127,7 @@ pub fn staging(session: &Session, is_turntable: bool) -> Vec<String> {
     [scenery.reading.words(), staging.words()].concat()
 }
 
-/// What is behind the scene, as it is written.
+/// Background of the scene, as it is written.
 fn behind(scenery: &Scenery) -> Behind {
     match (&scenery.lighting.background, &scenery.lighting.surroundings) {
         (Background::Transparent, _) => Behind::Transparent,

@@ -3,7 +3,7 @@
 use std::sync::Arc;
 
 use super::canvas::Area;
-use super::look::Look;
+use super::look::EditedLook;
 use super::viewport::Compare;
 
 /// Pixels of the window between and around panes.
@@ -13,10 +13,10 @@ const GAP: f32 = 8.0;
 #[derive(Clone, Debug)]
 pub struct Comparison {
     /// The looks.
-    pub panes: Vec<Arc<Look>>,
-    /// How pictures were compared before.
+    pub panes: Vec<Arc<EditedLook>>,
+    /// The way in which pictures were compared before.
     pub before: Compare,
-    /// Whether the browser was open before.
+    /// True where the browser was open before.
     pub from_browser: bool,
 }
 
@@ -35,7 +35,7 @@ pub fn grid(count: usize, area: Area, aspect: f32) -> (usize, usize) {
     (columns, count.div_ceil(columns))
 }
 
-/// Where panes lie in an area, rows from the top; all are of the same size.
+/// Areas of panes within an area, rows from the top; all are of the same size.
 pub fn areas(count: usize, area: Area, aspect: f32) -> Vec<Area> {
     let side_within = |side: f32| (side - 2.0 * GAP).max(1.0);
     let (width, height) = (side_within(area.width), side_within(area.height));

@@ -19,7 +19,7 @@ const CLOTH: u32 = 512;
 /// By how much the scene is turned to be seen nearly from the front, in radians.
 const TOWARDS: f32 = 0.42;
 
-/// What things are made of.
+/// Materials of things.
 #[derive(Clone, Copy)]
 enum Stuff {
     Cloth,

@@ -1,17 +1,17 @@
-//! Why a dialog of the system was not shown: the crate that shows them says so in the log alone.
+//! Reasons why a dialog of the system was not shown: the crate that shows them tells them in the log alone.
 
 use std::cell::RefCell;
 use std::sync::Once;
 
 use isophote_files::error::{Error, Result};
 
-/// Where that crate's messages come from.
+/// Origin of that crate's messages.
 const SHOWS: &str = "rfd";
-/// What it tries last, after which there is no dialog.
+/// Program that it tries last, after which there is no dialog.
 const LAST: &str = "zenity";
 
 thread_local! {
-    /// What went wrong with the dialog of this thread.
+    /// Problem with the dialog of this thread.
     static PROBLEM: RefCell<Option<String>> = const { RefCell::new(None) };
 }
 
@@ -33,7 +33,7 @@ impl log::Log for Listener {
     fn flush(&self) {}
 }
 
-/// What a dialog was answered, which is nothing when it was closed.
+/// Response to a dialog, which is nothing when it was closed.
 ///
 /// # Errors
 /// [`Error::Failure`] when there was none to answer; `otherwise` says what to do then.

@@ -1,4 +1,4 @@
-//! What the window shows, into files: a picture, a sequence, a turntable or a video.
+//! Export of what the window shows into files: a picture, a sequence, a turntable or a video.
 //!
 //! The work is done by another process of this program, by its verbs `apply` and `render` with a preset file. So the window
 //! stays alive whatever becomes of it, and the result is the one that the command line gives.
@@ -30,10 +30,10 @@ const GRACE: Duration = Duration::from_secs(2);
 /// Frames of a sequence on their way into a video.
 const FRAMES: &str = "frame.######.png";
 
-/// What is made.
+/// An export to be made.
 #[derive(Clone, Debug)]
-pub struct Job {
-    /// What the input is: scenes are rendered, the others filtered.
+pub struct ExportJob {
+    /// Kind of the input: scenes are rendered, the others filtered.
     pub kind: Kind,
     /// The document's path.
     pub input: PathBuf,
@@ -41,9 +41,9 @@ pub struct Job {
     pub output: PathBuf,
     /// The look as the text of a preset file, in which paths are absolute; only scenes are something without.
     pub preset: Option<String>,
-    /// Which frames, as `--frames` takes them.
+    /// Frames, as `--frames` takes them.
     pub frames: Option<String>,
-    /// Whether the camera turns once around the scene over all frames.
+    /// True where the camera turns once around the scene over all frames.
     pub turntable: bool,
     /// Frames per second of scenes and of sequences that become videos.
     pub rate: f64,
@@ -53,7 +53,7 @@ pub struct Job {
     pub program: Option<PathBuf>,
 }
 
-impl Job {
+impl ExportJob {
     /// The whole of a document into a file, at full resolution and 24 frames a second.
     pub fn new(kind: Kind, input: &Path, output: &Path, preset: Option<String>) -> Self {
         Self {
@@ -69,7 +69,7 @@ impl Job {
         }
     }
 
-    /// Whether pictures of a sequence are made first, and a video of them.
+    /// True where pictures of a sequence are made first, and a video of them.
     fn is_in_two_steps(&self) -> bool {
         self.kind == Kind::Sequence && video::is_video(&self.output)
     }
@@ -117,18 +117,18 @@ impl Job {
     }
 }
 
-/// How far an export is.
+/// Progress of an export.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct Progress {
     /// Frames that are done; a picture by itself counts by its share.
     pub done: f64,
     /// All frames, as far as is known; 0 at first.
     pub total: f64,
-    /// What becomes of it.
+    /// State that it is in.
     pub state: State,
 }
 
-/// What becomes of an export.
+/// State of an export.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub enum State {
     /// It goes on.
@@ -136,7 +136,7 @@ pub enum State {
     Running,
     /// The output is there.
     Done,
-    /// Why there is none, or not all of it.
+    /// The reason why there is none, or not all of it.
     Failed(String),
     /// It was ended; frames of a sequence that were whole stay.
     Cancelled,
@@ -161,7 +161,7 @@ impl Export {
     /// # Errors
     /// [`Error::Input`] for jobs without a look that need one, [`Error::Failure`] when the system gives no thread; what else
     /// is wrong is told by [`Export::poll`].
-    pub fn start(job: Job) -> Result<Self> {
+    pub fn start(job: ExportJob) -> Result<Self> {
         if job.preset.is_none() && job.kind != Kind::Scene {
             return Err(Error::input("the export", "has no look", "choose a style first"));
         }
@@ -188,7 +188,7 @@ impl Export {
         Ok(Self { shared })
     }
 
-    /// How far it is.
+    /// Progress of it.
     pub fn poll(&self) -> Progress {
         self.shared.progress().clone()
     }
@@ -250,7 +250,7 @@ impl Shared {
     }
 
     /// Does a job, or says why it cannot be done.
-    fn run(&self, job: &Job) -> std::result::Result<(), String> {
+    fn run(&self, job: &ExportJob) -> std::result::Result<(), String> {
         let folder = tempfile::tempdir().map_err(|e| format!("no folder for the time being: {e}"))?;
         self.process(job.command(folder.path()).map_err(|e| e.to_string())?)?;
         if job.is_in_two_steps() {
@@ -316,7 +316,7 @@ impl Shared {
     }
 
     /// Makes a video of pictures.
-    fn film(&self, job: &Job, pictures: &Path) -> Result<()> {
+    fn film(&self, job: &ExportJob, pictures: &Path) -> Result<()> {
         let none =
             || Error::file(pictures, "has no place for a frame number", "report this mistake in the program");
         let pattern = Pattern::new(pictures)?.ok_or_else(none)?;

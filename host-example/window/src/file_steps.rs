@@ -11,7 +11,7 @@ use isophote_files::files::{self, Existing};
 /// Most bytes of a file that is kept; looks have some kilobytes.
 const MOST_BYTES: u64 = 16 << 20;
 
-/// What is in a file; nothing where there is none.
+/// Content of a file; nothing where there is none.
 type Content = Option<Vec<u8>>;
 
 /// A change of a file.
@@ -30,7 +30,7 @@ pub struct FileSteps {
 }
 
 impl FileSteps {
-    /// How many have been made and not been taken back.
+    /// Number of steps that have been made and not been taken back.
     pub fn done(&self) -> usize {
         self.done
     }

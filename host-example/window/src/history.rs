@@ -8,7 +8,7 @@ const MOST: usize = 400;
 pub struct History<S> {
     past: Vec<S>,
     future: Vec<S>,
-    /// What is being changed: as long as it is the same, its changes are one step.
+    /// Name of what is being changed: as long as it is the same, its changes are one step.
     open: Option<String>,
 }
 
@@ -53,7 +53,7 @@ impl<S: Clone + PartialEq> History<S> {
         }
     }
 
-    /// Whether something is being changed.
+    /// True while something is being changed.
     pub fn is_open(&self) -> bool {
         self.open.is_some()
     }
@@ -74,12 +74,12 @@ impl<S: Clone + PartialEq> History<S> {
         Some(after)
     }
 
-    /// Whether there is something to take back.
+    /// True where there is something to take back.
     pub fn can_undo(&self) -> bool {
         !self.past.is_empty()
     }
 
-    /// Whether something was taken back that can be done again.
+    /// True where something was taken back that can be done again.
     pub fn can_redo(&self) -> bool {
         !self.future.is_empty()
     }

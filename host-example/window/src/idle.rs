@@ -1,8 +1,8 @@
-//! Which controls have no effect at the moment: those whose other values leave every pass as it is.
+//! Search for controls that have no effect at the moment: those whose other values leave every pass as it is.
 
 use std::collections::HashSet;
 
-use super::look::Look;
+use super::look::EditedLook;
 use super::value::Value;
 use isophote_files::error::Result;
 use isophote_finishing::stylize::frame_request;
@@ -14,32 +14,32 @@ use isophote_loader::abi::IsophoteRequest;
 const SIDE: u32 = 512;
 
 /// A look about whose controls something is to be known.
-pub struct Question {
+pub struct IdleRequest {
     /// The library.
     pub library: Library,
     /// The look.
-    pub look: Look,
-    /// What looks on the picture are asked for; that of scenes without.
+    pub look: EditedLook,
+    /// Request of looks on the picture; that of scenes without.
     pub asked: Option<IsophoteRequest>,
 }
 
-/// What is known.
-pub struct Answer {
+/// The controls that are known to have none.
+pub struct IdleControls {
     /// The look.
-    pub look: Look,
-    /// What it was asked for.
+    pub look: EditedLook,
+    /// Request that it was found for.
     pub asked: Option<IsophoteRequest>,
     /// Names of the parameters without effect.
     pub idle: HashSet<String>,
 }
 
 /// Tries all controls. What cannot be tried has an effect.
-pub fn answer(question: Question) -> Answer {
-    let idle = find(&question).unwrap_or_default();
-    Answer { look: question.look, asked: question.asked, idle }
+pub fn idle_controls(request: IdleRequest) -> IdleControls {
+    let idle = find(&request).unwrap_or_default();
+    IdleControls { look: request.look, asked: request.asked, idle }
 }
 
-fn find(Question { library, look, asked }: &Question) -> Result<HashSet<String>> {
+fn find(IdleRequest { library, look, asked }: &IdleRequest) -> Result<HashSet<String>> {
     let mut idle = HashSet::new();
     let Some(style) = look.style(library)? else { return Ok(idle) };
     let usual = frame_request(library, &style, (SIDE, SIDE))?;
@@ -55,10 +55,10 @@ fn find(Question { library, look, asked }: &Question) -> Result<HashSet<String>>
     // One frame before shows what all show.
     let known = style.past(library, &request)?.frames.min(1);
     let now = Work::of(&style.plan(library, &request, known)?);
-    for knob in look.knobs(library)? {
-        let present = look.value(&knob);
-        let set = |value: &Value| style.graph.set(knob.node, knob.param.id, &value.text());
-        let has_effect = present.others(&knob.param.kind).iter().any(|other| {
+    for parameter in look.parameters(library)? {
+        let present = look.value(&parameter);
+        let set = |value: &Value| style.graph.set(parameter.node, parameter.param.id, &value.text());
+        let has_effect = present.others(&parameter.param.kind).iter().any(|other| {
             set(other).is_ok() && {
                 let known = style.past(library, &request).map_or(0, |past| past.frames.min(1));
                 // What cannot be planned is at least not the same.
@@ -67,7 +67,7 @@ fn find(Question { library, look, asked }: &Question) -> Result<HashSet<String>>
         });
         let is_back = set(&present).is_ok();
         if !has_effect && is_back {
-            idle.insert(knob.name);
+            idle.insert(parameter.name);
         }
     }
     Ok(idle)

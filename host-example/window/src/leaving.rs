@@ -1,6 +1,6 @@
 //! The window's end: asked for, put off while something would be lost, and certain.
 
-/// State of the wish to close the window.
+/// State of the request to close the window.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub enum Leaving {
     /// Nobody wants to close it.
@@ -17,7 +17,7 @@ pub enum Leaving {
 }
 
 impl Leaving {
-    /// Whether a question, or what follows from its answer, stands in front of everything else.
+    /// True where a question, or what follows from its answer, stands in front of everything else.
     pub fn is_shown(self) -> bool {
         matches!(self, Self::Asks | Self::Waits | Self::Closes)
     }

@@ -3,7 +3,7 @@
 //! | what | where |
 //! |---|---|
 //! | the window's events, and when a frame is drawn | `app`, `clicks`, `pace` |
-//! | all that is known of what is shown, steps back, and the window's end | `session`, `leaving`, `history`, `file_steps`, `look`, `chain`, `value`, `scenery`, `reel`, `viewport` |
+//! | all that is known of what is shown, steps back, and the window's end | `session`, `leaving`, `history`, `file_steps`, `look`, `chain`, `value`, `scenery`, `playback`, `viewport` |
 //! | what comes with the program to try looks on | `demo`, `samples` |
 //! | looks to choose from | `browser`, `preview`, `comparison`, `saving` |
 //! | work beside the window | `worker`, `background`, `dialogs`, `look_work`, `watch`, `idle`, `document`, `export` |
@@ -36,10 +36,10 @@ mod pace;
 mod panel;
 mod pictures;
 pub mod plan;
+pub mod playback;
 pub mod preview;
 mod probe;
 pub mod record;
-pub mod reel;
 pub mod samples;
 pub mod saving;
 pub mod scenery;
@@ -65,7 +65,7 @@ use isophote_example::desktop;
 use isophote_files::error::Result;
 use session::Session;
 
-/// What keys and mouse do, for the help of the program.
+/// Keys and the mouse and what they do, for the help of the program.
 pub fn keys() -> String {
     let mut text = "Keys and mouse:".to_owned();
     for (key, what) in ui::keys::KEYS {

@@ -2,7 +2,7 @@
 
 use std::sync::Arc;
 
-use super::look::{Knob, Look};
+use super::look::{EditedLook, Parameter};
 use super::worker::{Wake, Worker};
 use isophote_example::kernels::Kernels;
 use isophote_example::plan_runner::Counts;
@@ -15,8 +15,8 @@ use isophote_loader::Library;
 use isophote_loader::abi::{IsophoteRequest, IsophoteSpace};
 use isophote_loader::catalogue::Kind;
 
-/// What is to be built.
-struct Job {
+/// A look to be built.
+struct BuildJob {
     library: Library,
     kernels: Arc<Kernels>,
     recipe: Recipe,
@@ -24,9 +24,10 @@ struct Job {
 
 #[derive(Clone, Debug, PartialEq)]
 struct Recipe {
-    look: Look,
+    look: EditedLook,
     precision: Precision,
-    /// What pictures the look is for; the reference of lengths is the look's own affair, and frames come later.
+    /// Request of the pictures that the look is for; the reference of lengths is the look's own affair, and frames
+    /// come later.
     asked: IsophoteRequest,
 }
 
@@ -34,8 +35,8 @@ struct Recipe {
 struct Ready {
     stylizer: Stylizer,
     recipe: Recipe,
-    knobs: Vec<Knob>,
-    /// Whether it reads what there is to read.
+    parameters: Vec<Parameter>,
+    /// True where it reads what there is to read.
     bound: bool,
     /// Number of the last frame that was recorded.
     number: Option<i64>,
@@ -46,7 +47,7 @@ struct Ready {
 /// The part of a picture that is recorded at once.
 #[derive(Clone, Copy, Debug)]
 pub struct Part {
-    /// Whether it is the first.
+    /// True for the first.
     pub begins: bool,
     /// Most passes.
     pub passes: usize,
@@ -56,14 +57,14 @@ pub struct Part {
 
 /// A look on its way to the canvas.
 pub struct LiveLook {
-    worker: Worker<Job, (Recipe, Result<Ready>)>,
+    worker: Worker<BuildJob, (Recipe, Result<Ready>)>,
     kernels: Arc<Kernels>,
     ready: Option<Ready>,
     /// The look for pictures of another scale, which are shown while something moves.
     spare: Option<Ready>,
-    /// What was last asked of the worker, or refused.
+    /// Recipe that was last asked of the worker, or refused.
     asked: Option<Recipe>,
-    /// What was made for looks that are gone.
+    /// Counts of what was made for looks that are gone.
     gone: Counts,
     revision: u64,
     /// The last picture that was whole, its kind, and what its colours are.
@@ -76,7 +77,7 @@ impl LiveLook {
     /// # Errors
     /// As [`Worker::new`].
     pub fn new(kernels: &Arc<Kernels>, wake: Wake) -> Result<Self> {
-        let worker = Worker::new("look", wake, |job: Job| {
+        let worker = Worker::new("look", wake, |job: BuildJob| {
             let built = build(&job);
             (job.recipe, built)
         })?;
@@ -88,11 +89,11 @@ impl LiveLook {
     /// Follows `look` for pictures as `asked`: at once where only values change, and behind the picture otherwise.
     ///
     /// # Errors
-    /// What the library or the device has against the look; the look before stays.
+    /// Errors of the library or the device about the look; the look before stays.
     pub fn follow(
         &mut self,
         library: &Library,
-        look: &Look,
+        look: &EditedLook,
         precision: Precision,
         asked: IsophoteRequest,
     ) -> Result<()> {
@@ -131,7 +132,11 @@ impl LiveLook {
             self.asked = None;
             return Ok(());
         }
-        self.worker.ask(Job { library: library.clone(), kernels: Arc::clone(&self.kernels), recipe: wanted });
+        self.worker.ask(BuildJob {
+            library: library.clone(),
+            kernels: Arc::clone(&self.kernels),
+            recipe: wanted,
+        });
         Ok(())
     }
 
@@ -158,14 +163,14 @@ impl LiveLook {
         self.ready.as_ref().is_some_and(|ready| ready.recipe.asked == asked)
     }
 
-    /// What was made on the device for the look that is shown, and for all before it.
+    /// Number of things made on the device for the look that is shown, and for all before it.
     pub fn counts(&self) -> Counts {
         let mut counts = self.gone;
         self.ready.iter().chain(&self.spare).for_each(|ready| counts += ready.stylizer.counts());
         counts
     }
 
-    /// Whether the look that is wanted is being built.
+    /// True while the look that is wanted is being built.
     pub fn is_busy(&self) -> bool {
         self.worker.is_busy() && self.asked.is_some()
     }
@@ -180,7 +185,7 @@ impl LiveLook {
         self.shown.as_ref().map(|(view, kind, space)| (view, *kind, *space))
     }
 
-    /// Whether the look must see rest positions of pictures as `asked`.
+    /// True where the look must see rest positions of pictures as `asked`.
     ///
     /// # Errors
     /// As [`Stylizer::wants_rest_positions`].
@@ -244,29 +249,29 @@ impl Ready {
         if !is_same || (self.recipe.asked, self.recipe.precision) != (wanted.asked, wanted.precision) {
             return Ok(false);
         }
-        let track = |look: &Look, knob: &Knob| {
+        let track = |look: &EditedLook, parameter: &Parameter| {
             look.preset
                 .params
                 .iter()
                 .rev()
-                .find(|(name, _)| *name == knob.name)
+                .find(|(name, _)| *name == parameter.name)
                 .map(|(_, track)| track.clone())
         };
         let mut settings = Vec::new();
-        for knob in &self.knobs {
-            let (before, after) = (track(old, knob), track(new, knob));
+        for parameter in &self.parameters {
+            let (before, after) = (track(old, parameter), track(new, parameter));
             if before == after {
                 continue;
             }
             let is_still = |track: &Option<Track>| !matches!(track, Some(Track::Keys { .. }));
-            if knob.param.structural || !is_still(&before) || !is_still(&after) {
+            if parameter.param.structural || !is_still(&before) || !is_still(&after) {
                 return Ok(false);
             }
-            let (node, param) = match knob.name.rsplit_once('.') {
+            let (node, param) = match parameter.name.rsplit_once('.') {
                 Some((node, param)) => (Some(node.to_owned()), param),
-                None => (None, knob.name.as_str()),
+                None => (None, parameter.name.as_str()),
             };
-            let value = new.value(knob).text();
+            let value = new.value(parameter).text();
             settings.push(Setting { node, param: param.to_owned(), value });
         }
         for setting in &settings {
@@ -277,8 +282,8 @@ impl Ready {
     }
 }
 
-fn build(job: &Job) -> Result<Ready> {
-    let Job { library, kernels, recipe } = job;
+fn build(job: &BuildJob) -> Result<Ready> {
+    let BuildJob { library, kernels, recipe } = job;
     let Recipe { look, precision, asked } = recipe;
     let missing = || Error::failure("the plain look has no style", "choose a style");
     let style = look.style(library)?.ok_or_else(missing)?;
@@ -289,7 +294,7 @@ fn build(job: &Job) -> Result<Ready> {
     Ok(Ready {
         stylizer,
         recipe: recipe.clone(),
-        knobs: look.knobs(library)?,
+        parameters: look.parameters(library)?,
         bound: false,
         number: None,
         done: 0,

@@ -9,10 +9,9 @@ use super::chain::{Chain, Watched};
 use super::value::Value;
 use isophote_files::error::{AtPlace, Error, Result};
 use isophote_files::files::{self, Existing};
-use isophote_finishing::stylize::preset::{self, Preset, Track};
+use isophote_finishing::stylize::preset::{self, Preset, Title, Track};
 use isophote_finishing::stylize::source;
 use isophote_finishing::stylize::style::{Setting, Style};
-use isophote_finishing::stylize::title::Title;
 use isophote_loader::Library;
 use isophote_loader::catalogue::Param;
 
@@ -21,35 +20,35 @@ pub const PLAIN: &str = "none";
 
 /// A style with the values of its parameters.
 #[derive(Clone, Debug, PartialEq)]
-pub struct Look {
-    /// What people call it.
+pub struct EditedLook {
+    /// Name for people.
     pub name: String,
-    /// What it was opened as: the id of a node, or the path of a graph file or preset.
+    /// Name that it was opened by: the id of a node, or the path of a graph file or preset.
     pub source: PathBuf,
     /// Style and parameters. The paths of graph files are relative to `source`.
     pub preset: Preset,
-    /// What `source` says by itself.
+    /// Preset that `source` gives by itself.
     opened: Preset,
-    /// What is in the graph file that it was opened with.
+    /// Content of the graph file that it was opened with.
     graph: Option<Arc<str>>,
 }
 
 /// One parameter of a look that can be changed.
 #[derive(Clone, Debug)]
-pub struct Knob {
+pub struct Parameter {
     /// Its name in presets and for `--set`.
     pub name: String,
     /// Index of the node within the graph.
     pub node: u32,
     /// The label of the node, for graphs of several.
     pub of: &'static str,
-    /// What the node says about it.
+    /// Declaration of the parameter by its node.
     pub param: Param,
     /// The value that it has where the look says nothing.
     pub default: Value,
 }
 
-impl Look {
+impl EditedLook {
     /// The look that leaves pictures as they are.
     pub fn plain() -> Self {
         let preset = bare(String::new());
@@ -72,21 +71,21 @@ impl Look {
                 Style::load(library, path, &[])?;
                 let text = source::read(path)?;
                 let file = path.file_name().unwrap_or_default().to_string_lossy().into_owned();
-                let preset = if preset::is_graph(&text) { bare(file) } else { Preset::parse(path, &text)? };
+                let preset = if preset::is_graph(&text) { bare(file) } else { preset::parse(path, &text)? };
                 let stem = path.file_stem().unwrap_or_default().to_string_lossy().into_owned();
                 (preset.title.name.clone().unwrap_or(stem), preset)
             }
         };
         let mut look = Self { name, source: path.to_owned(), opened: preset.clone(), preset, graph: None };
         look.style(library)?;
-        let knobs = look.knobs(library)?;
-        look.use_names_of(&knobs);
+        let parameters = look.parameters(library)?;
+        look.use_names_of(&parameters);
         look.opened = look.preset.clone();
         look.graph = look.graph_file().map(|file| source::read(&file)).transpose()?.map(Into::into);
         Ok(look)
     }
 
-    /// Whether pictures stay as they are.
+    /// True where pictures stay as they are.
     pub fn is_plain(&self) -> bool {
         self.preset.style.is_empty()
     }
@@ -106,14 +105,14 @@ impl Look {
     ///
     /// # Errors
     /// As [`Style::of_preset`].
-    pub fn knobs(&self, library: &Library) -> Result<Vec<Knob>> {
+    pub fn parameters(&self, library: &Library) -> Result<Vec<Parameter>> {
         let bare = Self { preset: Preset { params: Vec::new(), ..self.preset.clone() }, ..self.clone() };
         let Some(style) = bare.style(library)? else { return Ok(Vec::new()) };
         let failed = |e: isophote_loader::Error| e.at(&self.name, "choose another look");
         let is_single = library.find_node(&self.preset.style).is_ok();
         let own = style.graph.to_json().map_err(failed)?;
         let own: Json = serde_json::from_str(&own).unwrap_or_default();
-        let mut knobs = Vec::new();
+        let mut parameters = Vec::new();
         for node in 0..style.graph.count() {
             let name = style.graph.name(node).map_err(failed)?;
             let spec = style.graph.spec(node).map_err(failed)?;
@@ -124,80 +123,81 @@ impl Look {
                 let Some(default) = given.or_else(|| Value::default(&param.kind)) else { continue };
                 let name =
                     if is_single && node == 0 { param.id.into() } else { format!("{name}.{}", param.id) };
-                knobs.push(Knob { name, node, of: spec.label, param, default });
+                parameters.push(Parameter { name, node, of: spec.label, param, default });
             }
         }
-        Ok(knobs)
+        Ok(parameters)
     }
 
-    /// Calls all parameters by the names of their knobs; presets may leave out the node where only one has a parameter.
-    fn use_names_of(&mut self, knobs: &[Knob]) {
+    /// Writes all values under the names of these parameters; presets may leave out the node where only one has it.
+    fn use_names_of(&mut self, parameters: &[Parameter]) {
         for (name, _) in &mut self.preset.params {
-            if knobs.iter().all(|knob| knob.name != *name)
-                && let Some(knob) = knobs.iter().find(|knob| knob.param.id == *name)
+            if parameters.iter().all(|parameter| parameter.name != *name)
+                && let Some(parameter) = parameters.iter().find(|parameter| parameter.param.id == *name)
             {
-                name.clone_from(&knob.name);
+                name.clone_from(&parameter.name);
             }
         }
     }
 
     /// The value of a parameter at the first keyframe, or everywhere.
-    pub fn value(&self, knob: &Knob) -> Value {
-        let track = self.preset.params.iter().rev().find(|(name, _)| *name == knob.name);
+    pub fn value(&self, parameter: &Parameter) -> Value {
+        let track = self.preset.params.iter().rev().find(|(name, _)| *name == parameter.name);
         let text = track.and_then(|(_, track)| match track {
             Track::Still(text) => Some(text),
             Track::Keys { keys, .. } => keys.first().map(|(_, text)| text),
         });
-        text.and_then(|text| Value::parse(&knob.param.kind, text)).unwrap_or_else(|| knob.default.clone())
+        text.and_then(|text| Value::parse(&parameter.param.kind, text))
+            .unwrap_or_else(|| parameter.default.clone())
     }
 
-    /// Whether a parameter changes from frame to frame.
-    pub fn is_animated(&self, knob: &Knob) -> bool {
+    /// True where a parameter changes from frame to frame.
+    pub fn is_animated(&self, parameter: &Parameter) -> bool {
         self.preset
             .params
             .iter()
-            .any(|(name, track)| *name == knob.name && matches!(track, Track::Keys { .. }))
+            .any(|(name, track)| *name == parameter.name && matches!(track, Track::Keys { .. }))
     }
 
-    /// Whether a parameter is not what it is where nobody changes it.
-    pub fn differs(&self, knob: &Knob) -> bool {
-        self.is_animated(knob) || self.value(knob) != knob.default
+    /// True where a parameter is not what it is where nobody changes it.
+    pub fn differs(&self, parameter: &Parameter) -> bool {
+        self.is_animated(parameter) || self.value(parameter) != parameter.default
     }
 
     /// Gives a parameter one value for all frames.
-    pub fn set(&mut self, knob: &Knob, value: &Value) {
+    pub fn set(&mut self, parameter: &Parameter, value: &Value) {
         let track = Track::Still(value.text());
-        let place = self.preset.params.iter_mut().find(|(name, _)| *name == knob.name);
+        let place = self.preset.params.iter_mut().find(|(name, _)| *name == parameter.name);
         match place {
-            _ if *value == knob.default => self.reset(knob),
+            _ if *value == parameter.default => self.reset(parameter),
             Some((_, old)) => *old = track,
-            None => self.preset.params.push((knob.name.clone(), track)),
+            None => self.preset.params.push((parameter.name.clone(), track)),
         }
     }
 
     /// Gives a parameter its default.
-    pub fn reset(&mut self, knob: &Knob) {
-        self.preset.params.retain(|(name, _)| *name != knob.name);
+    pub fn reset(&mut self, parameter: &Parameter) {
+        self.preset.params.retain(|(name, _)| *name != parameter.name);
     }
 
     /// Takes a setting of the command line over, if there is such a parameter.
-    pub fn take(&mut self, knobs: &[Knob], setting: &Setting) {
-        let is_meant = |knob: &&Knob| match &setting.node {
-            Some(node) => knob.name == format!("{node}.{}", setting.param),
-            None => knob.param.id == setting.param,
+    pub fn take(&mut self, parameters: &[Parameter], setting: &Setting) {
+        let is_meant = |parameter: &&Parameter| match &setting.node {
+            Some(node) => parameter.name == format!("{node}.{}", setting.param),
+            None => parameter.param.id == setting.param,
         };
-        let Some(knob) = knobs.iter().find(is_meant) else { return };
-        if let Some(value) = Value::parse(&knob.param.kind, &setting.value) {
-            self.set(knob, &value);
+        let Some(parameter) = parameters.iter().find(is_meant) else { return };
+        if let Some(value) = Value::parse(&parameter.param.kind, &setting.value) {
+            self.set(parameter, &value);
         }
     }
 
-    /// What it was opened or saved as.
+    /// Preset that it was opened or saved as.
     pub fn opened(&self) -> &Preset {
         &self.opened
     }
 
-    /// Whether it is not what it was opened or saved as.
+    /// True where it is not what it was opened or saved as.
     pub fn is_changed(&self) -> bool {
         self.preset != self.opened
     }
@@ -215,17 +215,17 @@ impl Look {
         files
     }
 
-    /// Whether it and another look were opened from files that say the same.
+    /// True where it and another look were opened from files that say the same.
     pub fn has_origin_of(&self, other: &Self) -> bool {
         self.opened == other.opened && self.has_graph_of(other)
     }
 
-    /// Whether it and another look were opened with the same graph file.
+    /// True where it and another look were opened with the same graph file.
     pub fn has_graph_of(&self, other: &Self) -> bool {
         self.graph == other.graph
     }
 
-    /// Whether its file is a graph, which has no name of its own.
+    /// True where its file is a graph, which has no name of its own.
     pub fn is_graph(&self) -> bool {
         is_json(&self.source) && self.source.file_name().is_some_and(|file| *file == *self.opened.style)
     }
@@ -237,13 +237,13 @@ impl Look {
         self.name = self.shown_name();
     }
 
-    /// What people call it: its own name, or that of the file.
+    /// Name for people: its own, or that of the file.
     fn shown_name(&self) -> String {
         let stem = || self.source.file_stem().unwrap_or_default().to_string_lossy().into_owned();
         self.preset.title.name.clone().unwrap_or_else(stem)
     }
 
-    /// Whether its graph is a part of it and no file.
+    /// True where its graph is a part of it and no file.
     pub fn is_written_out(&self) -> bool {
         preset::is_written_out(&self.preset.style)
     }
@@ -299,7 +299,7 @@ impl Look {
     }
 
     /// Settings that turn what it was opened as into it.
-    pub fn settings(&self, knobs: &[Knob]) -> Vec<String> {
+    pub fn settings(&self, parameters: &[Parameter]) -> Vec<String> {
         let mut opened = Self { preset: self.opened.clone(), ..self.clone() };
         if self.rebuilt().is_some() {
             opened.preset.params.clear();
@@ -307,24 +307,15 @@ impl Look {
         let track = |look: &Self, name: &str| {
             look.preset.params.iter().rev().find(|(own, _)| own == name).map(|(_, track)| track.clone())
         };
-        let is_changed = |knob: &&Knob| track(&opened, &knob.name) != track(self, &knob.name);
-        let text = |knob: &Knob| format!("{}={}", knob.name, self.value(knob).text());
-        knobs.iter().filter(is_changed).map(text).collect()
+        let is_changed =
+            |parameter: &&Parameter| track(&opened, &parameter.name) != track(self, &parameter.name);
+        let text = |parameter: &Parameter| format!("{}={}", parameter.name, self.value(parameter).text());
+        parameters.iter().filter(is_changed).map(text).collect()
     }
 
-    /// Forgets all changes since it was opened.
-    pub fn revert(&mut self) {
-        self.preset = self.opened.clone();
-    }
-
-    /// Whether parameters change from frame to frame.
-    pub fn has_keyframes(&self) -> bool {
-        self.preset.params.iter().any(|(_, track)| matches!(track, Track::Keys { .. }))
-    }
-
-    /// What names the style for `apply` and `render`: the id of a node, or the path of a graph file.
+    /// Name of the style for `apply` and `render`: the id of a node, or the path of a graph file.
     pub fn style_name(&self) -> PathBuf {
-        self.preset.style_beside(&self.source).into()
+        preset::style_beside(&self.preset, &self.source).into()
     }
 
     /// The preset as it can be read from anywhere: the path of its graph file is absolute.
@@ -357,7 +348,7 @@ impl Look {
         if self.source.parent() != file.parent() {
             preset.style = self.whole()?.style;
         }
-        let text = preset.to_json();
+        let text = preset::text(&preset)?;
         files::write_bytes(file, Existing::Replace, text.as_bytes())?;
         self.opened = preset.clone();
         self.preset = preset;

@@ -2,7 +2,7 @@
 
 use std::sync::Arc;
 
-use super::browser::listing::{self, Listing, Question};
+use super::browser::listing::{self, Listing, ListingRequest};
 use super::preview::queue::Queue;
 use super::session::Session;
 use super::watch::Watch;
@@ -11,7 +11,7 @@ use isophote_files::error::Result;
 
 /// The threads.
 pub struct LookWork {
-    lister: Worker<Question, Listing>,
+    lister: Worker<ListingRequest, Listing>,
     watch: Watch,
     previews: Option<Queue>,
     wake: Wake,
@@ -46,12 +46,12 @@ impl LookWork {
     ///
     /// # Errors
     /// As [`Queue::new`].
-    pub fn grant(&mut self, session: &mut Session) -> Result<()> {
+    pub fn carry_out(&mut self, session: &mut Session) -> Result<()> {
         let is_open = session.browser.is_open;
         self.watch.follow(if is_open { session.browser.watched.clone() } else { Vec::new() });
         if is_open && (std::mem::take(&mut session.browser.is_outdated) | self.watch.has_changed()) {
             let folders = session.settings.look_folders.clone();
-            self.lister.ask(Question { library: session.library.clone(), folders });
+            self.lister.ask(ListingRequest { library: session.library.clone(), folders });
         }
         let tasks = session.previews.tasks();
         if self.previews.is_none() && !tasks.is_empty() {

@@ -1,11 +1,11 @@
-//! What the window has to say: one line at a time, which goes away by itself unless something went wrong.
+//! Messages of the window: one line at a time, which goes away by itself unless something went wrong.
 
 use std::time::{Duration, Instant};
 
 use isophote_files::error::Error;
 use isophote_files::output;
 
-/// How long good news stays.
+/// Time that good news stays.
 const STAYS: Duration = Duration::from_secs(4);
 /// Most notes at a time.
 const MOST: usize = 3;
@@ -13,9 +13,9 @@ const MOST: usize = 3;
 /// One line.
 #[derive(Clone, Debug)]
 pub struct Note {
-    /// What it says.
+    /// Text of the message.
     pub text: String,
-    /// Whether something went wrong.
+    /// True where something went wrong.
     pub is_bad: bool,
     since: Instant,
 }

@@ -1,40 +1,40 @@
-//! How large pictures are rendered while something moves: where the processor draws, small ones keep up with the mouse, and
-//! the whole one follows when it rests.
+//! Size at which pictures are rendered while something moves: where the processor draws, small ones keep up with the
+//! mouse, and the whole one follows when it rests.
 
 use std::time::{Duration, Instant};
 
-use super::look::Look;
+use super::look::EditedLook;
 use super::scenery::Scenery;
 use super::session::{Session, Which};
 use super::stage::Drawn;
-use isophote_render::look::Look as Light;
+use isophote_render::lighting::Lighting as Light;
 use isophote_scene::camera::View;
 
-/// How long nothing must move before the whole picture is rendered.
+/// Time that nothing must move before the whole picture is rendered.
 const REST: Duration = Duration::from_millis(150);
-/// What a picture may take while something moves.
+/// Time that a picture may take while something moves.
 const GOAL: f32 = 0.08;
 /// Sizes over that of the whole picture.
 const SCALES: [f32; 4] = [1.0, 0.5, 1.0 / 3.0, 0.25];
 
-/// What a picture looks like, as far as an artist can change it.
+/// Appearance of a picture, as far as an artist can change it.
 #[derive(Clone, Debug, PartialEq)]
-struct Face {
-    look: Look,
+struct Appearance {
+    look: EditedLook,
     view: Option<View>,
     light: Option<Light>,
     shown: [Which; 2],
 }
 
-/// What is known of the device's speed.
+/// Measured speed of the device.
 #[derive(Debug, Default)]
 pub struct Pace {
-    /// Whether the processor draws.
+    /// True where the processor draws.
     pub is_software: bool,
     /// Seconds that a whole picture would take.
     whole: Option<f32>,
     scale: f32,
-    face: Option<Face>,
+    appearance: Option<Appearance>,
     moved: Option<Instant>,
 }
 
@@ -45,16 +45,16 @@ impl Pace {
             return 1.0;
         }
         let scenery = session.scenery.as_ref();
-        let face = Some(Face {
+        let appearance = Some(Appearance {
             look: session.seen().into_owned(),
             view: scenery.map(Scenery::view),
             light: scenery.map(|scenery| *scenery.light()),
             shown: session.shown(),
         });
-        if self.face.is_some() && self.face != face {
+        if self.appearance.is_some() && self.appearance != appearance {
             self.moved = Some(Instant::now());
         }
-        self.face = face;
+        self.appearance = appearance;
         let rests = self.moved.is_none_or(|at| at.elapsed() >= REST) && !session.is_playing();
         let whole = self.whole.unwrap_or(GOAL * 2.0);
         let fits = |scale: &&f32| whole * **scale * **scale <= GOAL;

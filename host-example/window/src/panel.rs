@@ -8,7 +8,8 @@ use egui::epaint::textures::TexturesDelta;
 use egui::epaint::{ClippedPrimitive, ImageData, ImageDelta};
 use egui_wgpu::{Renderer, RendererOptions, ScreenDescriptor};
 
-/// What egui's textures hold. egui tells what changes of them alone, so that a device that takes another's place needs this.
+/// Content of egui's textures. egui tells what changes of them alone, so that a device that takes another's place
+/// needs this.
 #[derive(Default)]
 pub struct Textures(HashMap<TextureId, ImageDelta>);
 

@@ -8,9 +8,9 @@ use isophote_example::kernels::checked;
 use isophote_files::error::{Error, Result};
 use isophote_finishing::stylize::Stylizer;
 use isophote_loader::abi::{
-    ISOPHOTE_GUIDE_DEPTH, ISOPHOTE_GUIDE_MOTION, ISOPHOTE_GUIDE_MOTION_FORWARD, ISOPHOTE_GUIDE_NORMAL,
-    ISOPHOTE_GUIDE_OBJECT_ID, ISOPHOTE_GUIDE_REST_POSITION, ISOPHOTE_SPACE_ACESCG, ISOPHOTE_SPACE_LINEAR,
-    IsophoteRequest, IsophoteSpace,
+    ISOPHOTE_GUIDE_DEPTH, ISOPHOTE_GUIDE_FLOW, ISOPHOTE_GUIDE_MOTION, ISOPHOTE_GUIDE_MOTION_FORWARD,
+    ISOPHOTE_GUIDE_NORMAL, ISOPHOTE_GUIDE_OBJECT_ID, ISOPHOTE_GUIDE_REST_POSITION, ISOPHOTE_SPACE_ACESCG,
+    ISOPHOTE_SPACE_LINEAR, IsophoteRequest, IsophoteSpace,
 };
 use isophote_pictures::exr::Guide;
 use isophote_render::gpu::Gpu;
@@ -50,7 +50,7 @@ impl PictureSource {
         Ok(source)
     }
 
-    /// Whether it shows this frame.
+    /// True where it shows this frame.
     pub fn shows(&self, frame: &Arc<Frame>) -> bool {
         Arc::ptr_eq(&self.frame, frame)
     }
@@ -93,7 +93,7 @@ impl PictureSource {
         }
     }
 
-    /// What looks on it are asked for.
+    /// Request of looks on it.
     pub fn asked(&self) -> IsophoteRequest {
         self.request
     }
@@ -130,7 +130,7 @@ impl PictureSource {
     }
 }
 
-/// What the numbers of a space are on the canvas.
+/// Meaning of the numbers of a space on the canvas.
 pub fn numbers(space: IsophoteSpace) -> Numbers {
     match space {
         ISOPHOTE_SPACE_LINEAR => Numbers::Linear,
@@ -139,13 +139,13 @@ pub fn numbers(space: IsophoteSpace) -> Numbers {
     }
 }
 
-/// What there is of a frame: names, numbers a pixel, and these.
+/// Inputs that a frame has: names, numbers a pixel, and these.
 fn inputs(frame: &Frame) -> impl Iterator<Item = (&'static str, u32, &[f32])> {
     let guides = frame.guides.iter().map(|image| (image.guide.id(), image.channels, image.data.as_slice()));
     [("color", 4, frame.color.as_flattened())].into_iter().chain(guides)
 }
 
-/// What `apply` asks for, of a picture of so much of the size.
+/// Request of `apply`, for a picture of so much of the size.
 pub fn request(frame: &Frame, scale: f32, usual: IsophoteRequest) -> IsophoteRequest {
     let guides = frame.guides.iter().map(|image| match image.guide {
         Guide::Normal => ISOPHOTE_GUIDE_NORMAL,
@@ -154,6 +154,7 @@ pub fn request(frame: &Frame, scale: f32, usual: IsophoteRequest) -> IsophoteReq
         Guide::Motion => ISOPHOTE_GUIDE_MOTION,
         Guide::MotionForward => ISOPHOTE_GUIDE_MOTION_FORWARD,
         Guide::RestPosition => ISOPHOTE_GUIDE_REST_POSITION,
+        Guide::Flow => ISOPHOTE_GUIDE_FLOW,
     });
     let (width, height) = (frame.width, frame.height);
     let guides = guides.fold(0, |all, guide| all | guide);

@@ -1,4 +1,4 @@
-//! What an export makes, as it is chosen before it begins.
+//! Plan of an export, as it is chosen before it begins.
 
 use std::path::{Path, PathBuf};
 
@@ -12,7 +12,7 @@ const TURN: u32 = 96;
 /// Extensions of videos.
 const VIDEOS: [&str; 4] = ["mp4", "mov", "mkv", "webm"];
 
-/// What is made.
+/// Result that is made.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum What {
     /// One picture.
@@ -26,7 +26,7 @@ pub enum What {
 }
 
 impl What {
-    /// What people call it.
+    /// Name for people.
     pub const fn name(self) -> &'static str {
         match self {
             Self::Picture => "A picture",
@@ -37,12 +37,12 @@ impl What {
     }
 }
 
-/// What is to be made of what is open.
+/// Plan of an export of the document that is open.
 #[derive(Clone, Debug)]
 pub struct Plan {
-    /// What is open.
+    /// Kind of the document that is open.
     pub kind: Kind,
-    /// What is made.
+    /// Result that is made.
     pub what: What,
     /// Extension of the result.
     pub format: &'static str,
@@ -91,7 +91,7 @@ impl Plan {
         plan
     }
 
-    /// What can be made.
+    /// Results that can be made.
     pub fn choices(&self) -> &'static [What] {
         match self.kind {
             Kind::Scene if self.counts[1] > 0 => &[What::Picture, What::Turntable, What::Animation],
@@ -136,17 +136,17 @@ impl Plan {
         self.path = format!("{bare}{numbers}.{}", self.format);
     }
 
-    /// Whether every frame becomes a file.
+    /// True where every frame becomes a file.
     pub fn is_several_files(&self) -> bool {
         self.what != What::Picture && !VIDEOS.contains(&self.format)
     }
 
-    /// Whether a file is there already that would be replaced.
+    /// True where a file is there already that would be replaced.
     pub fn replaces(&self) -> bool {
         !self.is_several_files() && Path::new(&self.path).exists()
     }
 
-    /// Which frames, as `--frames` takes them; nothing for all that there are.
+    /// Frames, as `--frames` takes them; nothing for all that there are.
     pub fn frames(&self) -> Option<String> {
         match self.what {
             What::Turntable => Some(self.counts[0].to_string()),
@@ -160,7 +160,7 @@ impl Plan {
         }
     }
 
-    /// What keeps it from being made, in a sentence.
+    /// Reason why it cannot be made, in a sentence.
     pub fn problem(&self) -> Option<&'static str> {
         let path = Path::new(&self.path);
         let folder = path.parent().filter(|folder| !folder.as_os_str().is_empty());

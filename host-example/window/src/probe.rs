@@ -1,4 +1,4 @@
-//! What is under the pointer: one pixel before and after, read back with the frame.
+//! The pixel under the pointer: its values before and after, read back with the frame.
 
 use isophote_render::readback::decode;
 
@@ -53,7 +53,7 @@ impl Probe {
         }
     }
 
-    /// What was copied, once the device has done it.
+    /// Values that were copied, once the device has done it.
     pub fn read(&mut self) -> Option<[[f32; 4]; 2]> {
         let formats = self.formats.take()?;
         let pixels = self.buffer.slice(..).get_mapped_range().ok().map(|bytes| {

@@ -1,4 +1,4 @@
-//! What was shown so far: for the window's title and for the report at the end.
+//! Record of what was shown so far: for the window's title and for the report at the end.
 
 use std::time::Duration;
 
@@ -21,16 +21,16 @@ pub struct Record {
     pub limit: Option<u32>,
     /// Name of the adapter.
     pub adapter: String,
-    /// Whether a report is wanted at the end.
+    /// True where a report is wanted at the end.
     pub is_wanted: bool,
     stretches: Vec<Stretch>,
     begins: bool,
-    /// What the controls took on the device's clock, frame by frame.
+    /// Time of the controls on the device's clock, frame by frame.
     panel: Vec<Duration>,
     longest: Option<Hold>,
 }
 
-/// How long the thread of the window was held up by one frame, during which it answers nobody.
+/// Time that the thread of the window was held up by one frame, during which it answers nobody.
 #[derive(Clone, Copy, Debug, Default)]
 pub struct Hold {
     /// Laying out the controls.
@@ -97,7 +97,7 @@ impl Record {
         Some((last.times.len(), *last.times.last()?))
     }
 
-    /// Whether all frames that were asked for have been shown.
+    /// True where all frames that were asked for have been shown.
     pub fn is_finished(&self) -> bool {
         self.limit.is_some_and(|limit| self.shown() >= limit as usize)
     }

@@ -16,7 +16,7 @@ const SMALL: (u32, u32) = (360, 240);
 /// A picture that comes with the program.
 #[derive(Debug)]
 pub struct Sample {
-    /// What people call it.
+    /// Name for people.
     pub name: &'static str,
     file: &'static str,
     bytes: &'static [u8],
@@ -62,7 +62,7 @@ pub fn small() -> Vec<Arc<ColorImage>> {
 /// The small pictures as the window has them.
 #[derive(Default)]
 pub struct Thumbnails {
-    /// Whether they have been asked for.
+    /// True where they have been asked for.
     pub are_asked: bool,
     textures: Vec<TextureHandle>,
     images: Vec<Arc<ColorImage>>,

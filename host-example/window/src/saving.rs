@@ -3,32 +3,32 @@
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
 
-use super::browser::titling::Words;
-use super::look::Look;
+use super::browser::title_edit::Words;
+use super::look::EditedLook;
 use isophote_files::error::{Error, Result};
 
-/// What is typed before a look is saved.
+/// Name and place that are typed before a look is saved.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Saving {
     /// The look.
-    pub look: Arc<Look>,
+    pub look: Arc<EditedLook>,
     /// Name, description and tags.
     pub words: Words,
     /// The path of the file.
     pub path: String,
-    /// Whether it was asked if the file may be replaced.
+    /// True where it was asked if the file may be replaced.
     pub asks: bool,
-    /// Whether the look of the window is the one in the file afterwards.
+    /// True where the look of the window is the one in the file afterwards.
     pub is_present: bool,
-    /// What went wrong.
+    /// Message about what went wrong.
     pub problem: Option<String>,
-    /// Whether the name of the file follows that of the look.
+    /// True where the name of the file follows that of the look.
     follows: bool,
 }
 
 impl Saving {
     /// A look to be saved in a folder.
-    pub fn new(look: &Arc<Look>, folder: &Path, is_present: bool) -> Self {
+    pub fn new(look: &Arc<EditedLook>, folder: &Path, is_present: bool) -> Self {
         let words = Words::of(&look.name, &look.preset.title);
         let mut saving = Self {
             look: Arc::clone(look),
@@ -68,8 +68,8 @@ impl Saving {
     /// Writes the file, of which the look is what it was opened from then. The folder is made where there is none.
     ///
     /// # Errors
-    /// As [`Look::save`].
-    pub fn write(&self) -> Result<Look> {
+    /// As [`EditedLook::save`].
+    pub fn write(&self) -> Result<EditedLook> {
         let file = std::path::absolute(self.file()).map_err(|e| {
             Error::input(&self.path, format!("is no path: {e}"), "name a file that ends in .json")
         })?;
@@ -97,7 +97,7 @@ mod tests {
 
     #[test]
     fn the_file_follows_the_name_until_it_is_chosen() {
-        let mut saving = Saving::new(&Arc::new(Look::plain()), Path::new("/looks"), true);
+        let mut saving = Saving::new(&Arc::new(EditedLook::plain()), Path::new("/looks"), true);
         assert_eq!(saving.path, "/looks/original.json");
         saving.words.name = "Dusk: Évening / No. 2".into();
         saving.rename();

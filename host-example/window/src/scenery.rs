@@ -8,28 +8,28 @@ use glam::Vec3;
 
 use isophote_finishing::staging::ReadingArgs;
 use isophote_render::background::Background;
-use isophote_render::look::Look as Light;
+use isophote_render::lighting::Lighting as Light;
 use isophote_scene::Scene;
 use isophote_scene::animation::Animation;
 use isophote_scene::camera::{self, Direction, Framing, Orbit, View};
 use isophote_scene::pose::Pose;
 
-/// What a scene is shown with besides itself.
+/// Camera, light and ground that a scene is shown with.
 #[derive(Clone, Debug, Default)]
 pub struct Staging {
-    /// How the default camera frames the scene.
+    /// Framing of the scene by the default camera.
     pub framing: Framing,
     /// Node of the camera of the file that is looked through at first; the default camera otherwise.
     pub camera: Option<usize>,
-    /// What can be changed of the light.
+    /// The light, as far as it can be changed.
     pub lighting: Lighting,
-    /// Whether the scene casts its shadow on an invisible ground.
+    /// True where the scene casts its shadow on an invisible ground.
     pub ground: bool,
     /// Options that the file was read with.
     pub reading: ReadingArgs,
 }
 
-/// Where a camera stands, as the options of `render` say it.
+/// Place of a camera, as the options of `render` say it.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Framed {
     /// By how many degrees it is turned to the right of where cameras are by default.
@@ -38,20 +38,20 @@ pub struct Framed {
     pub elevation: f32,
     /// Its distance over that from which the scene fills the picture.
     pub distance: f32,
-    /// What it looks at, if that is not the middle of the scene.
+    /// Point that it looks at, if that is not the middle of the scene.
     pub target: Option<Vec3>,
     /// Its vertical field of view in degrees, if it is not the usual one.
     pub fov: Option<f32>,
 }
 
-/// What an artist changes of the light.
+/// The light, as far as an artist changes it.
 #[derive(Clone, Debug, Default)]
 pub struct Lighting {
-    /// Where the sun is, seen from the camera as it stood at first, if not where it usually is.
+    /// Direction of the sun, seen from the camera as it stood at first, if it is not the usual one.
     pub sun: Option<Direction>,
     /// Brightness in stops.
     pub exposure: f32,
-    /// What is behind the scene, and lights it where it is a picture of the surroundings.
+    /// Background of the scene, which lights it where it is a picture of the surroundings.
     pub background: Background,
     /// The file of that picture.
     pub surroundings: Option<PathBuf>,
@@ -65,7 +65,7 @@ impl PartialEq for Lighting {
     }
 }
 
-/// Whether two backgrounds are one.
+/// True where two backgrounds are one.
 pub fn is_same(a: &Background, b: &Background) -> bool {
     match (a, b) {
         (Background::Environment(a), Background::Environment(b)) => Arc::ptr_eq(a, b),
@@ -78,17 +78,17 @@ pub fn is_same(a: &Background, b: &Background) -> bool {
 pub struct Scenery {
     /// The scene.
     pub scene: Arc<Scene>,
-    /// Where everything stands now.
+    /// Pose of everything now.
     pub pose: Pose,
-    /// What an artist has changed of the light.
+    /// Changes of an artist to the light.
     pub lighting: Lighting,
-    /// Whether the scene casts its shadow on an invisible ground.
+    /// True where the scene casts its shadow on an invisible ground.
     pub ground: bool,
     /// Options that the file was read with.
     pub reading: ReadingArgs,
-    /// Whether time passes.
+    /// True while time passes.
     pub playing: bool,
-    /// Which animation plays.
+    /// Number of the animation that plays.
     pub animation: usize,
     light: Light,
     /// The camera that light was placed by.
@@ -146,12 +146,12 @@ impl Scenery {
         &self.light
     }
 
-    /// Where the sun is, seen from the camera as it stood at first.
+    /// Direction of the sun, seen from the camera as it stood at first.
     pub fn sun(&self) -> Direction {
         self.sun_by(&self.first_view)
     }
 
-    /// Where the sun is, seen from a camera.
+    /// Direction of the sun, seen from a camera.
     fn sun_by(&self, view: &View) -> Direction {
         let to_sun: Vec3 = self.light.sun_direction;
         let azimuth = to_sun.x.atan2(to_sun.z) - view.azimuth();
@@ -234,7 +234,7 @@ impl Scenery {
         &mut self.orbit
     }
 
-    /// Where the camera that the mouse turns stands in a picture of this aspect.
+    /// Place of the camera that the mouse turns, in a picture of this aspect.
     pub fn framed(&self, aspect: f32) -> Framed {
         let usual = Framing::default();
         let framing = Framing {
@@ -256,8 +256,8 @@ impl Scenery {
         }
     }
 
-    /// Where the sun is, seen from the camera as it stands now, where a picture taken from there would have it elsewhere by
-    /// itself.
+    /// Direction of the sun, seen from the camera as it stands now, where a picture taken from there would have it
+    /// elsewhere by itself.
     pub fn sun_from_here(&self) -> Option<Direction> {
         let rest = Pose::at_rest(&self.scene);
         let through = self.through.and_then(|node| View::from_node(&self.scene, &rest, node));
@@ -270,7 +270,7 @@ impl Scenery {
         Some(self.sun_by(&view))
     }
 
-    /// How far away the middle of the picture is.
+    /// Distance of the middle of the picture.
     pub fn distance(&self) -> f32 {
         (self.view().eye() - self.scene.bounds.center()).length()
     }
@@ -284,7 +284,7 @@ impl Scenery {
         self.ticked = Instant::now();
     }
 
-    /// Where the camera is.
+    /// View from where the camera is.
     pub fn view(&self) -> View {
         let through = self.through.and_then(|node| View::from_node(&self.scene, &self.pose, node));
         through.unwrap_or_else(|| self.orbit.view())

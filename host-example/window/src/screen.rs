@@ -8,7 +8,7 @@ use winit::window::Window;
 use isophote_files::error::{Error, Result};
 use isophote_render::gpu::Gpu;
 
-/// What to install where windows cannot be drawn on.
+/// Advice where windows cannot be drawn on.
 const FIX: &str = "install a Vulkan driver with X11 or Wayland support";
 
 /// The surface of a window.
@@ -41,7 +41,7 @@ impl Screen {
         (self.config.width, self.config.height)
     }
 
-    /// What its pixels are.
+    /// Format of its pixels.
     pub fn format(&self) -> wgpu::TextureFormat {
         self.config.format
     }
@@ -88,7 +88,7 @@ impl Screen {
     }
 }
 
-/// What can be drawn on of a window.
+/// Surface of a window to draw on.
 ///
 /// # Errors
 /// [`Error::Failure`] when the system has nothing of the kind.

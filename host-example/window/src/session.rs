@@ -1,4 +1,4 @@
-//! What the window shows and what was done to it. All of it outlives a lost device.
+//! State of the window: what it shows and what was done to it. All of it outlives a lost device.
 
 mod browsing;
 mod leaving;
@@ -17,12 +17,12 @@ use super::document::kind::Kind;
 use super::file_steps::FileSteps;
 use super::history::History;
 use super::leaving::Leaving;
-use super::look::{Knob, Look};
+use super::look::{EditedLook, Parameter};
 use super::notes::Notes;
 use super::plan::Plan;
+use super::playback::Playback;
 use super::preview::Previews;
 use super::record::Record;
-use super::reel::Reel;
 use super::samples::Thumbnails;
 use super::saving::Saving;
 use super::scenery::{Lighting, Scenery};
@@ -36,9 +36,9 @@ use isophote_loader::catalogue::Node;
 use isophote_loader::printable;
 use isophote_pictures::exr::{Guide, Layer};
 
-/// What only the window itself can do, asked for by its controls.
+/// Request of the controls for what only the window itself can do.
 #[derive(Clone, Debug, PartialEq)]
-pub enum Wish {
+pub enum Request {
     /// Open this file.
     Open(PathBuf),
     /// Show a dialog and open what is chosen.
@@ -67,26 +67,26 @@ pub enum Wish {
     CopyCommand,
 }
 
-/// What undo brings back.
+/// State that undo brings back.
 #[derive(Clone, Debug, PartialEq)]
 pub struct State {
     current: usize,
-    looks: Vec<Arc<Look>>,
+    looks: Vec<Arc<EditedLook>>,
     lighting: Option<Lighting>,
     /// Changes of files that were made.
     files: usize,
 }
 
-/// What a picture is made of, as the canvas has it.
+/// Origin of a picture, as the canvas has it.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Which {
     /// The picture as it was.
     Original,
     /// The look.
     Look,
-    /// What the look is compared with.
+    /// Picture that the look is compared with.
     Compared,
-    /// What is shown instead of the look.
+    /// Picture that is shown instead of the look.
     Overlay,
 }
 
@@ -94,12 +94,12 @@ pub enum Which {
 pub struct Session {
     /// The dynamic library.
     pub library: Library,
-    /// How precisely looks are computed.
+    /// Precision in which looks are computed.
     pub precision: Precision,
     /// Looks in the order of the keys 1, 2, ...
-    pub looks: Vec<Arc<Look>>,
+    pub looks: Vec<Arc<EditedLook>>,
     /// Parameters of the present look.
-    pub knobs: Vec<Knob>,
+    pub parameters: Vec<Parameter>,
     /// The list of nodes that the present look is, if it is one.
     pub chain: Option<Chain>,
     /// The part of it that is looked at, if not the whole.
@@ -110,17 +110,17 @@ pub struct Session {
     pub fitting: Vec<Node>,
     /// Names of those that have no effect at the moment.
     pub idle: HashSet<String>,
-    /// What the look is compared with, if not with the original.
-    pub compared: Option<Look>,
+    /// Look that the present one is compared with, if that is not the original.
+    pub compared: Option<EditedLook>,
     /// The scene that is open.
     pub scenery: Option<Scenery>,
     /// The picture, sequence or video that is open, where no scene is.
-    pub reel: Option<Reel>,
+    pub playback: Option<Playback>,
     /// The file that is open.
     pub file: Option<PathBuf>,
-    /// What is open, for the title.
+    /// Name of what is open, for the title.
     pub name: String,
-    /// Where pictures lie.
+    /// Placement of pictures.
     pub viewport: Viewport,
     /// The browser of looks.
     pub browser: Browser,
@@ -130,35 +130,35 @@ pub struct Session {
     pub saving: Option<Saving>,
     /// Pictures that come with the program, small.
     pub thumbnails: Thumbnails,
-    /// What looks make of the picture, small.
+    /// Small pictures in the looks.
     pub previews: Previews,
-    /// What there is to say.
+    /// Messages to be shown.
     pub notes: Notes,
     /// Frames and times.
     pub record: Record,
-    /// What is remembered from one time to the next.
+    /// Settings that are remembered from one time to the next.
     pub settings: Settings,
-    /// What the controls ask the window for.
-    pub wishes: Vec<Wish>,
-    /// Whether the help is open.
+    /// Requests of the controls to the window.
+    pub requests: Vec<Request>,
+    /// True where the help is open.
     pub shows_help: bool,
-    /// What is being done beside the window.
+    /// Work that is being done beside the window, in words.
     pub busy: Option<&'static str>,
-    /// What is to be exported, while that is asked.
+    /// Plan of the export, while that is asked.
     pub plan: Option<Plan>,
-    /// Whether the window is to be closed.
+    /// State of closing the window.
     pub leaving: Leaving,
     /// The share of an export that is done, while there is one.
     pub exported: Option<f32>,
-    /// Where the pointer is on the picture, in pixels of the window.
+    /// Position of the pointer on the picture, in pixels of the window.
     pub pointer: Option<[f32; 2]>,
     /// Colours under the pointer, before and after.
     pub probed: Option<[[f32; 4]; 2]>,
-    /// Whether the scene was opened before its place in the window was known.
+    /// True where the scene was opened before its place in the window was known.
     is_unframed: bool,
     current: usize,
-    /// What looks are in their files, or as the command line has made them: that much is not lost with the window. Others are as
-    /// they were opened.
+    /// Looks as their files have them, or as the command line has made them: that much is not lost with the window.
+    /// Others are as they were opened.
     kept: HashMap<PathBuf, Preset>,
     edits: History<State>,
     files: FileSteps,
@@ -168,23 +168,23 @@ impl Session {
     /// A window of these looks, at least one, with nothing open.
     ///
     /// # Errors
-    /// As [`Look::knobs`].
-    pub fn new(library: Library, looks: Vec<Look>, settings: Settings) -> Result<Self> {
-        let knobs = looks.first().map_or_else(|| Ok(Vec::new()), |look| look.knobs(&library))?;
+    /// As [`EditedLook::parameters`].
+    pub fn new(library: Library, looks: Vec<EditedLook>, settings: Settings) -> Result<Self> {
+        let parameters = looks.first().map_or_else(|| Ok(Vec::new()), |look| look.parameters(&library))?;
         let chain = looks.first().map_or(Ok(None), |look| look.chain(&library))?;
         Ok(Self {
             fitting: chain::fitting(&library),
             library,
             precision: Precision::default(),
             looks: looks.into_iter().map(Arc::new).collect(),
-            knobs,
+            parameters,
             chain,
             watched: None,
             selected: None,
             idle: HashSet::new(),
             compared: None,
             scenery: None,
-            reel: None,
+            playback: None,
             file: None,
             name: String::new(),
             viewport: Viewport::default(),
@@ -196,7 +196,7 @@ impl Session {
             notes: Notes::default(),
             record: Record::default(),
             settings,
-            wishes: Vec::new(),
+            requests: Vec::new(),
             shows_help: false,
             busy: None,
             plan: None,
@@ -213,12 +213,12 @@ impl Session {
     }
 
     /// The look that is shown and edited.
-    pub fn look(&self) -> &Look {
+    pub fn look(&self) -> &EditedLook {
         &self.looks[self.current]
     }
 
     /// The look as far as it is looked at.
-    pub fn seen(&self) -> Cow<'_, Look> {
+    pub fn seen(&self) -> Cow<'_, EditedLook> {
         let (Some(chain), Some(watched)) = (&self.chain, &self.watched) else {
             return Cow::Borrowed(self.look());
         };
@@ -231,12 +231,12 @@ impl Session {
         self.current
     }
 
-    /// Whether there is anything to look at.
+    /// True where there is anything to look at.
     pub fn has_picture(&self) -> bool {
-        self.scenery.is_some() || self.reel.is_some()
+        self.scenery.is_some() || self.playback.is_some()
     }
 
-    /// Whether there is such a thing to show of the picture.
+    /// True where there is such a thing to show of the picture.
     pub fn has_overlay(&self, overlay: Overlay) -> bool {
         let guide = match overlay {
             Overlay::None | Overlay::Orientation | Overlay::Lines => return true,
@@ -245,22 +245,22 @@ impl Session {
             Overlay::ObjectId => Guide::ObjectId,
             Overlay::Motion => Guide::Motion,
         };
-        let frame = self.reel.as_ref().and_then(|reel| reel.frame(false));
+        let frame = self.playback.as_ref().and_then(|playback| playback.frame(false));
         self.scenery.is_some() || frame.is_some_and(|(frame, _)| frame.guide(guide).is_some())
     }
 
-    /// Whether time passes.
+    /// True while time passes.
     pub fn is_playing(&self) -> bool {
         self.scenery.as_ref().is_some_and(|scenery| scenery.playing)
-            || self.reel.as_ref().is_some_and(|reel| reel.playing)
+            || self.playback.as_ref().is_some_and(|playback| playback.playing)
     }
 
     /// Starts or stops time.
     pub fn toggle_playing(&mut self) {
         if let Some(scenery) = &mut self.scenery {
             scenery.toggle_playing();
-        } else if let Some(reel) = &mut self.reel {
-            reel.toggle_playing();
+        } else if let Some(playback) = &mut self.playback {
+            playback.toggle_playing();
         }
     }
 
@@ -286,21 +286,21 @@ impl Session {
         if let Some(scenery) = &mut self.scenery {
             scenery.advance();
         }
-        if let Some(Err(error)) = self.reel.as_mut().map(Reel::advance) {
+        if let Some(Err(error)) = self.playback.as_mut().map(Playback::advance) {
             self.notes.complain(&error);
         }
     }
 
     /// Puts away what is open.
     pub fn close(&mut self) {
-        (self.scenery, self.reel) = (None, None);
+        (self.scenery, self.playback) = (None, None);
         self.begin(None, String::new());
     }
 
     /// Size of the picture as it is placed: what is rendered smaller for the moment is shown as large.
     pub fn nominal_size(&self) -> (u32, u32) {
         let [_, half] = self.viewport.halves();
-        self.reel.as_ref().map_or((half.width as u32, half.height as u32), Reel::size)
+        self.playback.as_ref().map_or((half.width as u32, half.height as u32), Playback::size)
     }
 
     /// The pictures on the left and on the right of the split.
@@ -317,25 +317,25 @@ impl Session {
     /// A scene is open from now on.
     pub fn show_scene(&mut self, scenery: Scenery, file: Option<PathBuf>, name: String) {
         self.is_unframed = scenery.camera().is_none();
-        (self.scenery, self.reel) = (Some(scenery), None);
+        (self.scenery, self.playback) = (Some(scenery), None);
         self.begin(file, name);
     }
 
     /// A picture, sequence or video is open from now on.
-    pub fn show_reel(&mut self, reel: Reel) {
-        let file = reel.path();
+    pub fn show_playback(&mut self, playback: Playback) {
+        let file = playback.path();
         let name = file.file_name().unwrap_or_default().to_string_lossy().into_owned();
-        (self.scenery, self.reel) = (None, Some(reel));
+        (self.scenery, self.playback) = (None, Some(playback));
         self.begin(Some(file), name);
     }
 
     /// Shows the same file, read in another way.
-    pub fn show_again(&mut self, mut reel: Reel) {
-        if let Some(old) = &self.reel {
-            reel.rate = old.rate;
-            reel.seek(old.number());
+    pub fn show_again(&mut self, mut playback: Playback) {
+        if let Some(old) = &self.playback {
+            playback.rate = old.rate;
+            playback.seek(old.number());
         }
-        self.reel = Some(reel);
+        self.playback = Some(playback);
         if !self.has_overlay(self.viewport.overlay) {
             self.viewport.overlay = Overlay::None;
         }
@@ -343,13 +343,13 @@ impl Session {
 
     /// Asks what is to be exported, if anything can be.
     pub fn plan_export(&mut self) {
-        let Some(file) = self.file.as_deref().filter(|_| !self.look().is_plain() || self.reel.is_none())
+        let Some(file) = self.file.as_deref().filter(|_| !self.look().is_plain() || self.playback.is_none())
         else {
             return;
         };
-        let kind = self.reel.as_ref().map_or(Kind::Scene, |reel| reel.document.kind());
+        let kind = self.playback.as_ref().map_or(Kind::Scene, |playback| playback.document.kind());
         let length = self.scenery.as_ref().map_or(0.0, |scenery| scenery.time().1);
-        let frames = self.reel.as_ref().and_then(Reel::frames);
+        let frames = self.playback.as_ref().and_then(Playback::frames);
         let animated = (length * 24.0).ceil() as u32;
         self.plan = Some(Plan::new(kind, file, frames, self.nominal_size(), animated));
     }

@@ -1,4 +1,4 @@
-//! What the window remembers from one time to the next: its size, folders, recent files, the last look.
+//! Settings that the window remembers from one time to the next: its size, folders, recent files, the last look.
 
 use std::path::{Path, PathBuf};
 use std::{env, fs};
@@ -17,7 +17,7 @@ const MOST_FOLDERS: usize = 64;
 /// Most bytes of the file.
 const MOST_BYTES: u64 = 1 << 20;
 
-/// What is remembered. What a file does not say is as it is for the first time.
+/// Settings that are remembered. What a file does not say is as it is for the first time.
 #[derive(Clone, Debug, Default, Deserialize, PartialEq, Serialize)]
 #[serde(default)]
 pub struct Settings {
@@ -25,15 +25,15 @@ pub struct Settings {
     pub window: Option<(u32, u32)>,
     /// Files that were open, the last one first.
     pub recent: Vec<PathBuf>,
-    /// Where scenes and pictures were chosen last.
+    /// Folder where scenes and pictures were chosen last.
     pub folder: Option<PathBuf>,
-    /// Where looks were chosen last.
+    /// Folder where looks were chosen last.
     pub look_folder: Option<PathBuf>,
     /// Folders whose looks are offered.
     pub look_folders: Vec<PathBuf>,
     /// The look that was shown last.
     pub look: Option<PathBuf>,
-    /// Whether the panel is hidden.
+    /// True where the panel is hidden.
     pub panel_hidden: bool,
     #[serde(skip)]
     place: Option<PathBuf>,
@@ -95,13 +95,13 @@ impl Settings {
         self.look_folders.retain(|known| known != folder);
     }
 
-    /// Where looks are saved: where one was last, or beside this file.
+    /// Folder where looks are saved: where one was last, or beside this file.
     pub fn place_for_looks(&self) -> PathBuf {
         let own = || Some(self.place.as_deref()?.parent()?.join("looks"));
         self.look_folder.clone().or_else(own).unwrap_or_default()
     }
 
-    /// Where pictures that come with the program are written: beside this file.
+    /// Folder where pictures that come with the program are written: beside this file.
     pub fn place_for_samples(&self) -> PathBuf {
         let own = self.place.as_deref().and_then(Path::parent).map(|folder| folder.join("pictures"));
         own.unwrap_or_else(|| env::temp_dir().join("isophote-pictures"))
@@ -117,7 +117,7 @@ impl Settings {
     }
 }
 
-/// Where the file is: where the environment says, or where programs of the system keep such files.
+/// Path of the file: where the environment says, or where programs of the system keep such files.
 fn place() -> Option<PathBuf> {
     let named = |name: &str| env::var_os(name).filter(|value| !value.is_empty()).map(PathBuf::from);
     if let Some(place) = named(PLACE) {

@@ -1,4 +1,4 @@
-//! Which texture of the device is seen where something is to be shown.
+//! Choice of the texture of the device that is seen where something is to be shown.
 
 use super::canvas::Numbers;
 use super::live_look::LiveLook;

@@ -17,7 +17,7 @@ use isophote_render::targets::Target;
 /// Copies frames and turns them into numbers on a thread of its own.
 pub struct Snapshots<F> {
     worker: Worker<Copied, Result<Frame>>,
-    /// What the last one shows.
+    /// State that the last one shows.
     taken: Option<F>,
 }
 
@@ -48,13 +48,13 @@ impl<F: PartialEq> Snapshots<F> {
         Ok(Self { worker, taken: None })
     }
 
-    /// Whether the last one shows this.
-    pub fn shows(&self, face: &F) -> bool {
-        self.taken.as_ref() == Some(face)
+    /// True where the last one shows this.
+    pub fn shows(&self, state: &F) -> bool {
+        self.taken.as_ref() == Some(state)
     }
 
     /// Copies what was rendered last, which shows this.
-    pub fn take(&mut self, gpu: &Gpu, source: &SceneSource, face: F) {
+    pub fn take(&mut self, gpu: &Gpu, source: &SceneSource, state: F) {
         let targets = source.targets();
         let mut encoder = gpu.device.create_command_encoder(&Default::default());
         let mut copied = |target: &Target| Buffer::copied(gpu, &mut encoder, &target.texture);
@@ -72,7 +72,7 @@ impl<F: PartialEq> Snapshots<F> {
         }
         let size = (targets.width, targets.height);
         self.worker.ask(Copied { gpu: gpu.clone(), size, color, guides });
-        self.taken = Some(face);
+        self.taken = Some(state);
     }
 
     /// The frame, when it is there.

@@ -13,15 +13,15 @@ use isophote_loader::abi::{
 };
 use isophote_render::background::Background;
 use isophote_render::gpu::Gpu;
-use isophote_render::look::Look as Light;
+use isophote_render::lighting::Lighting as Light;
 use isophote_render::renderer::Renderer;
 use isophote_render::targets::Targets;
 use isophote_scene::Scene;
 use isophote_scene::camera::View;
 use isophote_scene::pose::Pose;
 
-/// What is uploaded of a scene: it stands still meanwhile.
-pub struct Stand {
+/// A scene at a standstill, to be uploaded.
+pub struct SceneState {
     /// The scene.
     pub scene: Arc<Scene>,
     pose: Pose,
@@ -31,7 +31,7 @@ pub struct Stand {
     ground: bool,
 }
 
-impl Stand {
+impl SceneState {
     /// The scene as it is now.
     pub fn of(scenery: &Scenery) -> Self {
         Self {
@@ -50,7 +50,7 @@ pub struct SceneSource {
     scene: Arc<Scene>,
     renderer: Renderer,
     background: Background,
-    /// What looks on its pictures are asked for, but for the size.
+    /// Request of looks on its pictures, but for the size.
     usual: IsophoteRequest,
 }
 
@@ -59,8 +59,8 @@ impl SceneSource {
     ///
     /// # Errors
     /// [`isophote_files::error::Error::Input`] when the scene is beyond the limits of the device.
-    pub fn new(gpu: &Gpu, stand: &Stand, size: (u32, u32), usual: IsophoteRequest) -> Result<Self> {
-        let Stand { scene, pose, view, light, background, ground } = stand;
+    pub fn new(gpu: &Gpu, state: &SceneState, size: (u32, u32), usual: IsophoteRequest) -> Result<Self> {
+        let SceneState { scene, pose, view, light, background, ground } = state;
         let mut renderer = Renderer::new(&gpu.device, &gpu.queue, scene, size)?;
         renderer.set_background(background, false)?;
         if *ground {
@@ -78,7 +78,7 @@ impl SceneSource {
         Ok(Self { scene: Arc::clone(scene), renderer, background: background.clone(), usual })
     }
 
-    /// Whether it is of this scene.
+    /// True where it is of this scene.
     pub fn is_of(&self, scenery: &Scenery) -> bool {
         Arc::ptr_eq(&self.scene, &scenery.scene)
     }
@@ -101,7 +101,7 @@ impl SceneSource {
         Ok(true)
     }
 
-    /// What looks on pictures of it are asked for.
+    /// Request of looks on pictures of it.
     pub fn asked(&self) -> IsophoteRequest {
         let targets = self.renderer.targets();
         IsophoteRequest {
@@ -124,7 +124,7 @@ impl SceneSource {
         is_new
     }
 
-    /// What the last frame was rendered into.
+    /// Targets that the last frame was rendered into.
     pub fn targets(&self) -> &Targets {
         self.renderer.targets()
     }
@@ -162,7 +162,7 @@ impl SceneSource {
     }
 }
 
-/// What looks are put on.
+/// Input of looks.
 pub enum Source {
     /// A scene.
     Scene(Box<SceneSource>),
@@ -171,7 +171,7 @@ pub enum Source {
 }
 
 impl Source {
-    /// What looks on it are asked for.
+    /// Request of looks on it.
     pub fn asked(&self) -> IsophoteRequest {
         match self {
             Self::Scene(source) => source.asked(),

@@ -1,41 +1,41 @@
-//! What is open, on its way to the device: large pictures and scenes are uploaded beside the window.
+//! Way of what is open to the device: large pictures and scenes are uploaded beside the window.
 
 use std::sync::Arc;
 
 use super::document::frame::Frame;
 use super::pictures::PictureSource;
 use super::session::Session;
-use super::source::{SceneSource, Source, Stand};
+use super::source::{SceneSource, SceneState, Source};
 use super::worker::{Wake, Worker};
 use isophote_files::error::{AtPlace, Result};
 use isophote_loader::abi::IsophoteRequest;
 use isophote_render::gpu::Gpu;
 use isophote_scene::Scene;
 
-/// What is to be uploaded.
-enum Job {
-    Scene { stand: Box<Stand>, size: (u32, u32), usual: IsophoteRequest },
+/// An upload to be made.
+enum UploadJob {
+    Scene { state: Box<SceneState>, size: (u32, u32), usual: IsophoteRequest },
     Picture { frame: Arc<Frame>, scale: f32, usual: IsophoteRequest },
 }
 
-/// Which it is.
+/// Name of what is uploaded.
 #[derive(Clone)]
 enum Thing {
     Scene(Arc<Scene>),
     Picture(Arc<Frame>),
 }
 
-/// What was uploaded, or why it could not be.
+/// Result of an upload: the source, or why it could not be uploaded.
 type Uploaded = (Thing, Result<Source>);
 
-/// What looks are put on, as far as it is on the device.
+/// Inputs of looks, as far as they are on the device.
 pub struct Sources {
     gpu: Gpu,
-    worker: Worker<Job, Uploaded>,
+    worker: Worker<UploadJob, Uploaded>,
     present: Option<Source>,
     /// The picture at its other size: whole, or its small copy.
     spare: Option<Source>,
-    /// What is being uploaded, or cannot be.
+    /// Thing that is being uploaded, or cannot be.
     asked: Option<Thing>,
     number: u64,
 }
@@ -51,12 +51,12 @@ impl Sources {
         Ok(Self { gpu: gpu.clone(), worker, present: None, spare: None, asked: None, number: 0 })
     }
 
-    /// What looks are put on.
+    /// The present input of looks.
     pub fn present(&self) -> Option<&Source> {
         self.present.as_ref()
     }
 
-    /// What looks are put on, to be rendered.
+    /// The present input of looks, to be rendered.
     pub fn present_mut(&mut self) -> Option<&mut Source> {
         self.present.as_mut()
     }
@@ -66,7 +66,7 @@ impl Sources {
         self.number
     }
 
-    /// Whether something is being uploaded.
+    /// True while something is being uploaded.
     pub fn is_busy(&self) -> bool {
         self.worker.is_busy()
     }
@@ -74,11 +74,11 @@ impl Sources {
     /// Takes over the scene or picture that is open, its frame and its size, and says whether looks must be bound to it anew.
     ///
     /// # Errors
-    /// Why it cannot be shown. It is not tried again.
+    /// The reason why it cannot be shown. It is not tried again.
     pub fn follow(&mut self, session: &Session, scale: f32) -> Result<bool> {
         let usual = session.library.request((1, 1)).map_err(|e| e.at("the library", "install it again"))?;
         let is_new = self.take(session)?;
-        let is_other = match (&session.scenery, &session.reel) {
+        let is_other = match (&session.scenery, &session.playback) {
             (Some(scenery), _) => {
                 let [_, half] = session.viewport.halves();
                 let pixels = |length: f32| ((length * scale).round() as u32).max(1);
@@ -89,8 +89,8 @@ impl Sources {
                     }
                     _ => {
                         let usual = IsophoteRequest { scale, ..usual };
-                        self.replace(Thing::Scene(Arc::clone(&scenery.scene)), || Job::Scene {
-                            stand: Box::new(Stand::of(scenery)),
+                        self.replace(Thing::Scene(Arc::clone(&scenery.scene)), || UploadJob::Scene {
+                            state: Box::new(SceneState::of(scenery)),
                             size,
                             usual,
                         });
@@ -98,9 +98,14 @@ impl Sources {
                     }
                 }
             }
-            (None, Some(reel)) => {
-                let Some((frame, share)) = reel.frame(scale < 1.0) else { return Ok(is_new) };
-                self.follow_picture(frame, reel.frame(scale >= 1.0).map(|(other, _)| other), share, usual);
+            (None, Some(playback)) => {
+                let Some((frame, share)) = playback.frame(scale < 1.0) else { return Ok(is_new) };
+                self.follow_picture(
+                    frame,
+                    playback.frame(scale >= 1.0).map(|(other, _)| other),
+                    share,
+                    usual,
+                );
                 false
             }
             (None, None) => {
@@ -136,7 +141,7 @@ impl Sources {
             self.number += 1;
             return;
         }
-        let job = || Job::Picture { frame: Arc::clone(frame), scale, usual };
+        let job = || UploadJob::Picture { frame: Arc::clone(frame), scale, usual };
         match other {
             Some(other) if shows(self.present.as_ref(), other) => {
                 self.ask(Thing::Picture(frame.clone()), job)
@@ -155,7 +160,8 @@ impl Sources {
         self.asked = None;
         let old = self.present.replace(source);
         let is_of_same = |frame: &Arc<Frame>| shows(old.as_ref(), frame);
-        let frames = session.reel.iter().flat_map(|reel| [reel.frame(false), reel.frame(true)]);
+        let frames =
+            session.playback.iter().flat_map(|playback| [playback.frame(false), playback.frame(true)]);
         let is_same = frames.flatten().any(|(frame, _)| is_of_same(frame));
         self.spare = old.filter(|_| is_same);
         self.number += 1;
@@ -163,12 +169,12 @@ impl Sources {
     }
 
     /// Shows nothing until something is uploaded.
-    fn replace(&mut self, thing: Thing, job: impl FnOnce() -> Job) {
+    fn replace(&mut self, thing: Thing, job: impl FnOnce() -> UploadJob) {
         (self.present, self.spare) = (None, None);
         self.ask(thing, job);
     }
 
-    fn ask(&mut self, thing: Thing, job: impl FnOnce() -> Job) {
+    fn ask(&mut self, thing: Thing, job: impl FnOnce() -> UploadJob) {
         if self.asked.as_ref().is_some_and(|asked| asked.is(&thing)) {
             return;
         }
@@ -191,13 +197,13 @@ fn shows(source: Option<&Source>, frame: &Arc<Frame>) -> bool {
     matches!(source, Some(Source::Picture(source)) if source.shows(frame))
 }
 
-fn upload(gpu: &Gpu, job: Job) -> Uploaded {
+fn upload(gpu: &Gpu, job: UploadJob) -> Uploaded {
     match job {
-        Job::Scene { stand, size, usual } => {
-            let source = SceneSource::new(gpu, &stand, size, usual);
-            (Thing::Scene(stand.scene), source.map(|source| Source::Scene(Box::new(source))))
+        UploadJob::Scene { state, size, usual } => {
+            let source = SceneSource::new(gpu, &state, size, usual);
+            (Thing::Scene(state.scene), source.map(|source| Source::Scene(Box::new(source))))
         }
-        Job::Picture { frame, scale, usual } => {
+        UploadJob::Picture { frame, scale, usual } => {
             let source = PictureSource::new(gpu, &frame, scale, usual);
             (Thing::Picture(frame), source.map(Source::Picture))
         }

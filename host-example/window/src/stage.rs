@@ -11,7 +11,7 @@ use winit::window::Window;
 use super::canvas::{Arrangement, Canvas, SURROUND, Shown};
 use super::document::frame::Frame;
 use super::live_look::{LiveLook, Part};
-use super::look::Look;
+use super::look::EditedLook;
 use super::panel::Panel;
 use super::probe::Probe;
 use super::screen::{self, Screen};
@@ -28,7 +28,7 @@ use isophote_files::error::{Error, Result};
 use isophote_loader::abi::IsophoteRequest;
 use isophote_render::gpu::Gpu;
 use isophote_render::layouts;
-use isophote_render::look::Look as Light;
+use isophote_render::lighting::Lighting as Light;
 use isophote_render::timestamps::Timestamps;
 use isophote_scene::camera::View;
 
@@ -39,33 +39,33 @@ pub struct Stage {
     sources: Sources,
     /// Waits for the device.
     waiter: Worker<Instant, Result<Duration>>,
-    /// What the device is doing.
+    /// Work that the device is doing.
     pending: Option<Pending>,
     canvas: Canvas,
     probe: Probe,
-    snapshots: Snapshots<Face>,
+    snapshots: Snapshots<FrameState>,
     /// Colours under the pointer, before and after, as of the last frame.
     pub probed: Option<[[f32; 4]; 2]>,
     /// Draws the controls.
     pub panel: Panel,
     /// Measures the controls, where a report is wanted and the device can.
     clock: Option<Timestamps>,
-    /// What they took in the last frame.
+    /// Time that they took in the last frame.
     pub panel_time: Option<Duration>,
     screen: Screen,
     gpu: Gpu,
     made: Option<Made>,
-    /// How far the picture is.
+    /// Progress of the picture.
     progress: Progress,
     /// Passes of a picture that are recorded at once, where the processor draws.
     passes: usize,
-    /// What drawing the window took last, where the picture is drawn in parts.
+    /// Time that drawing the window took last, where the picture is drawn in parts.
     cost: Duration,
     /// When the window was drawn last.
     drawn: Instant,
 }
 
-/// How far a picture is.
+/// Progress of a picture.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 enum Progress {
     /// There is none to be made.
@@ -78,7 +78,7 @@ enum Progress {
     Whole(Duration),
 }
 
-/// What the device was given.
+/// Work that the device was given.
 enum Pending {
     /// A part of a picture.
     Part,
@@ -87,7 +87,7 @@ enum Pending {
     Window(Drawn, wgpu::SurfaceTexture, bool),
 }
 
-/// What was given to the device.
+/// Work that was given to the device.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Drawn {
     /// It is on its way to the screen; the picture in it is a new one.
@@ -102,7 +102,7 @@ pub enum Drawn {
     Skipped,
 }
 
-/// What a picture was made of. While it stays the same, so does the picture.
+/// Origins of a picture. While they stay the same, so does the picture.
 #[derive(Clone, Debug, PartialEq)]
 struct Made {
     shown: [Which; 2],
@@ -113,10 +113,10 @@ struct Made {
     scene: Option<(View, Light, f32)>,
 }
 
-/// What a frame of a scene shows, looks apart.
-type Face = (IsophoteRequest, u64, Option<(View, Light, f32)>);
+/// State that a frame of a scene shows, looks apart.
+type FrameState = (IsophoteRequest, u64, Option<(View, Light, f32)>);
 
-/// What recording a part of a picture may take.
+/// Time that recording a part of a picture may take.
 const GOAL: [Duration; 2] = [Duration::from_millis(15), Duration::from_millis(40)];
 
 impl Stage {
@@ -173,7 +173,7 @@ impl Stage {
         self.clock = Timestamps::new(&self.gpu, 1);
     }
 
-    /// Whether pictures are computed by the processor, which takes its time.
+    /// True where pictures are computed by the processor, which takes its time.
     pub fn is_software(&self) -> bool {
         self.gpu.adapter.get_info().device_type == wgpu::DeviceType::Cpu
     }
@@ -198,10 +198,11 @@ impl Stage {
             self.gpu.check()?;
             return Ok(problems);
         };
-        let overlay = session.viewport.overlay.node().map(|node| Look::open(&session.library, node.as_ref()));
-        let overlay = overlay.transpose()?.unwrap_or_else(Look::plain);
+        let overlay =
+            session.viewport.overlay.node().map(|node| EditedLook::open(&session.library, node.as_ref()));
+        let overlay = overlay.transpose()?.unwrap_or_else(EditedLook::plain);
         let seen = session.seen();
-        let compared = session.compared.clone().unwrap_or_else(Look::plain);
+        let compared = session.compared.clone().unwrap_or_else(EditedLook::plain);
         let asked = source.asked();
         for (live, look) in self.looks.iter_mut().zip([&*seen, &compared, &overlay]) {
             problems.extend(live.follow(&session.library, look, session.precision, asked).err());
@@ -228,10 +229,10 @@ impl Stage {
         let is_wanted =
             session.is_covered() && !session.is_playing() && self.progress == Progress::Done && !waits;
         let made = self.made.as_ref().filter(|made| is_wanted && made.asked.scale == 1.0);
-        let face = made.map(|made| (made.asked, made.source, made.scene));
-        if let (Some(Source::Scene(source)), Some(scenery), Some(face)) =
-            (self.sources.present_mut(), &session.scenery, face)
-            && !self.snapshots.shows(&face)
+        let state = made.map(|made| (made.asked, made.source, made.scene));
+        if let (Some(Source::Scene(source)), Some(scenery), Some(state)) =
+            (self.sources.present_mut(), &session.scenery, state)
+            && !self.snapshots.shows(&state)
         {
             if source.add_rest_positions() {
                 self.looks.iter_mut().for_each(LiveLook::unbind);
@@ -239,18 +240,18 @@ impl Stage {
                 source.encode(&mut encoder, scenery);
                 self.gpu.queue.submit([encoder.finish()]);
             }
-            self.snapshots.take(&self.gpu, source, face);
+            self.snapshots.take(&self.gpu, source, state);
         }
         taken.transpose()
     }
 
-    /// Whether a look is being built, or a picture or scene uploaded.
+    /// True while a look is being built, or a picture or scene uploaded.
     pub fn is_busy(&self) -> bool {
         self.sources.is_busy() || self.looks.iter().any(LiveLook::is_busy)
     }
 
-    /// Whether the device is doing what it was given. Nothing else is given to it meanwhile: a viewer that runs ahead of its
-    /// device answers the mouse late.
+    /// True while the device is doing what it was given. Nothing else is given to it meanwhile: a viewer that runs
+    /// ahead of its device answers the mouse late.
     pub fn is_waiting(&self) -> bool {
         self.pending.is_some()
     }
@@ -274,7 +275,8 @@ impl Stage {
         self.draw_window(window, session, always)
     }
 
-    /// Whether the picture that is begun is to become whole although another one is wanted: while a slider moves, none would.
+    /// True where the picture that is begun is to become whole although another one is wanted: while a slider moves,
+    /// none would.
     fn finishes(&self, wanted: Option<&Made>) -> bool {
         matches!(self.progress, Progress::Begun(_))
             && self.made.as_ref().zip(wanted).is_some_and(|(begun, wanted)| {
@@ -340,8 +342,8 @@ impl Stage {
         self.waiter.ask(Instant::now());
     }
 
-    /// What the device has done since the last call, and how long that took: of a picture all of its parts. Nothing as long
-    /// as it is at work.
+    /// Work that the device has done since the last call, and how long that took: of a picture all of its parts.
+    /// Nothing as long as it is at work.
     ///
     /// # Errors
     /// As [`Stage::draw`].
@@ -415,7 +417,7 @@ impl Stage {
         }
     }
 
-    /// What the picture would be made of now.
+    /// Origins of the picture as it would be made now.
     fn to_make(&self, session: &Session) -> Option<Made> {
         let source = self.sources.present()?;
         let scene = session.scenery.as_ref();
@@ -490,7 +492,7 @@ impl Stage {
         &self.gpu
     }
 
-    /// What was made on the device for the look.
+    /// Number of things made on the device for the look.
     pub fn counts(&self) -> Counts {
         self.looks[0].counts()
     }

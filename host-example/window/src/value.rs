@@ -1,5 +1,6 @@
 //! Values of parameters as controls hold them, and as text that `--set` and presets take.
 
+use isophote_finishing::stylize::preset;
 use isophote_loader::catalogue::ParamKind;
 
 /// A value of a parameter.
@@ -45,7 +46,7 @@ impl Value {
             ParamKind::Choice { options, .. } => {
                 Self::Choice(options.iter().find(|option| option.id == text)?.id.to_owned())
             }
-            ParamKind::Color { .. } => Self::Color(color(text)?),
+            ParamKind::Color { .. } => Self::Color(preset::color(text)?),
         })
     }
 
@@ -82,26 +83,6 @@ impl Value {
         others.retain(|other| other != self);
         others
     }
-}
-
-/// `#rrggbb`, `#rrggbbaa`, or three or four numbers from 0 to 1.
-fn color(text: &str) -> Option<[f32; 4]> {
-    let mut color = [1.0; 4];
-    if let Some(digits) = text.strip_prefix('#') {
-        if !matches!(digits.len(), 6 | 8) || !digits.is_ascii() {
-            return None;
-        }
-        for (part, at) in color.iter_mut().zip((0..digits.len()).step_by(2)) {
-            *part = f32::from(u8::from_str_radix(&digits[at..at + 2], 16).ok()?) / 255.0;
-        }
-        return Some(color);
-    }
-    let parts: Vec<f32> = text.split(',').map(|part| part.trim().parse().ok()).collect::<Option<_>>()?;
-    let is_usable = matches!(parts.len(), 3 | 4) && parts.iter().all(|part| part.is_finite());
-    is_usable.then(|| {
-        color[..parts.len()].copy_from_slice(&parts);
-        color
-    })
 }
 
 /// As short as it can be without loss.

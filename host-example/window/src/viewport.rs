@@ -1,8 +1,8 @@
-//! How pictures lie on the canvas: which ones, where, how large and how bright.
+//! Placement of pictures on the canvas: which ones, where, how large and how bright.
 
 use super::canvas::Area;
 
-/// How two pictures are compared.
+/// The way in which two pictures are compared.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub enum Compare {
     /// Not at all: the look alone.
@@ -14,7 +14,7 @@ pub enum Compare {
     Side,
 }
 
-/// What is shown instead of the look.
+/// Picture that is shown instead of the look.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub enum Overlay {
     /// Nothing.
@@ -62,13 +62,13 @@ const ZOOMS: [f32; 2] = [1.0 / 32.0, 64.0];
 /// The arrangement that an artist has made.
 #[derive(Clone, Debug)]
 pub struct Viewport {
-    /// How pictures are compared.
+    /// The way in which pictures are compared.
     pub compare: Compare,
-    /// Where the line of the wipe is, as a share of the canvas from the left.
+    /// Position of the line of the wipe, as a share of the canvas from the left.
     pub wipe: f32,
-    /// Whether the original is shown for the moment.
+    /// True where the original is shown for the moment.
     pub peek: bool,
-    /// What is shown instead of the look.
+    /// Picture that is shown instead of the look.
     pub overlay: Overlay,
     /// Brightness of all pictures in stops.
     pub exposure: f32,
@@ -122,7 +122,7 @@ impl Viewport {
         self.zoom.unwrap_or(fit)
     }
 
-    /// Where both pictures lie, which are of a size.
+    /// Areas of both pictures, which are of a size.
     pub fn places(&self, size: (u32, u32)) -> [Area; 2] {
         let scale = self.scale(size);
         let (width, height) = (size.0 as f32 * scale, size.1 as f32 * scale);
@@ -169,7 +169,7 @@ impl Viewport {
         (self.zoom, self.offset) = (None, [0.0; 2]);
     }
 
-    /// Whether all of the picture is shown, as large as it can be.
+    /// True where all of the picture is shown, as large as it can be.
     pub fn is_fitting(&self) -> bool {
         self.zoom.is_none()
     }

@@ -25,7 +25,7 @@ pub struct Watch {
     thread: Option<JoinHandle<()>>,
 }
 
-/// What the thread looks at.
+/// State that the thread looks at.
 #[derive(Debug, Default)]
 struct Shared {
     tray: Mutex<Tray>,
@@ -65,7 +65,7 @@ impl Watch {
         self.shared.changed.notify_one();
     }
 
-    /// Whether one of them has changed since the last call.
+    /// True where one of them has changed since the last call.
     pub fn has_changed(&self) -> bool {
         self.changes.try_iter().count() > 0
     }

@@ -20,7 +20,7 @@ pub struct Worker<J, A> {
     thread: Option<JoinHandle<()>>,
 }
 
-/// Where requests are left.
+/// Place where requests are left.
 #[derive(Debug)]
 struct Shared<J> {
     tray: Mutex<Tray<J>>,
@@ -59,14 +59,14 @@ impl<J: Send + 'static, A: Send + 'static> Worker<J, A> {
 }
 
 impl<J, A> Worker<J, A> {
-    /// What has been done since the last call, if anything; the last of several.
+    /// Result since the last call, if there is one; the last of several.
     pub fn answer(&mut self) -> Option<A> {
         let (number, answer) = self.answers.try_iter().last()?;
         self.answered = number;
         Some(answer)
     }
 
-    /// Whether something that was asked for has not been answered.
+    /// True while something that was asked for has not been answered.
     pub fn is_busy(&self) -> bool {
         self.answered < self.asked
     }

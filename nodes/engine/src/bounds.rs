@@ -90,7 +90,7 @@ mod tests {
         -f32::MIN_POSITIVE / 8.0,
     ];
 
-    /// What both give of two numbers, as bits, by vectors of every width.
+    /// Results of both on two numbers, as bits, by vectors of every width.
     fn by_vectors(level: fearless_simd::Level, a: f32, b: f32) -> Vec<[u32; 2]> {
         dispatch!(level, simd => {
             let (x, y, z) = (f32x4::splat(simd, a), f32x8::splat(simd, a), f32x16::splat(simd, a));

@@ -1,4 +1,4 @@
-//! Which instruction sets pixel code is compiled for.
+//! Instruction sets that pixel code is compiled for.
 //!
 //! On x86-64: SSE2, which every machine has, AVX2 with FMA and, in builds without debug assertions,
 //! AVX-512 as of Ice Lake. Each makes builds half as long again, so that builds for development do with two.

@@ -2,7 +2,7 @@
 
 use thiserror::Error;
 
-/// What can go wrong while a plan is described, lowered or executed.
+/// Error while a plan is described, lowered or executed.
 #[derive(Debug, Error)]
 #[non_exhaustive]
 pub enum Error {

@@ -100,7 +100,7 @@ pub struct Image {
     data: Vec<f32>,
 }
 
-/// What the CPU executor does with the memory of images.
+/// Access of the CPU executor to the memory of images.
 #[cfg(feature = "cpu")]
 impl Image {
     /// An image without pixels, for places that must hold one.
@@ -271,7 +271,7 @@ pub fn check_size(width: u32, height: u32) -> Result<()> {
     Ok(())
 }
 
-/// What a kernel sees of an input: the values held, where they lie in the picture, and how large
+/// Input as a kernel sees it: the values held, where they lie in the picture, and how large
 /// the picture is. Positions are absolute and clamp to the picture's edge.
 #[derive(Clone, Copy, Debug)]
 pub struct View<'a> {
@@ -326,7 +326,7 @@ impl<'a> View<'a> {
         self.window.width() as usize * self.channels as usize
     }
 
-    /// Where pixel (x, y) begins in `data`; the position is clamped to the picture first and must
+    /// Index at which pixel (x, y) begins in `data`; the position is clamped to the picture first and must
     /// then lie in the window.
     #[inline(always)]
     pub fn offset(&self, x: i32, y: i32) -> usize {

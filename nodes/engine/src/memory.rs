@@ -11,7 +11,7 @@ use std::panic::{AssertUnwindSafe, catch_unwind};
 /// some. An allocator that keeps a reserve for them refuses this much when it has none.
 const SPARE: usize = 4 << 20;
 
-/// What unwinds when a kernel is refused so many bytes.
+/// Payload that unwinds when a kernel is refused so many bytes.
 #[cfg_attr(not(feature = "cpu"), expect(dead_code, reason = "the CPU executor alone reads it"))]
 struct Refused(usize);
 

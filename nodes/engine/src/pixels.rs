@@ -6,7 +6,7 @@
 
 use half::f16;
 
-/// How one sample is stored, in the machine's byte order.
+/// Type in which one sample is stored, in the machine's byte order.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Sample {
     /// 8-bit unsigned, 255 = 1.
@@ -74,7 +74,7 @@ pub fn read_row(bytes: &[u8], sample: Sample, channels: usize, row: &mut [f32], 
     replaced
 }
 
-/// Whether samples are values as they are, pixel by pixel.
+/// True where samples are values as they are, pixel by pixel.
 fn is_copy(sample: Sample, channels: usize, values: usize) -> bool {
     sample == Sample::F32 && channels == values && channels != 2
 }

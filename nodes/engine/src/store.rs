@@ -2,7 +2,8 @@
 
 use std::collections::HashMap;
 
-/// What an image is known by: the passes that made it ([`Plan::keys`](crate::Plan::keys)) and the number of its frame.
+/// Name that an image is known by: the passes that made it ([`Plan::keys`](crate::Plan::keys)) and the number of its
+/// frame.
 pub type Name = (u128, i64);
 
 /// Images by name, of whatever kind an executor has. Those that were used least recently give way first.
@@ -27,7 +28,7 @@ impl<T> FrameStore<T> {
         Self { images: HashMap::new(), bytes: 0, most, clock: 0 }
     }
 
-    /// Whether there is an image of this name.
+    /// True where there is an image of this name.
     pub fn has(&self, name: Name) -> bool {
         self.images.contains_key(&name)
     }
@@ -76,7 +77,7 @@ impl<T> FrameStore<T> {
         Some(stored.image)
     }
 
-    /// Whether there is any image of a frame.
+    /// True where there is any image of a frame.
     pub fn knows(&self, frame: i64) -> bool {
         self.images.keys().any(|(_, of)| *of == frame)
     }

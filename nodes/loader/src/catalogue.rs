@@ -21,15 +21,15 @@ pub struct Node {
     pub id: &'static str,
     /// For people.
     pub label: &'static str,
-    /// What it belongs to, such as `smoothing`.
+    /// Group that it belongs to, such as `smoothing`.
     pub group: &'static str,
     /// One paragraph.
     pub doc: &'static str,
     /// Sections of the thesis.
     pub section: &'static str,
-    /// What it reads.
+    /// Ports that it reads.
     pub inputs: Vec<Port>,
-    /// What it gives.
+    /// Port that it gives.
     pub output: Port,
     /// Its parameters.
     pub params: Vec<Param>,
@@ -40,15 +40,15 @@ pub struct Node {
 pub struct Port {
     /// Stable name.
     pub id: &'static str,
-    /// What it takes or gives.
+    /// Kind of image that it takes or gives.
     pub kind: Kind,
-    /// Whether the node works without it.
+    /// True where the node works without it.
     pub optional: bool,
     /// One sentence.
     pub doc: &'static str,
 }
 
-/// What flows through a port.
+/// Kind of image that flows through a port.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize)]
 #[serde(rename_all = "snake_case")]
 pub enum Kind {
@@ -66,7 +66,7 @@ pub enum Kind {
     ObjectId,
     /// A painted direction and its strength.
     Flow,
-    /// Where things are in a neighbouring frame.
+    /// Places of things in a neighbouring frame.
     Motion,
     /// Points in space.
     Position,
@@ -90,7 +90,7 @@ impl Kind {
         }
     }
 
-    /// Whether it can be written to a picture file.
+    /// True where it can be written to a picture file.
     pub const fn is_picture(self) -> bool {
         matches!(self, Self::Color | Self::Scalar)
     }
@@ -125,7 +125,7 @@ pub struct Param {
     pub group: &'static str,
     /// `px` (scaled with the picture), `%`, `deg`, or empty.
     pub unit: &'static str,
-    /// Whether a change may change the passes of a plan.
+    /// True where a change may change the passes of a plan.
     pub structural: bool,
     /// Type, default and ranges.
     #[serde(flatten)]

@@ -12,9 +12,9 @@ pub enum Error {
     /// The library cannot be loaded.
     #[error("{problem}; {fix}")]
     Load {
-        /// What is wrong with it, and where it was looked for.
+        /// The problem with it, and where it was looked for.
         problem: String,
-        /// How to put it right.
+        /// Advice to put it right.
         fix: &'static str,
     },
     /// A function of the library failed.

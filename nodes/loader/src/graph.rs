@@ -132,7 +132,7 @@ impl Graph {
         Ok(name)
     }
 
-    /// What a node says about itself.
+    /// Declaration of a node.
     ///
     /// # Errors
     /// [`Error`] when there is no such index.
@@ -167,7 +167,7 @@ impl Graph {
         self.check(status)
     }
 
-    /// What leaves the graph.
+    /// Kind of image that leaves the graph.
     ///
     /// # Errors
     /// [`Error`] when it has no output.

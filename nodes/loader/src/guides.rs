@@ -3,7 +3,7 @@
 use std::ffi::CStr;
 
 use super::catalogue::Kind;
-use super::error::{Result, check};
+use super::error::{Error, Result, check};
 use super::library::{Library, status_name};
 use super::text;
 use isophote_abi::IsophoteGuidesApi;
@@ -60,7 +60,7 @@ impl Library {
         let mut bits = 0;
         for name in names.into_iter().filter(|name| *name != "color") {
             let found = guides.iter().find(|guide| guide.id == name);
-            bits |= found.map(|guide| guide.bit).ok_or_else(|| crate::Error::Call {
+            bits |= found.map(|guide| guide.bit).ok_or_else(|| Error::Call {
                 status: isophote_abi::ISOPHOTE_ERROR_UNKNOWN,
                 message: format!(
                     "'{name}' is no guide; the guides are {}",

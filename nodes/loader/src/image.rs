@@ -116,13 +116,13 @@ fn row_stride(length: usize, (width, height): (u32, u32), channels: u32, sample:
 
 /// Pixels of a host that the library can read.
 pub trait AsImage {
-    /// Where they are.
+    /// Image in which they are.
     fn image(&self) -> Image<'_>;
 }
 
 /// Pixels of a host that the library can write.
 pub trait AsTarget {
-    /// Where they are.
+    /// Image in which they are.
     fn target(&mut self) -> Target<'_>;
 }
 

@@ -1,4 +1,4 @@
-//! Where the library is, and whether it is what it should be.
+//! Search for the library, and checks that it is what it should be.
 
 use std::env;
 use std::ffi::OsStr;
@@ -12,7 +12,7 @@ use isophote_abi::{ISOPHOTE_ABI_VERSION, IsophoteApi, IsophoteEntry};
 /// Environment variable that names the library's file.
 const VARIABLE: &str = "ISOPHOTE_LIBRARY";
 
-/// How to fix most of what can go wrong.
+/// Advice to fix most of what can go wrong.
 const FIX: &str = "copy the archive's folder lib beside its folder bin (in the sources: cargo build --workspace), or set \
                    ISOPHOTE_LIBRARY to the library's file";
 
@@ -71,7 +71,7 @@ fn load(name: &OsStr) -> std::result::Result<libloading::Library, libloading::Er
     unsafe { libloading::Library::new(name) }
 }
 
-/// Whether the file is a 64-bit ELF library that ends before its table of sections, which comes last. The
+/// True where the file is a 64-bit ELF library that ends before its table of sections, which comes last. The
 /// system's loader does not notice, and the process is killed at the first touch of what is missing.
 fn is_cut(path: &Path) -> bool {
     let mut header = [0u8; 64];

@@ -19,7 +19,7 @@ pub struct Plan {
     one_thread: PhantomData<Cell<()>>,
 }
 
-/// What an update of a plan came to.
+/// Change that an update of a plan came to.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Change {
     /// Only uniform bytes.
@@ -28,7 +28,7 @@ pub enum Change {
     Structure,
 }
 
-/// What a texture of a plan is for.
+/// Role of a texture in a plan.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Role {
     /// The host binds its own texture.
@@ -57,7 +57,7 @@ pub enum Format {
 pub struct Texture<'a> {
     /// Name of an input or output; empty for transients.
     pub name: &'a str,
-    /// What it is for.
+    /// Role of the texture.
     pub role: Role,
     /// Format of its texels. An input may have any format of as many channels that is read as floats.
     pub format: Format,
@@ -232,7 +232,7 @@ unsafe fn texture<'a>(texture: &IsophoteTexture) -> Result<Texture<'a>> {
 }
 
 /// # Safety
-/// What the pass points to has the sizes that it says and stays for `'a`.
+/// The memory that the pass points to has the sizes that it says and stays for `'a`.
 unsafe fn pass<'a>(pass: &IsophotePass) -> Pass<'a> {
     // SAFETY: as the caller promised.
     unsafe {

@@ -79,6 +79,17 @@ pub struct Look {
 }
 
 impl Lengths {
+    /// All of them.
+    pub const ALL: [Self; 2] = [Self::Relative, Self::Pixels];
+
+    /// The word for it in presets.
+    pub const fn id(self) -> &'static str {
+        match self {
+            Self::Relative => "relative",
+            Self::Pixels => "pixels",
+        }
+    }
+
     /// The reference height of a request; 0: lengths are pixels of the picture.
     pub const fn reference_height(self) -> u32 {
         match self {

@@ -21,7 +21,7 @@ pub struct Input<'a> {
     pub pixels: &'a dyn AsImage,
 }
 
-/// How the work is done and watched.
+/// Means by which the work is done and watched.
 #[derive(Default)]
 pub struct Control<'a> {
     /// Threads of the library; 0 for one per core.
@@ -37,7 +37,7 @@ pub struct Control<'a> {
 /// Pixels of a picture: columns and rows from the first, which is inside, to the last, which is outside.
 pub type Part = [[i32; 2]; 2];
 
-/// What one pass took on the CPU.
+/// Time that one pass took on the CPU.
 #[derive(Clone, Debug)]
 pub struct PassTime {
     /// The kernel.
@@ -52,7 +52,7 @@ pub struct PassTime {
     pub pixels: u64,
 }
 
-/// What became of the work.
+/// Report on the work.
 #[derive(Clone, Copy, Debug)]
 pub struct Report {
     /// Samples that were NaN or infinite and were replaced.

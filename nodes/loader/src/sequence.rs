@@ -20,7 +20,7 @@ use isophote_abi::{
 /// Name of the extension.
 const EXTENSION: &CStr = c"isophote.sequence/1";
 
-/// What the library keeps of a sequence. One thread at a time may use it.
+/// State that the library keeps of a sequence. One thread at a time may use it.
 #[derive(Debug)]
 pub struct Sequence {
     table: &'static IsophoteSequenceApi,

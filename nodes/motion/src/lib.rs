@@ -1,5 +1,5 @@
-//! What the motion vectors of renderers and compositors mean, for whoever reads them: from files, or as the images of a
-//! host.
+//! Meaning of the motion vectors of renderers and compositors, for whoever reads them: from files, or as the images of
+//! a host.
 //!
 //! The library wants pixels, x to the right and y down, from where a thing is to where it is in the other frame. Passes
 //! hold what their renderer's authors found natural. A pass that leads one way only stands for the other too, reversed:
@@ -9,7 +9,7 @@
 
 use std::str::FromStr;
 
-/// Where vectors lead.
+/// Direction in which vectors lead.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Way {
     /// To the frame before.
@@ -28,7 +28,7 @@ impl Way {
     }
 }
 
-/// What motion vectors mean.
+/// Meaning of motion vectors.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Convention {
     /// Stable name, for scripts and the command line.
@@ -40,28 +40,28 @@ pub struct Convention {
     /// To the frame after.
     forward: Field,
     units: Units,
-    /// Whether y counts upwards.
+    /// True where y counts upwards.
     is_up: bool,
     /// The number that stands for no motion.
     centre: f32,
-    /// What one unit is stored as, the other way round: vectors are multiplied by it.
+    /// Number that one unit is stored as, the other way round: vectors are multiplied by it.
     scale: f32,
 }
 
-/// Where the vectors of one way are.
+/// Place of the vectors of one way.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Field {
     /// Last words of the layer's name in a file, in lower case.
     pub words: &'static [&'static str],
     /// Components of the layer, the first pair that it has.
     pub components: &'static [[&'static str; 2]],
-    /// Where the pair is among the channels of an image of that layer alone.
+    /// Place of the pair among the channels of an image of that layer alone.
     pub channels: [usize; 2],
     /// -1 where the vectors lead the other way.
     sign: f32,
 }
 
-/// What a vector of length 1 is.
+/// Unit of the length of vectors.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 enum Units {
     Pixels,
@@ -142,7 +142,7 @@ impl Convention {
         },
     ];
 
-    /// Where the vectors of a way are.
+    /// Place of the vectors of a way.
     pub const fn field(&self, way: Way) -> &Field {
         match way {
             Way::Backward => &self.backward,
@@ -150,7 +150,7 @@ impl Convention {
         }
     }
 
-    /// How the vectors of a way are read.
+    /// Rule by which the vectors of a way are read.
     pub const fn rule(self, way: Way) -> Rule {
         Rule { sign: self.field(way).sign, convention: self }
     }
@@ -177,7 +177,7 @@ impl Convention {
     }
 }
 
-/// How to write a convention.
+/// Form in which a convention is written.
 const FIX: &str = "write isophote, arnold, blender, renderman, vray or unreal, and with commas what differs: \
                    units=pixels|normalised|ndc, y=up|down, direction=backward|forward, sign=1|-1, centre=NUMBER, scale=NUMBER";
 
@@ -219,7 +219,7 @@ impl FromStr for Convention {
     }
 }
 
-/// How a vector is turned into the library's.
+/// Rule by which a vector is turned into the library's.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Rule {
     convention: Convention,

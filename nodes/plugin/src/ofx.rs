@@ -40,7 +40,7 @@ use std::sync::{Arc, LazyLock, Mutex};
 /// mean, so that there must be as many functions; a test fails when they run out.
 const MOST: usize = 64;
 
-/// What is known of the host of one effect.
+/// State that is known of the host of one effect.
 struct Slot {
     host: *mut OfxHost,
     fetched: Option<Arc<Host>>,

@@ -17,7 +17,7 @@ import isophote
 from isophote.style import GUIDES
 
 TABLE = ROOT / "tests/data/presets.json"
-ORDER = ROOT / "nodes/library/looks/order.rs"
+ORDER = ROOT / "nodes/library/looks/order.txt"
 
 
 def by_host(host: Path, style: str, picture: np.ndarray, folder: Path, frame: int) -> np.ndarray:

@@ -1,4 +1,4 @@
-//! What a page is told: JSON, and the bytes that it points into.
+//! Result that a page is told: JSON, and the bytes that it points into.
 
 use isophote::engine::Class;
 use isophote::engine::program::{Dispatch, Program, Role, Shader, Texture};
@@ -7,7 +7,7 @@ use serde_json::{Value, json};
 /// An answer.
 #[derive(Debug, Default)]
 pub struct Answer {
-    /// What is told.
+    /// Text that is told.
     pub json: Value,
     /// Uniform blocks; `json` says where each begins and how long it is.
     pub bytes: Vec<u8>,

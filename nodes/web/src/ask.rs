@@ -1,4 +1,4 @@
-//! What a page asks.
+//! Request of a page.
 
 use isophote::engine::Rect;
 use isophote::engine::program::Precision;
@@ -84,7 +84,7 @@ pub struct Picture {
     /// Number of the frame.
     #[serde(default)]
     pub frame: i64,
-    /// Where the picture stands in the canonical one, pixels of the full size.
+    /// Position of the picture in the canonical one, pixels of the full size.
     #[serde(default)]
     origin: [f64; 2],
     /// Size over full size.
@@ -124,7 +124,7 @@ enum Accuracy {
 }
 
 impl Picture {
-    /// How precisely it is computed.
+    /// Precision in which it is computed.
     pub fn precision(&self) -> Precision {
         match self.precision {
             Accuracy::Exact => Precision::Exact,
@@ -133,7 +133,7 @@ impl Picture {
         }
     }
 
-    /// What the library is asked for, where lengths are those of pictures of so many lines.
+    /// Request to the library, where lengths are those of pictures of so many lines.
     ///
     /// # Errors
     /// [`Error::Unknown`] for a guide that is none.

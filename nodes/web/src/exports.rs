@@ -41,7 +41,7 @@ extern "C" fn isophote_answer() -> usize {
     })
 }
 
-/// Where the last answer is.
+/// Address of the last answer.
 // SAFETY: no other symbol of this module has the name.
 #[unsafe(no_mangle)]
 extern "C" fn isophote_answer_at() -> *const u8 {

@@ -229,7 +229,7 @@ test("types name every guide", async () => {
 test("all looks that ship are accepted", async () => {
   const count = await page.evaluate(() => Object.values(window.looks).map((look) => window.iso.graph(look)).length);
   assert.ok(count > 40, `${count} looks`);
-  const file = new URL("../../../nodes/library/looks/order.rs", import.meta.url);
+  const file = new URL("../../../nodes/library/looks/order.txt", import.meta.url);
   const [, list] = (await readFile(file, "utf8")).match(/\{([^}]*)\}/);
   const order = list.trim().split(/\s+/);
   assert.deepEqual(await page.evaluate(() => Object.keys(window.looks)), order);

@@ -4,7 +4,7 @@ use std::collections::{BTreeMap, BTreeSet};
 use std::fmt::Write as _;
 use std::path::{Path, PathBuf};
 
-/// What files import: from the importing file to the other, and the line and the words of each import.
+/// Imports of files: from the importing file to the other, and the line and the words of each import.
 #[derive(Debug, Default)]
 pub struct Imports(BTreeMap<PathBuf, BTreeMap<PathBuf, BTreeSet<(usize, String)>>>);
 

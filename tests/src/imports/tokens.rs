@@ -3,7 +3,7 @@
 /// A word, a sign or a string, and the line that it is on.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Token {
-    /// What it is.
+    /// Kind of the token.
     pub kind: Kind,
     /// Counted from 1.
     pub line: usize,
@@ -14,7 +14,7 @@ pub struct Token {
 pub enum Kind {
     /// An identifier, a keyword or a number.
     Word(String),
-    /// What stands between the quotes.
+    /// Text between the quotes.
     Text(String),
     /// `::`.
     Path,

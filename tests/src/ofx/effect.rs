@@ -1,4 +1,4 @@
-//! How tests drive a plugin's effects: described, instantiated, rendered.
+//! Driver of a plugin's effects in tests: described, instantiated, rendered.
 
 use super::handles::handle_of;
 use super::host::Host;
@@ -19,7 +19,7 @@ pub struct Described<'h> {
     pub host: &'h Host,
     /// The plugin.
     pub plugin: Plugin,
-    /// What it said of itself.
+    /// Descriptor that it filled in.
     pub descriptor: Box<Effect>,
 }
 
@@ -53,7 +53,7 @@ impl<'h> Described<'h> {
         Ok(Self { host, plugin, descriptor })
     }
 
-    /// What the plugin says of itself in a context.
+    /// Description that the plugin gives of the effect in a context.
     ///
     /// # Panics
     /// When it does not return OK.
@@ -140,7 +140,7 @@ impl Drop for Instance<'_> {
     }
 }
 
-/// What a host wants rendered.
+/// Render that a host wants.
 #[derive(Clone, Copy, Debug)]
 pub struct Wanted {
     /// Pixels, y up.
@@ -189,7 +189,7 @@ impl Instance<'_> {
         self.with(name, |param| *lock(&param.keys) = keys);
     }
 
-    /// Whether the control of a parameter can be used, and is not grey.
+    /// True where the control of a parameter can be used, and is not grey.
     ///
     /// # Panics
     /// When there is none of this name.
@@ -227,7 +227,7 @@ impl Instance<'_> {
         clip.set.put(property, vec![value.into()]);
     }
 
-    /// Whether there is a parameter of this name.
+    /// True where there is a parameter of this name.
     pub fn has(&self, name: &str) -> bool {
         lock(&self.effect.params).iter().any(|p| p.name.to_string_lossy() == name)
     }
@@ -378,7 +378,7 @@ impl Instance<'_> {
         }
     }
 
-    /// Whether the effect says that it changes nothing.
+    /// True where the effect says that it changes nothing.
     ///
     /// # Panics
     /// When it names another clip than the source.

@@ -10,7 +10,7 @@ use std::sync::Arc;
 /// ([`Lent`](super::plugin::Lent)), and may have several hosts one after the other.
 #[derive(Debug)]
 pub struct Host {
-    /// What its handles lead to.
+    /// State that its handles lead to.
     pub inner: Arc<Inner>,
     properties: Box<Set>,
     raw: Box<OfxHost>,
@@ -42,7 +42,7 @@ impl Host {
         Self { inner, properties, raw, _suites: suites }
     }
 
-    /// What plugins are given.
+    /// Pointer that plugins are given.
     pub fn raw(&self) -> *mut OfxHost {
         (&raw const *self.raw).cast_mut()
     }

@@ -33,9 +33,9 @@ pub struct Clip {
     pub name: CString,
     /// Its properties.
     pub set: Box<Set>,
-    /// What it shows at all times, unless it has a film.
+    /// Picture that it shows at all times, unless it has a film.
     pub(super) picture: Mutex<Option<Picture>>,
-    /// What it shows, by time.
+    /// Pictures that it shows, by time.
     pub(super) film: Mutex<Vec<(f64, Picture)>>,
 }
 
@@ -74,7 +74,7 @@ pub struct Effect {
     pub(super) magic: u64,
     /// The host.
     pub host: Arc<Inner>,
-    /// Whether it may be rendered.
+    /// True where it may be rendered.
     pub is_instance: bool,
     /// Its properties.
     pub set: Box<Set>,
@@ -102,7 +102,7 @@ impl Effect {
         effect
     }
 
-    /// What plugins are given.
+    /// Handle that plugins are given.
     pub fn handle(&self) -> Handle {
         handle_of(self)
     }

@@ -5,16 +5,16 @@ use isophote_abi::openfx::*;
 use isophote_engine::pixels::Sample;
 use std::ffi::CStr;
 
-/// How a picture lies in memory and what it says of itself.
+/// Layout of a picture in memory, and what it says of itself.
 #[derive(Clone, Copy, Debug)]
 pub struct Layout {
     /// Kind of samples.
     pub depth: &'static CStr,
     /// Samples of a pixel.
     pub components: &'static CStr,
-    /// How colour stands to alpha; `None` for a host that does not say.
+    /// Relation of colour to alpha; `None` for a host that does not say.
     pub alpha: Option<&'static CStr>,
-    /// Whether the top row comes first in memory.
+    /// True where the top row comes first in memory.
     pub negative: bool,
     /// Bytes between rows.
     pub padding: usize,
@@ -30,9 +30,9 @@ pub struct Layout {
     pub claimed_scale: f64,
     /// Fields that it holds.
     pub field: &'static CStr,
-    /// Whether blue comes first.
+    /// True where blue comes first.
     pub blue_first: bool,
-    /// What its clip's region of definition has for bounds, where it has none.
+    /// Bounds of its clip's region of definition, where it has none.
     pub endless: Option<f64>,
 }
 
@@ -89,9 +89,9 @@ const UNTOUCHED: u8 = 0xa5;
 /// A picture in memory.
 #[derive(Clone, Debug)]
 pub struct Picture {
-    /// How it lies there.
+    /// Layout of the pixels.
     pub layout: Layout,
-    /// What it holds, y up.
+    /// Bounds of the pixels, y up.
     pub bounds: [i32; 4],
     /// The whole picture of which it may be a part, y up.
     pub whole: [i32; 4],
@@ -184,7 +184,7 @@ impl Picture {
         self.width() as usize * self.layout.pixel() + self.layout.padding
     }
 
-    /// Where row `y` begins.
+    /// Offset at which row `y` begins.
     fn row(&self, y: i32) -> usize {
         let up = (y - self.bounds[1]) as usize;
         let row = if self.layout.negative { self.height() as usize - 1 - up } else { up };

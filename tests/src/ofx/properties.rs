@@ -7,7 +7,7 @@ use isophote_abi::openfx::*;
 use std::ffi::{CStr, CString, c_char, c_int, c_void};
 use std::sync::{Arc, Mutex, MutexGuard};
 
-/// What a property holds.
+/// Value of a property.
 #[derive(Clone, Debug, PartialEq)]
 pub enum Value {
     /// A whole number.
@@ -52,7 +52,7 @@ pub struct Set {
     values: Mutex<Named<Vec<Value>>>,
     /// The texts that were given out.
     lent: Mutex<Vec<CString>>,
-    /// What the owner of the set is, for functions that are given the set alone.
+    /// Address of the set's owner, for functions that are given the set alone.
     pub owner: usize,
 }
 
@@ -74,7 +74,7 @@ impl Set {
         })
     }
 
-    /// What plugins are given.
+    /// Handle that plugins are given.
     pub fn handle(&self) -> Handle {
         handle_of(self)
     }

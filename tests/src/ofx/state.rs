@@ -1,4 +1,4 @@
-//! What all handles of a host lead back to: how it behaves, and what it noted of its plugins.
+//! State that all handles of a host lead back to: its behaviour, and what it noted of its plugins.
 
 use std::cell::{Cell, RefCell};
 use std::ffi::{CStr, c_int};
@@ -11,34 +11,34 @@ pub(super) fn lock<T>(mutex: &Mutex<T>) -> MutexGuard<'_, T> {
     mutex.lock().unwrap_or_else(PoisonError::into_inner)
 }
 
-/// How a host behaves.
+/// Behaviour of a host.
 #[derive(Clone, Debug)]
 pub struct Behaviour {
     /// Its name.
     pub name: &'static CStr,
     /// Properties that it does not know: setting and getting them is answered with "unknown".
     pub refused: Vec<&'static CStr>,
-    /// Whether it refuses every property that the standard does not require of it.
+    /// True where it refuses every property that the standard does not require of it.
     pub refuses_optional: bool,
-    /// Whether images may be parts of pictures.
+    /// True where images may be parts of pictures.
     pub tiles: bool,
-    /// Whether clips give the images of any time.
+    /// True where clips give the images of any time.
     pub temporal: bool,
-    /// Whether an image that there is not is a success without an image.
+    /// True where an image that there is not is a success without an image.
     pub null_images: bool,
-    /// Whether it has half floats.
+    /// True where it has half floats.
     pub half: bool,
     /// Processors of its multi-thread suite; 0 for a host without the suite.
     pub processors: u32,
-    /// Whether its multi-thread suite returns while its threads still have to begin.
+    /// True where its multi-thread suite returns while its threads still have to begin.
     pub returns_early: bool,
-    /// Whether the multi-thread suite and the message suite consist of null functions.
+    /// True where the multi-thread suite and the message suite consist of null functions.
     pub null_functions: bool,
-    /// Whether a text that was asked for is destroyed at the next call.
+    /// True where a text that was asked for is destroyed at the next call.
     pub strings_die: bool,
-    /// Whether it calls clips without a picture connected.
+    /// True where it calls clips without a picture connected.
     pub all_connected: bool,
-    /// Whether properties of clips and images are missing as far as a plugin can do without.
+    /// True where properties of clips and images are missing as far as a plugin can do without.
     pub bare: bool,
     /// After so many questions it wants to stop.
     pub abort_after: Option<u32>,
@@ -78,20 +78,20 @@ pub(super) struct Suite {
     pub name: &'static CStr,
     /// Its version.
     pub version: c_int,
-    /// Where its functions are, for the life of the host.
+    /// Address of its functions, for the life of the host.
     pub address: usize,
 }
 
-/// What all handles of a host lead back to.
+/// State that all handles of a host lead back to.
 #[derive(Debug)]
 pub struct Inner {
-    /// How it behaves.
+    /// Behaviour of the host.
     pub behaviour: Behaviour,
     /// Images that were lent and not given back.
     pub lent: AtomicI32,
     /// The most that were lent at once.
     pub most_lent: AtomicI32,
-    /// How often it was asked whether to stop.
+    /// Number of times that it was asked whether to stop.
     pub asked: AtomicU32,
     /// Runs of its multi-thread suite.
     pub runs: AtomicU32,
@@ -99,12 +99,12 @@ pub struct Inner {
     pub(super) late: Mutex<Vec<JoinHandle<()>>>,
     /// Messages that it shows.
     pub messages: Mutex<Vec<String>>,
-    /// What its plugins did against the standard.
+    /// Faults of its plugins against the standard.
     faults: Mutex<Vec<String>>,
     pub(super) suites: OnceLock<Vec<Suite>>,
 }
 
-/// What was done against the standard where nothing says of which host.
+/// Faults against the standard where nothing says of which host.
 static NOBODYS: Mutex<Vec<String>> = Mutex::new(Vec::new());
 
 thread_local! {
@@ -154,7 +154,7 @@ impl Inner {
         lock(&self.faults).push(what.into());
     }
 
-    /// What plugins did against the standard so far.
+    /// Faults of plugins against the standard so far.
     pub(super) fn faults(&self) -> Vec<String> {
         [lock(&self.faults).clone(), lock(&NOBODYS).clone()].concat()
     }

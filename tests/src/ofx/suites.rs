@@ -116,7 +116,7 @@ fn shim() -> &'static Shim {
     })
 }
 
-/// What a handle leads to, if it begins as things of its type do.
+/// Thing that a handle leads to, if it begins as things of its type do.
 macro_rules! thing {
     ($handle:expr, $type:ty, $what:literal) => {{
         // SAFETY: handles lead to things of this host that live while plugins may use them, or to null; a

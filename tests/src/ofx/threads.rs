@@ -28,7 +28,7 @@ pub(super) const NONE: OfxMultiThreadSuiteV1 = OfxMultiThreadSuiteV1 {
     mutexTryLock: None,
 };
 
-/// How long threads that are left running take to begin.
+/// Time that threads that are left running take to begin.
 const LATE: Duration = Duration::from_millis(2);
 
 thread_local! {

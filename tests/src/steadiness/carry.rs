@@ -10,12 +10,12 @@ pub const DEPTH_AGREES: f32 = 0.1;
 /// Weight below which a pixel has no part in a sample: motion that is whole but for rounding needs one pixel only.
 const NO_PART: f32 = 1e-3;
 
-/// What [`carried`] gives for a pixel.
+/// Result of [`carried`] for a pixel.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Carried {
     /// Red, green and blue of the frame before.
     pub color: [f32; 3],
-    /// Whether they belong to the same point of the same surface.
+    /// True where they belong to the same point of the same surface.
     pub counts: bool,
 }
 
@@ -83,7 +83,7 @@ pub fn carried(shot: &Shot, frame: usize, before: &Image) -> Vec<Carried> {
     out
 }
 
-/// Whether all pixels of a sample of the frame before show the surface that is at (x, y) now.
+/// True where all pixels of a sample of the frame before show the surface that is at (x, y) now.
 fn is_same(taps: &Taps, now: &Frame, then: &Frame, x: i32, y: i32) -> bool {
     let (w, h) = (now.color.width() as i32, now.color.height() as i32);
     let (id, depth) = (now.object_id.pixel(x, y)[0], now.depth.pixel(x, y)[0]);

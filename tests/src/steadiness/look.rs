@@ -10,10 +10,10 @@ use std::path::PathBuf;
 /// Environment variable that names the folder for [`show`].
 pub const FOLDER: &str = "ISOPHOTE_PICTURES";
 
-/// How much differences are amplified.
+/// Factor by which differences are amplified.
 const AMPLIFIED: f32 = 4.0;
 
-/// What does not count, in differences: a dark blue that no small difference has.
+/// Colour of what does not count, in differences: a dark blue that no small difference has.
 const MASKED: [f32; 4] = [0.0, 0.0, 0.35, 1.0];
 
 /// Writes what a filter made of a shot, where [`FOLDER`] names a folder: `SHOT-NAME-00.png` is a frame,

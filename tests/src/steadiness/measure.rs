@@ -5,7 +5,7 @@ use super::look::show;
 use super::shot::Shot;
 use isophote_engine::Image;
 
-/// How steady the frames of a filter are; formulas in the description of this module's parent.
+/// Steadiness of the frames of a filter; formulas in the description of this module's parent.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Steadiness {
     /// Warping error.
@@ -98,7 +98,7 @@ impl std::fmt::Debug for Entry<'_> {
     }
 }
 
-/// What [`table`] found of an entry.
+/// Result of [`table`] for an entry.
 #[derive(Clone, Debug)]
 pub struct Row {
     /// The entry's name.

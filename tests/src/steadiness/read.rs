@@ -8,7 +8,7 @@ use std::path::Path;
 /// Reads a frame.
 ///
 /// # Errors
-/// What is wrong with the file, with its path.
+/// The problem with the file, with its path.
 pub fn frame(path: &Path) -> Result<Frame, String> {
     let fault = |what: String| format!("{}: {what}", path.display());
     let file = read_first_flat_layer_from_file(path).map_err(|e| fault(e.to_string()))?;

@@ -27,7 +27,7 @@ pub struct Shot {
     pub name: String,
     /// The frames; the motion of the first leads nowhere.
     pub frames: Vec<Frame>,
-    /// Whether nothing moves, so that the motion is right where there is no object, too.
+    /// True where nothing moves, so that the motion is right where there is no object, too.
     pub is_static: bool,
 }
 

@@ -1,4 +1,4 @@
-//! What hosts may hand in wrongly: each is a status with words.
+//! Arguments that hosts may hand in wrongly: each is a status with words.
 
 use super::faults;
 use super::host::Host;

@@ -58,7 +58,7 @@ pub fn loader(real: vk::PFN_vkGetInstanceProcAddr) -> IsophoteVulkanLoader {
     Some(instance_function)
 }
 
-/// What the next object comes to.
+/// Result that the next object comes to.
 fn next() -> Option<vk::Result> {
     match MAKING_FAILS_AFTER.get() {
         Some(0) => {

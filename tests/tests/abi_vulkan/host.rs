@@ -11,7 +11,7 @@ use std::sync::{Mutex, PoisonError};
 
 const LAYER: &CStr = c"VK_LAYER_KHRONOS_validation";
 
-/// What devices before Vulkan 1.2 are created with.
+/// Extensions that devices before Vulkan 1.2 are created with.
 struct Extensions([*const c_char; 1]);
 
 // SAFETY: the names are constant.
@@ -61,7 +61,7 @@ unsafe extern "system" fn hear(
     vk::FALSE
 }
 
-/// Whether a device is required and not only welcome.
+/// True where a device is required and not only welcome.
 fn is_required() -> bool {
     std::env::var_os("CI").is_some() || std::env::var("ISOPHOTE_REQUIRE_GPU").is_ok_and(|v| v == "1")
 }
@@ -173,7 +173,8 @@ impl Host {
         }
     }
 
-    /// What the library is told of the device. Its functions go by way of [`faults`], so that this thread alone may use it.
+    /// Description of the device for the library. Its functions go by way of [`faults`], so that this thread alone
+    /// may use it.
     pub fn shown(&self) -> IsophoteVulkanHost {
         let real = self.entry.static_fn().get_instance_proc_addr;
         IsophoteVulkanHost { get_instance_proc_addr: faults::loader(real), ..self.shown_to_all() }

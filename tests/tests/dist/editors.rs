@@ -173,7 +173,7 @@ fn between<'a>(text: &'a str, before: &str, after: &str) -> Option<&'a str> {
     Some(text.split_once(before)?.1.split_once(after)?.0)
 }
 
-/// Whether brackets and quotes of QML close in order.
+/// Checks that brackets and quotes of QML close in order.
 fn balanced(text: &str) -> Result<(), String> {
     let mut open = Vec::new();
     let mut letters = text.chars();

@@ -1,12 +1,12 @@
 //! Allocations that are alive in this process, those of libraries that it loads among them: the functions of
 //! the C library, counted. Elsewhere than on Linux with the GNU library nothing is counted.
 
-/// How many there are.
+/// Number of allocations that are alive.
 pub fn alive() -> i64 {
     counted::ALIVE.load(std::sync::atomic::Ordering::SeqCst)
 }
 
-/// Whether they are counted.
+/// True where they are counted.
 pub fn are_counted() -> bool {
     alive() > 0
 }

@@ -11,7 +11,7 @@ use isophote_tests::ofx::plugin::Binary;
 use isophote_tests::ofx::state::Behaviour;
 use std::ffi::CStr;
 
-/// What must be reached, in decibels.
+/// Least agreement, in decibels.
 const LEAST: f64 = 50.0;
 /// By the lines of a structure, which are one pixel thin.
 const LEAST_OF_LINES: f64 = 40.0;

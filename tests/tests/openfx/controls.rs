@@ -1,4 +1,4 @@
-//! What instances say of themselves as their values change: tiles, and controls that have no effect.
+//! Messages of instances as their values change: tiles, and controls that have no effect.
 
 use crate::reference::*;
 use isophote_abi::openfx::*;

@@ -16,7 +16,7 @@ use std::time::Instant;
 const SIZE: [u32; 2] = [7680, 4320];
 /// A frame of RGBA floats.
 const FRAME: u64 = SIZE[0] as u64 * SIZE[1] as u64 * 16;
-/// What the host's source and result, and the plugin's images, may take together.
+/// Most memory that the host's source and result, and the plugin's images, may take together.
 const MOST: u64 = 4 << 30;
 
 pub fn an_8k_frame_fits_into_4_gib(binary: &Binary, effect: Expected) {

@@ -1,4 +1,4 @@
-//! What the tests of the OpenFX face share: effects by the registry, and the same result through C.
+//! Parts that the tests of the OpenFX face share: effects by the registry, and the same result through C.
 
 use isophote::graph::GraphInput;
 use isophote::spec::{ImageKind, NodeSpec};
@@ -100,7 +100,7 @@ pub fn packed(rgba: &[f32], layout: &Layout) -> Vec<u8> {
     bytes
 }
 
-/// What the C table makes of packed pixels, in the same layout.
+/// Result of the C table on packed pixels, in the same layout.
 pub struct Through<'a> {
     pub graph: &'a Graph,
     pub size: [i32; 2],

@@ -175,7 +175,7 @@ pub fn a_bounding_box_shows_the_marks_of_the_project(binary: &Binary) {
     host.no_faults();
 }
 
-/// What the plan says that a region needs, in rows from the top. Pixels that are wider than high are made
+/// Region that the plan says that a region needs, in rows from the top. Pixels that are wider than high are made
 /// square, each from those that it touches and one more on each side, before the plan and after it.
 fn needed(effect: &Expected, region: Rect, aspect: f64) -> Rect {
     let touched = |[x0, x1]: [i32; 2], factor: f64, most: i32| {

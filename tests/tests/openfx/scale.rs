@@ -10,7 +10,7 @@ use isophote_tests::ofx::state::Behaviour;
 
 /// Side of the full picture.
 pub const SIDE: i32 = 192;
-/// What a proxy must reach, in decibels.
+/// Least agreement of a proxy, in decibels.
 const LEAST: f64 = 40.0;
 /// By strokes and hatches, whose edges are as crisp as pixels.
 const LEAST_OF_MARKS: f64 = 15.0;

@@ -24,7 +24,7 @@ fn steadied<'h>(described: &Described<'h>, context: &CStr, window: i32) -> Insta
     instance
 }
 
-/// What an instance shows without its neighbours.
+/// Picture that an instance shows without its neighbours.
 fn still(instance: &Instance<'_>, time: i64) -> Vec<u8> {
     instance.set("steadiness", 0.0);
     let picture = render(instance, time).packed();

@@ -14,7 +14,7 @@ use isophote_tests::trials::Report;
 /// Comparisons a kernel.
 const STEPS: usize = 24;
 
-/// Whether any image of the kernel's passes is kept in 16-bit floats.
+/// True where any image of the kernel's passes is kept in 16-bit floats.
 pub fn concerns(steps: &[Step]) -> bool {
     steps.first().is_some_and(|step| {
         let plan = step.plan_with(step.kernel);

@@ -42,7 +42,7 @@ pub fn sample(steps: &[Step], most: usize) -> Vec<&Step> {
     kept
 }
 
-/// Where the changed shader breaks the tolerance, if anywhere. A shader that no longer compiles counts
+/// Place where the changed shader breaks the tolerance, if anywhere. A shader that no longer compiles counts
 /// for nothing: it must run and differ.
 fn difference(
     gpu: &mut Executor,

@@ -1,4 +1,4 @@
-//! What the comparisons of twins gave, summed up.
+//! Summary of the comparisons of twins.
 
 use isophote_engine::Tolerance;
 use isophote_engine::cpu::Control;
@@ -7,7 +7,7 @@ use isophote_tests::compare::Difference;
 use isophote_tests::sweep::Step;
 use isophote_tests::trials::Report;
 
-/// What all comparisons of a kernel gave.
+/// Summary of all comparisons of a kernel.
 #[derive(Default)]
 pub struct Tally {
     pub runs: usize,

@@ -1,4 +1,4 @@
-//! Which archives there are and what each holds: the one list that everything else walks.
+//! Archives and the content of each: the one list that everything else walks.
 
 use crate::binary;
 use crate::editors;
@@ -11,12 +11,12 @@ use std::process::Command;
 
 /// An archive.
 pub struct Archive {
-    /// What it is, in its name.
+    /// Kind of the archive, in its name.
     kind: &'static str,
     contents: Contents,
 }
 
-/// Where the contents of an archive come from.
+/// Source of the contents of an archive.
 enum Contents {
     /// They are gathered and packed here.
     Gathered(fn(&Built, &mut Tree) -> Result<()>),
@@ -63,7 +63,7 @@ impl Archive {
     }
 }
 
-/// What was built before.
+/// Programs and libraries that were built before.
 pub struct Built {
     /// The root of the repository.
     pub root: PathBuf,
@@ -73,7 +73,7 @@ pub struct Built {
     pub bundle: PathBuf,
     /// Folder of what the tools of other languages have packed: wheel, Blender extension, npm package, page.
     pub packed: PathBuf,
-    /// Whether it is not what users get.
+    /// True where it is not what users get.
     pub draft: bool,
 }
 
@@ -199,7 +199,7 @@ fn program(built: &Built, tree: &mut Tree) -> Result<()> {
     add_licences(tree, "share/doc/isophote", &built.root, &[LIBRARY, PROGRAM])
 }
 
-/// What measures a graphics card on a machine that has nothing else.
+/// Measurement of a graphics card on a machine that has nothing else.
 fn card(built: &Built, tree: &mut Tree) -> Result<()> {
     add_program(built, tree)?;
     tree.add("measure.sh", Entry::Script(include_str!("../files/measure.sh").into()));
@@ -217,7 +217,7 @@ fn add_program(built: &Built, tree: &mut Tree) -> Result<PathBuf> {
     Ok(program)
 }
 
-/// What the program writes about its own command line.
+/// Documents that the program writes about its own command line.
 fn documents(program: &Path, tree: &mut Tree) -> Result<()> {
     let folder = tempfile::tempdir().map_err(Error::at(program))?;
     let mut command = Command::new(program);

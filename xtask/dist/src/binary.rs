@@ -1,5 +1,5 @@
-//! Whether a binary may leave the machine that built it: what it asks of the system that it is loaded on. Read from
-//! the ELF file itself; other systems' formats have none of this.
+//! Checks that a binary may leave the machine that built it, by what it asks of the system that it is loaded on. Read
+//! from the ELF file itself; other systems' formats have none of this.
 
 use crate::error::{Error, Result};
 use object::elf::{DT_NEEDED, DT_RPATH, DT_RUNPATH, DT_SONAME, FileHeader64, SHT_SYMTAB};
@@ -10,10 +10,10 @@ use std::path::Path;
 /// The GNU C library of Rocky Linux 9, the oldest system that is promised. Debian 12 builds what runs there.
 const NEWEST_GLIBC: [u32; 3] = [2, 34, 0];
 
-/// What comes with every system that has the GNU C library. `ld-linux` is named by its machine.
+/// Libraries that come with every system that has the GNU C library. `ld-linux` is named by its machine.
 const SYSTEM: [&str; 5] = ["libc.so.6", "libm.so.6", "libdl.so.2", "libpthread.so.0", "libgcc_s.so.1"];
 
-/// What a binary says of itself.
+/// Facts that a binary tells of itself.
 #[derive(Debug, Default, PartialEq, Eq)]
 pub struct Facts {
     /// Libraries that it is linked to.
@@ -24,7 +24,7 @@ pub struct Facts {
     pub search: Vec<String>,
     /// Versions of the C library whose symbols it uses.
     pub glibc: Vec<[u32; 3]>,
-    /// Whether it still has the symbols that only debuggers read.
+    /// True where it still has the symbols that only debuggers read.
     pub has_symbols: bool,
 }
 

@@ -1,8 +1,8 @@
-//! Why nothing was packed.
+//! Reasons why nothing was packed.
 
 use std::path::{Path, PathBuf};
 
-/// What can go wrong.
+/// Problem with the archives.
 #[derive(Debug, thiserror::Error)]
 pub enum Error {
     /// A file cannot be read or written, or a program cannot be started.
@@ -10,23 +10,23 @@ pub enum Error {
     File {
         /// The file or program.
         path: PathBuf,
-        /// What the system says.
+        /// Error of the system.
         source: std::io::Error,
     },
     /// A program failed.
     #[error("{command} failed: {said}")]
     Program {
-        /// What was run.
+        /// Command that was run.
         command: String,
-        /// What it wrote about it.
+        /// Message that it wrote about it.
         said: String,
     },
     /// Something that was read is not what it should be.
     #[error("{}: {problem}", path.display())]
     Malformed {
-        /// Where it is.
+        /// Path of the file.
         path: PathBuf,
-        /// What is wrong.
+        /// The problem.
         problem: String,
     },
     /// A binary must not leave this machine as it is.
@@ -34,7 +34,7 @@ pub enum Error {
     Unfit {
         /// The binary.
         path: PathBuf,
-        /// What is wrong with it, and what to do.
+        /// The problem with it, and what to do.
         problem: String,
     },
     /// A dependency's licence is not one of those that were looked at.
@@ -45,7 +45,7 @@ pub enum Error {
     Licence {
         /// Name and version.
         package: String,
-        /// What its manifest says.
+        /// Licence that its manifest names.
         licence: String,
     },
 }

@@ -8,7 +8,7 @@ use std::collections::{BTreeMap, BTreeSet};
 use std::fmt::Write as _;
 use std::path::{Path, PathBuf};
 
-/// What has been read and asks for nothing but its text; where a package offers several, the first counts.
+/// Licences that have been read and ask for nothing but their text; where a package offers several, the first counts.
 const ALLOWED: [&str; 13] = [
     "MIT",
     "Apache-2.0",
@@ -26,10 +26,10 @@ const ALLOWED: [&str; 13] = [
     "Ubuntu-font-1.0",
 ];
 
-/// How the names of files with licences begin, in capitals.
+/// Beginnings of the names of files with licences, in capitals.
 const NAMES: [&str; 6] = ["LICENSE", "LICENCE", "COPYING", "COPYRIGHT", "NOTICE", "UNLICENSE"];
 
-/// What every Rust program holds and no manifest names.
+/// Package that every Rust program holds and no manifest names.
 fn standard_library() -> Package {
     Package {
         name: "the Rust standard library".into(),

@@ -52,7 +52,7 @@ struct Pack {
     /// Folder of the wheel, the Blender extension, the npm package and the page
     #[arg(long, value_name = "DIR")]
     packed: PathBuf,
-    /// Where all goes
+    /// Folder that all goes to
     #[arg(long, value_name = "DIR")]
     out: PathBuf,
     /// Takes binaries with symbols, and packs fast instead of small

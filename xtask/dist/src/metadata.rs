@@ -1,4 +1,4 @@
-//! Which packages of others a binary is made of, as cargo resolved them.
+//! Packages of others that a binary is made of, as cargo resolved them.
 
 use crate::error::{Error, Result};
 use serde_json::Value;
@@ -15,7 +15,7 @@ pub struct Package {
     pub licence: String,
     /// People named in the manifest.
     pub authors: Vec<String>,
-    /// Where its sources are.
+    /// Folder of its sources.
     pub folder: PathBuf,
     /// The file that its manifest names as its licence.
     pub licence_file: Option<PathBuf>,

@@ -1,4 +1,4 @@
-//! What several archives hold: the licences, and the dynamic library as systems want it.
+//! Files that several archives hold: the licences, and the dynamic library as systems want it.
 
 use crate::binary;
 use crate::error::{Error, Result};
@@ -45,9 +45,9 @@ pub fn licences_of(root: &Path, packages: &[&str]) -> Result<String> {
 pub struct Names {
     /// The file.
     pub file: String,
-    /// What programs that link to it look for.
+    /// Name that programs which link to it look for.
     pub soname: String,
-    /// What compilers and `dlopen` look for.
+    /// Name that compilers and `dlopen` look for.
     pub plain: String,
 }
 

@@ -1,4 +1,4 @@
-//! What an archive holds: files and links by their places.
+//! Content of an archive: files and links by their places.
 
 use crate::error::{Error, Result};
 use std::collections::BTreeMap;

@@ -1,4 +1,4 @@
-//! Which pages there are, in the order of the site's contents.
+//! Pages of the site, in the order of its contents.
 
 use crate::error::{Error, Result};
 use crate::page::{DOCUMENTS, Page};

@@ -1,8 +1,8 @@
-//! Why there is no site.
+//! Reasons why there is no site.
 
 use std::path::{Path, PathBuf};
 
-/// What can go wrong.
+/// Problem with the site.
 #[derive(Debug, thiserror::Error)]
 pub enum Error {
     /// A file cannot be read or written, or a program cannot be started.
@@ -10,7 +10,7 @@ pub enum Error {
     File {
         /// The file or program.
         path: PathBuf,
-        /// What the system says.
+        /// Error of the system.
         source: std::io::Error,
     },
     /// A picture cannot be read or written.
@@ -18,15 +18,15 @@ pub enum Error {
     Picture {
         /// The file.
         path: PathBuf,
-        /// What the decoder says.
+        /// Error of the decoder.
         source: image::ImageError,
     },
     /// A program of the site's making failed.
     #[error("`{command}` failed: {said}")]
     Program {
-        /// What was run.
+        /// Command that was run.
         command: String,
-        /// What it wrote.
+        /// Text that it wrote.
         said: String,
     },
     /// A page is at fault.
@@ -34,7 +34,7 @@ pub enum Error {
     Page {
         /// Its source or place.
         page: String,
-        /// What is wrong, and what would be right.
+        /// The problem, and what would be right.
         problem: String,
     },
     /// Links that lead nowhere.

@@ -1,10 +1,11 @@
-//! Whether all that pages link to is there: pages, places on them, pictures; and whether they load nothing from elsewhere.
+//! Checks that all that pages link to is there: pages, places on them, pictures; and that they load nothing from
+//! elsewhere.
 
 use crate::error::{Error, Result};
 use std::collections::{BTreeMap, BTreeSet};
 use std::path::{Path, PathBuf};
 
-/// What was looked at.
+/// Number of things that were looked at.
 #[derive(Debug, Default, PartialEq, Eq)]
 pub struct Counts {
     /// Links within the site, pictures among them.

@@ -32,7 +32,7 @@ use studio::{Studio, finish, small};
 #[derive(Parser)]
 #[command(bin_name = "cargo xtask docs")]
 struct Options {
-    /// Where the site goes; what was there is replaced
+    /// Folder that the site goes to; what was there is replaced
     #[arg(long, value_name = "DIR", default_value = "target/docs")]
     out: PathBuf,
     /// Size at which pictures are made; large ones are shown smaller

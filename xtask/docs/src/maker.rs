@@ -1,4 +1,4 @@
-//! How a node is shown on a picture: by itself, or in a graph with what it needs before it and what makes its result
+//! Graph that shows a node on a picture: by itself, or with what it needs before it and what makes its result
 //! visible after it.
 
 use crate::error::{Error, Result};
@@ -16,7 +16,7 @@ const UNSHOWN: [(&str, &str); 3] = [
     ("steady", "It shows itself in sequences: a single frame stays as it is."),
 ];
 
-/// Why there is no picture of a node; none where there is one.
+/// Reason why there is no picture of a node; none where there is one.
 pub fn unshown(node: &NodeSpec) -> Option<&'static str> {
     UNSHOWN.iter().find(|(id, _)| *id == node.id).map(|(_, why)| *why)
 }

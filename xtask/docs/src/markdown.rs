@@ -7,13 +7,13 @@ use pulldown_cmark::{CodeBlockKind, Event, HeadingLevel, Options, Parser, Tag, T
 use std::collections::BTreeMap;
 use std::path::{Component, Path, PathBuf};
 
-/// Where files of the repository are read.
+/// Address at which files of the repository are read.
 const REPOSITORY: &str = concat!(env!("CARGO_PKG_REPOSITORY"), "/blob/main/");
 
 /// A page as HTML.
 #[derive(Debug, Default)]
 pub struct Rendered {
-    /// What stands between the frame of the page.
+    /// Content within the frame of the page.
     pub html: String,
     /// Headings of the second level and the names by which they are linked to.
     pub headings: Vec<(String, String)>,
@@ -35,7 +35,7 @@ pub struct Block {
 }
 
 impl Block {
-    /// Whether it holds commands.
+    /// True where it holds commands.
     pub fn is_shell(&self) -> bool {
         self.info.split_whitespace().next().is_some_and(|language| language == "sh")
     }
@@ -148,7 +148,7 @@ fn unique(slug: String, names: &mut BTreeMap<String, u32>) -> String {
     if *count == 1 { slug } else { format!("{slug}-{}", *count - 1) }
 }
 
-/// Where a link of the Markdown leads on the site.
+/// Target of a link of the Markdown on the site.
 fn target(link: &str, page: &Page, root: &Path) -> Result<String> {
     let is_outside = link.contains("://") || link.starts_with("mailto:") || link.starts_with('#');
     if is_outside {
@@ -181,7 +181,7 @@ fn joined(folder: Option<&Path>, path: &str) -> String {
     whole.to_string_lossy().replace('\\', "/")
 }
 
-/// Where a picture lies on the site. `made:NAME` is one that the commands of the page have made, `repo:PATH` one of the
+/// Place of a picture on the site. `made:NAME` is one that the commands of the page have made, `repo:PATH` one of the
 /// repository.
 fn picture(link: &str, page: &Page, rendered: &mut Rendered) -> String {
     let top = to_top(&page.path);
@@ -194,12 +194,12 @@ fn picture(link: &str, page: &Page, rendered: &mut Rendered) -> String {
     format!("{top}{}", place_of_copied(file))
 }
 
-/// Where a picture of the repository is kept.
+/// Place where a picture of the repository is kept.
 pub fn place_of_copied(file: &str) -> String {
     format!("pictures/{}", file.rsplit('/').next().unwrap_or(file))
 }
 
-/// Where a picture that commands have made is kept.
+/// Place where a picture that commands have made is kept.
 pub fn place_of_made(page: &Page, name: &str) -> String {
     format!("pictures/{}-{}.jpg", page.path.replace('/', "-"), name.replace(['/', '.'], "-"))
 }

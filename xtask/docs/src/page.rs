@@ -1,4 +1,4 @@
-//! What a page is, which documents of the repository are pages, and how pages reach each other.
+//! Pages, the documents of the repository that are pages, and the ways from one to another.
 
 /// A page before it is rendered.
 #[derive(Clone, Debug)]
@@ -39,7 +39,7 @@ pub const PARTS: [&str; 11] = [
     "Nodes",
 ];
 
-/// How a page in `path` reaches the top of the site.
+/// Path from a page in `path` to the top of the site.
 pub fn to_top(path: &str) -> String {
     "../".repeat(path.matches('/').count())
 }

@@ -12,7 +12,7 @@ use std::collections::BTreeSet;
 use std::fmt::Write as _;
 use std::path::Path;
 
-/// Where kernels say what they compute.
+/// Folder of the kernels, which say what they compute.
 const KERNELS: &str = "nodes/library/src/kernels";
 
 /// Stem of the picture of a node.
@@ -118,7 +118,7 @@ struct Pass {
     name: &'static str,
     /// Its group and its name: where its files are.
     stem: String,
-    /// What it computes, with its source.
+    /// Description of what it computes, with its source.
     doc: String,
 }
 

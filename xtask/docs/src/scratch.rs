@@ -9,9 +9,9 @@ use std::ffi::OsString;
 use std::path::{Path, PathBuf};
 use std::process::Command;
 
-/// What pages take for granted, made once, when the first needs it.
+/// Files that pages take for granted, made once, when the first needs them.
 pub struct Seed<'a> {
-    /// Where it is made.
+    /// Folder where they are made.
     pub folder: PathBuf,
     /// The sample host.
     pub host: &'a Path,
@@ -113,7 +113,7 @@ impl Seed<'_> {
         Ok(counts)
     }
 
-    /// Whether a block needs a Blender that is not there.
+    /// True where a block needs a Blender that is not there.
     fn is_without(&self, block: &Block) -> bool {
         block.needs_blender() && self.blender.is_none()
     }

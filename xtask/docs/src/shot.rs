@@ -11,7 +11,7 @@ pub struct Shot {
     pub set: Vec<(&'static str, String)>,
 }
 
-/// What is applied.
+/// Style that is applied.
 #[derive(Clone, Debug)]
 pub enum Style {
     /// The id of a node, or `look:ID`.

@@ -1,4 +1,4 @@
-//! Which pictures the site has: of nodes, of their controls, of looks.
+//! Pictures of the site: of nodes, of their controls, of looks.
 
 use crate::error::Result;
 use crate::looks::Look;

@@ -21,7 +21,7 @@ pub const WIDEST: u32 = 960;
 /// The widest of those that stand beside each other.
 const WIDEST_BESIDE: u32 = 480;
 
-/// What makes pictures.
+/// Maker of pictures.
 pub struct Studio<'a> {
     /// The sample host.
     pub host: &'a Path,

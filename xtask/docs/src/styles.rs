@@ -7,7 +7,7 @@ use isophote::spec::NodeSpec;
 use isophote::value::Value;
 use std::fmt::Write as _;
 
-/// What else is set where a control does nothing by itself: node and control, then parameter and value.
+/// Parameter that is set as well where a control does nothing by itself: node and control, then parameter and value.
 const TOGETHER: [(&str, &str, &str, &str); 3] = [
     ("cartoon", "posterize_smooth", "posterize", "6"),
     ("coherent", "posterize_smooth", "posterize", "6"),
@@ -18,7 +18,7 @@ const TOGETHER: [(&str, &str, &str, &str); 3] = [
 /// Colours that controls of colours are shown in, beside the default.
 const COLOURS: [&str; 2] = ["#7a2a1c", "#2b5a8c"];
 
-/// Whether a node is a style.
+/// True where a node is a style.
 pub fn is_style(node: &NodeSpec) -> bool {
     node.group == "styles"
 }
@@ -63,7 +63,7 @@ pub fn shown(param: &Param) -> String {
     }
 }
 
-/// What is set beside a control.
+/// Parameter and value that are set beside a control.
 fn together(node: &NodeSpec, param: &Param) -> Option<(&'static str, &'static str)> {
     let (.., other, value) =
         TOGETHER.iter().find(|(id, control, ..)| (*id, *control) == (node.id, param.id))?;

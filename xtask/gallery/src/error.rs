@@ -1,8 +1,8 @@
-//! Why there is no gallery.
+//! Reasons why there is no gallery.
 
 use std::path::PathBuf;
 
-/// What can go wrong.
+/// Problem with the gallery.
 #[derive(Debug, thiserror::Error)]
 pub enum Error {
     /// A file cannot be read or written, or the host cannot be started.
@@ -10,7 +10,7 @@ pub enum Error {
     File {
         /// The file or program.
         path: PathBuf,
-        /// What the system says.
+        /// Error of the system.
         source: std::io::Error,
     },
     /// The host failed.

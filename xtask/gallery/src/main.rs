@@ -21,7 +21,7 @@ use std::process::{Command, ExitCode};
 #[derive(Parser)]
 #[command(bin_name = "cargo xtask gallery")]
 struct Options {
-    /// Where the page and its pictures go
+    /// Folder that the page and its pictures go to
     #[arg(long, default_value = "target/gallery")]
     out: PathBuf,
     /// Only these nodes; may be repeated
@@ -56,7 +56,7 @@ fn main() -> ExitCode {
 struct Subject {
     name: String,
     file: PathBuf,
-    /// What the picture was rendered from, if it was: its normals, depth and object ids are known then.
+    /// Scene that the picture was rendered from, if it was: its normals, depth and object ids are known then.
     scene: Option<PathBuf>,
 }
 

@@ -1,4 +1,4 @@
-//! What the catalogue says of a node, and which pictures show it.
+//! Nodes as the catalogue describes them, and the pictures that show them.
 
 use crate::error::{Error, Result};
 use serde_json::{Value, json};
@@ -20,17 +20,17 @@ pub fn list<'a>(value: &'a Value, key: &str) -> &'a [Value] {
     value[key].as_array().map_or(&[], Vec::as_slice)
 }
 
-/// Whether the node's output can be looked at.
+/// True where the node's output can be looked at.
 pub fn makes_pictures(node: &Value) -> bool {
     matches!(text(&node["output"], "kind"), "color" | "scalar")
 }
 
-/// Whether the node uses what a renderer knows.
+/// True where the node uses what a renderer knows.
 pub fn takes_guides(node: &Value) -> bool {
     list(node, "inputs").iter().any(|p| text(p, "kind") == "normal")
 }
 
-/// What `--style` and `apply` are given: the node's id or, when it needs more than a picture, a graph file that puts the
+/// Argument of `--style` and `apply`: the node's id or, when it needs more than a picture, a graph file that puts the
 /// first node which makes such an image from colour before it.
 pub fn style_of(node: &Value, nodes: &[Value], out: &Path) -> Result<String> {
     let id = text(node, "id");

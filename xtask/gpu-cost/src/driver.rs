@@ -21,7 +21,7 @@ pub struct Driver {
     pub name: String,
 }
 
-/// What the driver made of a shader.
+/// Result of the driver for a shader.
 pub struct Executable {
     /// The driver's figures, by their names.
     pub statistics: BTreeMap<String, u64>,

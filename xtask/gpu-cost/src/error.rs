@@ -1,9 +1,9 @@
-//! What can go wrong, as a sentence each.
+//! Problems, as a sentence each.
 
 use ash::vk;
 use std::path::PathBuf;
 
-/// Why the costs are not known, or not what the table says.
+/// Reason why the costs are not known, or not what the table says.
 #[derive(Debug, thiserror::Error)]
 pub enum Error {
     /// No Vulkan.
@@ -12,7 +12,7 @@ pub enum Error {
     /// A call of Vulkan that failed.
     #[error("the driver does not give {what}: {result}")]
     Vulkan {
-        /// What was asked for.
+        /// Thing that was asked for.
         what: &'static str,
         /// Vulkan's own word.
         result: vk::Result,
@@ -36,15 +36,15 @@ pub enum Error {
     Shader {
         /// Its stem.
         name: String,
-        /// Why.
+        /// The reason.
         reason: String,
     },
     /// A file that cannot be read or written.
     #[error("cannot read or write {}: {source}", path.display())]
     File {
-        /// Which.
+        /// Path of the file.
         path: PathBuf,
-        /// Why.
+        /// The reason.
         source: std::io::Error,
     },
     /// A kernel that is none.

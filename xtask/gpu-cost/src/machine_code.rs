@@ -56,7 +56,7 @@ fn loops(lines: &[&str]) -> Vec<RangeInclusive<usize>> {
     ends.into_iter().map(|(start, end)| start..=end).collect()
 }
 
-/// Where a branch leads to.
+/// Label that a branch leads to.
 fn branch(line: &str) -> Option<&str> {
     let (name, to) = line.split_once(char::is_whitespace)?;
     (name == "s_branch" || name.starts_with("s_cbranch_")).then_some(to.trim())

@@ -18,7 +18,7 @@ use std::path::Path;
 use std::process::ExitCode;
 use table::{Cost, Costs};
 
-/// What to do.
+/// Task to carry out.
 enum Task {
     Write,
     Check,
@@ -111,7 +111,7 @@ fn read(path: &Path) -> Result<String> {
     fs::read_to_string(path).map_err(|source| Error::File { path: path.to_owned(), source })
 }
 
-/// Where the table begins and ends in the text of its file.
+/// Beginning and end of the table in the text of its file.
 fn bounds(text: &str) -> Result<(usize, usize)> {
     let begin = text.find(table::BEGIN).map(|at| at + table::BEGIN.len());
     begin.zip(text.find(table::END)).filter(|(begin, end)| begin <= end).ok_or(Error::Markers)

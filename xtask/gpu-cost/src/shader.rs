@@ -13,7 +13,7 @@ use naga::{AddressSpace, ImageClass, Module, ShaderStage, TypeInner};
 pub struct Spirv {
     /// The module; its entry point is `main`.
     pub words: Vec<u32>,
-    /// What it binds.
+    /// Bindings of the shader.
     pub bindings: Vec<Binding>,
 }
 
@@ -21,11 +21,11 @@ pub struct Spirv {
 pub struct Binding {
     /// Its number, in group 0.
     pub number: u32,
-    /// What it is.
+    /// Kind of the binding.
     pub kind: BindingKind,
 }
 
-/// What a shader can bind.
+/// Kinds of what a shader can bind.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum BindingKind {
     /// A uniform block.
@@ -48,7 +48,7 @@ pub fn shaders() -> Vec<Shader> {
 /// Translates a shader as wgpu does.
 ///
 /// # Errors
-/// What naga says of the shader.
+/// The error of naga about the shader.
 pub fn translate(shader: &Shader) -> Result<Spirv> {
     let fail = |reason: String| Error::Shader { name: shader.name.to_string(), reason };
     let module =

@@ -121,7 +121,7 @@ const ENTRY: &str = "const struct IsophoteApi *isophote_api(uint32_t abi_version
 
 const WARNING: &str = "/* Generated from include/src by `cargo xtask header`. Do not edit. */";
 
-/// Why the header was not written, or is not true.
+/// Reason why the header was not written, or is not true.
 #[derive(Debug, thiserror::Error)]
 enum Error {
     #[error("cannot read the declarations: {0}")]

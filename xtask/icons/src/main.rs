@@ -9,7 +9,7 @@ use serde_json::Value;
 use std::path::{Path, PathBuf};
 use std::process::ExitCode;
 
-/// Why an icon was not drawn.
+/// Reason why an icon was not drawn.
 #[derive(Debug, thiserror::Error)]
 enum Error {
     #[error("{} is no catalogue: {source}", path.display())]

@@ -1,4 +1,4 @@
-//! Where everything stands.
+//! Places of everything in the city.
 
 use super::elements::{fluted_column, smooth_column};
 use super::houses::House;
@@ -16,7 +16,7 @@ const TEMPLE: Vec3 = Vec3::new(-2.6, 0.0, -11.0);
 /// Trees that stand in the square.
 const PLANTERS: [Vec3; 2] = [Vec3::new(-5.2, LEVEL, 19.3), Vec3::new(-12.4, LEVEL, 25.6)];
 
-/// Whether a place lies outside of the town.
+/// True where a place lies outside of the town.
 fn is_outside(x: f32, z: f32) -> bool {
     Vec2::new(x, z).length() > TOWN - 4.0
 }
@@ -204,7 +204,7 @@ fn near_houses(writer: &mut Writer) {
     }
 }
 
-/// Where the far houses stand: x, z, and degrees about the vertical.
+/// Places of the far houses: x, z, and degrees about the vertical.
 const FAR_HOUSES: [(f32, f32, f32); 20] = [
     (-31.0, -12.0, 70.0),
     (-29.0, 2.0, 95.0),

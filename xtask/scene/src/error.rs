@@ -1,8 +1,8 @@
-//! What can go wrong when the scene is made or written.
+//! Problems when the scene is made or written.
 
 use std::path::PathBuf;
 
-/// Why there is no scene.
+/// Reason why there is no scene.
 #[derive(Debug, thiserror::Error)]
 pub enum Error {
     /// An encoder refused a texture.
@@ -10,7 +10,7 @@ pub enum Error {
     Encode {
         /// The name of the texture's file.
         texture: &'static str,
-        /// What the encoder says.
+        /// Error of the encoder.
         source: image::ImageError,
     },
     /// A file or the folder could not be written.
@@ -18,7 +18,7 @@ pub enum Error {
     Write {
         /// The file or the folder.
         path: PathBuf,
-        /// What the system says.
+        /// Error of the system.
         source: std::io::Error,
     },
 }

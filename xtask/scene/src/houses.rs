@@ -9,12 +9,12 @@ use std::f32::consts::{FRAC_PI_2, PI};
 
 /// Depth of window and door reveals.
 const REVEAL: f32 = 0.24;
-/// How far a roof reaches beyond the walls.
+/// Distance that a roof reaches beyond the walls.
 const OVERHANG: f32 = 0.5;
 /// Rise of a roof over its run.
 const PITCH: f32 = 0.46;
 
-/// What a house is like. It stands about the origin with its front towards +z.
+/// Form of a house. It stands about the origin with its front towards +z.
 pub struct House {
     /// Size in plan.
     pub size: Vec2,

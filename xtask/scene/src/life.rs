@@ -1,4 +1,4 @@
-//! What moves: the camera, pennants (morph targets), birds and a banner (skins), the flame.
+//! Things that move: the camera, pennants (morph targets), birds and a banner (skins), the flame.
 
 use super::market;
 use super::materials::{Material, Model};

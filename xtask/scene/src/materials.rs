@@ -44,7 +44,7 @@ pub enum Material {
     Plumage,
 }
 
-/// How a material looks. Colours are linear; a texture, where there is one, multiplies them.
+/// Appearance of a material. Colours are linear; a texture, where there is one, multiplies them.
 pub struct Definition {
     pub name: &'static str,
     pub color: [f32; 3],

@@ -28,7 +28,7 @@ pub struct Morph {
     pub normals: Vec<Vec3>,
 }
 
-/// Which faces of a box exist.
+/// Faces of a box that exist.
 #[derive(Clone, Copy, PartialEq)]
 pub enum Faces {
     All,

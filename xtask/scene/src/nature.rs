@@ -7,9 +7,9 @@ use super::textures::SKY_HORIZON;
 use glam::{Mat4, Vec2, Vec3};
 use std::f32::consts::{FRAC_PI_2, TAU};
 
-/// Where the town ends, in metres from the centre; what lies beyond is backdrop.
+/// Radius at which the town ends, in metres from the centre; what lies beyond is backdrop.
 pub const TOWN: f32 = 37.0;
-/// Where the ground ends and the hills begin.
+/// Radius at which the ground ends and the hills begin.
 const EDGE: f32 = 112.0;
 
 /// Height of the ground: level in the town, rising behind it.

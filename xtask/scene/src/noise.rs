@@ -96,7 +96,7 @@ pub fn fractal_stretched(uv: Vec2, period: IVec2, octaves: u32, seed: u32) -> f3
     sum / total
 }
 
-/// What [`cells`] finds at a point.
+/// Result of [`cells`] at a point.
 pub struct Cell {
     /// Distance to the border of the cell, in lattice cells.
     pub border: f32,

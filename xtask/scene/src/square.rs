@@ -9,7 +9,7 @@ use std::f32::consts::{PI, TAU};
 
 /// Half the size of the paved square, and its centre in z.
 pub const HALF: Vec2 = Vec2::new(15.5, 13.0);
-/// Where the middle of the square lies, in z.
+/// Position of the middle of the square, in z.
 pub const CENTRE_Z: f32 = 15.5;
 /// Height of the paving above the streets.
 pub const LEVEL: f32 = 0.12;
@@ -369,7 +369,7 @@ fn lean_to(model: &mut Model, length: f32) {
     }
 }
 
-/// Where the columns of a portico stand, in its own coordinates.
+/// Places of the columns of a portico, in its own coordinates.
 pub fn portico_columns(length: f32) -> Vec<Vec3> {
     let count = (length / 2.6).round();
     (0..=count as usize)

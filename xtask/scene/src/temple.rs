@@ -30,7 +30,7 @@ fn axes() -> Vec2 {
     Vec2::new((FRONT - 1) as f32, (SIDE - 1) as f32) * SPACING / 2.0
 }
 
-/// Where columns stand.
+/// Places of the columns.
 pub fn columns() -> Vec<Vec3> {
     let half = axes();
     let at =

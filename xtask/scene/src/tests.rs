@@ -1,4 +1,4 @@
-//! What a reader of the scene relies on: valid references, data within bounds, unit vectors, and
+//! Properties that a reader of the scene relies on: valid references, data within bounds, unit vectors, and
 //! the same bytes every time.
 
 use super::{Files, generate};

@@ -27,11 +27,11 @@ pub struct Node {
     pub light: Option<usize>,
     pub skin: Option<usize>,
     pub children: Vec<usize>,
-    /// Whether it only surrounds the scene: viewers that frame the scene leave it out.
+    /// True where it only surrounds the scene: viewers that frame the scene leave it out.
     pub backdrop: bool,
 }
 
-/// What a channel animates, with one value for each key (three for cubic splines: in-tangent,
+/// Property that a channel animates, with one value for each key (three for cubic splines: in-tangent,
 /// value, out-tangent).
 pub enum Track {
     Translation(Vec<Vec3>),
@@ -41,7 +41,7 @@ pub enum Track {
     Weights(Vec<f32>),
 }
 
-/// How values between keys are found.
+/// The way in which values between keys are found.
 #[derive(Clone, Copy)]
 pub enum Interpolation {
     Step,

@@ -25,7 +25,7 @@ fn name(part: &Part) -> &'static str {
     NAMES.get(usize::from(part.compression)).copied().unwrap_or("unknown")
 }
 
-/// Whether chunks of a part can be read and written.
+/// Checks that chunks of a part can be read and written.
 pub fn check(part: &Part) -> Result<()> {
     if part.compression > B44A {
         let problem = format!("is compressed by {}, which cannot be written without loss", name(part));
@@ -40,7 +40,7 @@ pub fn check(part: &Part) -> Result<()> {
     Ok(())
 }
 
-/// Whether so many compressed bytes can stand for a block.
+/// Checks that so many compressed bytes can stand for a block.
 pub fn check_length(part: &Part, block: &Block, length: usize) -> Result<()> {
     if block.bytes(&part.channels) > length.saturating_mul(MOST_BYTES_PER_BYTE) + SMALL {
         return Err(bad(part, "holds too few bytes"));

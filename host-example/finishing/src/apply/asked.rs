@@ -1,4 +1,4 @@
-//! What the library is told of a picture: what its numbers mean and where it stands.
+//! Request to the library about a picture: what its numbers mean and where it stands.
 
 use isophote_loader::abi::{
     ISOPHOTE_ALPHA_PREMULTIPLIED, ISOPHOTE_ALPHA_STRAIGHT, ISOPHOTE_SPACE_ACESCG, ISOPHOTE_SPACE_LINEAR,
@@ -16,9 +16,9 @@ const MOST_ORIGIN: i32 = 1_000_000;
 pub struct Asked {
     /// The space in which it is filtered.
     pub space: Space,
-    /// What the numbers mean.
+    /// State of the numbers.
     pub state: ImageState,
-    /// Where the first pixel stands in the canonical picture.
+    /// Position of the first pixel in the canonical picture.
     pub origin: [f64; 2],
     /// Height of the canonical picture; 0 for that of the picture.
     pub canonical_height: u32,

@@ -1,4 +1,4 @@
-//! Where a graph runs.
+//! Backend that a graph runs on.
 
 use clap::ValueEnum;
 
@@ -6,7 +6,7 @@ use isophote_files::error::{AtPlace, Result};
 use isophote_loader::abi::ISOPHOTE_ERROR_NO_DEVICE;
 use isophote_loader::{Device, Library};
 
-/// Where a graph runs.
+/// Backend that a graph runs on.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
 pub enum Backend {
     /// A graphics card if there is one, otherwise the CPU.

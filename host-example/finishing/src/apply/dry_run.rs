@@ -1,4 +1,4 @@
-//! What a run would do, told without writing anything.
+//! Account of what a run would do, without writing anything.
 
 use serde_json::json;
 
@@ -16,13 +16,13 @@ use isophote_pictures::read::{self, Unread};
 pub struct DryRun<'a> {
     /// All frames.
     pub tasks: &'a Tasks,
-    /// What would be read of EXR files.
+    /// Selection of what would be read of EXR files.
     pub selection: &'a Selection,
     /// Memory that it might take.
     pub most: Bytes,
-    /// Whether whole outputs would stay as they are.
+    /// True where whole outputs would stay as they are.
     pub skip_existing: bool,
-    /// Whether lines of JSON are wanted.
+    /// True where lines of JSON are wanted.
     pub json: bool,
 }
 

@@ -1,12 +1,12 @@
-//! What is done to every frame: the graph on each of its pictures.
+//! Work on every frame: the graph on each of its pictures.
 
 use std::path::Path;
 use std::sync::Arc;
 
 use super::asked::Asked;
 use super::backend::Backend;
+use super::frame_cache::Window;
 use super::memory::Needs;
-use super::reel::{Window, guide_bit};
 use crate::stylize::style::Style;
 use isophote_example::history::{is_stage, split};
 use isophote_files::error::{AtPlace, Error, Result};
@@ -24,16 +24,16 @@ use isophote_pictures::space::Space;
 use isophote_pictures::working::WorkingSpace;
 use isophote_pictures::write::Format;
 
-/// What is done to a picture: a style, maybe where a mask is.
+/// Look of a picture: a style, maybe where a mask is.
 #[derive(Debug)]
-pub struct Look {
+pub struct MaskedStyle {
     /// The style.
     pub style: Style,
     /// Index of the mask among those of pictures.
     pub mask: Option<usize>,
 }
 
-impl Look {
+impl MaskedStyle {
     /// A style for whole pictures.
     pub fn whole(style: Style) -> Self {
         Self { style, mask: None }
@@ -54,14 +54,14 @@ pub struct Filter {
 /// A look with what is kept of it.
 #[derive(Debug)]
 struct Layer {
-    look: Look,
+    look: MaskedStyle,
     /// The mask that its graph takes as an input; that of other looks is applied to their results.
     input: Option<usize>,
-    /// What is kept of the frames of each picture.
+    /// State that is kept of the frames of each picture.
     sequences: Vec<Kept>,
 }
 
-/// What is kept of the frames of one picture, whose size it is made for.
+/// State that is kept of the frames of one picture, whose size it is made for.
 #[derive(Debug)]
 struct Kept {
     size: (u32, u32),
@@ -86,6 +86,8 @@ pub struct Planner {
     library: Library,
     layers: Vec<Layer>,
     guides: Vec<Guide>,
+    /// Whether frames have painted flow maps.
+    has_flow: bool,
     /// What filtering a picture of this size takes, as was found last.
     last: Option<((u32, u32), u64)>,
 }
@@ -94,11 +96,11 @@ pub struct Planner {
 ///
 /// # Errors
 /// [`isophote_files::error::Error::Input`] for a mask of what is no picture of colours.
-fn layers(looks: Vec<Look>) -> Result<Vec<Layer>> {
+fn layers(looks: Vec<MaskedStyle>) -> Result<Vec<Layer>> {
     let is_single = looks.len() == 1;
     let mut layers = Vec::with_capacity(looks.len());
     for look in looks {
-        let Look { style, mask } = &look;
+        let MaskedStyle { style, mask } = &look;
         if (mask.is_some() || !is_single) && style.kind != Kind::Color {
             return Err(Error::input(
                 &style.name,
@@ -106,7 +108,7 @@ fn layers(looks: Vec<Look>) -> Result<Vec<Layer>> {
                 "choose a style that yields a colour",
             ));
         }
-        let input = if is_single && style.takes_mask()? { *mask } else { None };
+        let input = if is_single && style.takes("mask")? { *mask } else { None };
         layers.push(Layer { look, input, sequences: Vec::new() });
     }
     Ok(layers)
@@ -115,7 +117,7 @@ fn layers(looks: Vec<Look>) -> Result<Vec<Layer>> {
 /// Frames before and after its own that a frame of any of the looks depends on.
 fn frames(library: &Library, layers: &[Layer]) -> Result<[i64; 2]> {
     let mut most = [0; 2];
-    for Layer { look: Look { style, .. }, .. } in layers {
+    for Layer { look: MaskedStyle { style, .. }, .. } in layers {
         let frames = library.frames(&style.graph).map_err(|e| e.at(&style.name, "choose another style"))?;
         most = [0, 1].map(|side| i64::from(frames[side]).max(most[side]));
     }
@@ -123,12 +125,12 @@ fn frames(library: &Library, layers: &[Layer]) -> Result<[i64; 2]> {
 }
 
 impl Layer {
-    /// Bits of guides beside those of the picture.
-    fn bits(&self) -> u32 {
-        self.input.map_or(0, |_| guide_bit("mask"))
+    /// The guide beside those of the picture, by its name.
+    fn guide(&self) -> Option<&'static str> {
+        self.input.map(|_| "mask")
     }
 
-    /// Whether its result is mixed with what is below it.
+    /// True where its result is mixed with what is below it.
     fn is_mixed(&self) -> bool {
         self.look.mask.is_some() && self.input.is_none()
     }
@@ -137,11 +139,11 @@ impl Layer {
     fn process(
         &mut self,
         (library, device): (&Library, Option<&Device>),
-        job: &Job<'_>,
+        job: &LayerJob<'_>,
         result: &mut Pixels,
         control: &mut Control<'_>,
     ) -> isophote_loader::Result<u64> {
-        let Job { at, there, mut request, color, window } = *job;
+        let LayerJob { at, there, mut request, color, window } = *job;
         let Some(picture) = window.own.source.pictures.get(at) else { return Ok(0) };
         let style = &mut self.look.style;
         request.reference_height = style.lengths.reference_height();
@@ -154,7 +156,7 @@ impl Layer {
             all.extend(inputs);
             return Ok(style.graph.process(device, &request, &all, result, control)?.replaced);
         }
-        request.guides = inputs.fold(0, |all, input| all | guide_bit(input.name));
+        request.guides = library.guide_bits(inputs.map(|input| input.name))?;
         let size = (request.width, request.height);
         self.sequences.truncate(if self.sequences.get(at).is_some_and(|k| k.size != size) {
             at
@@ -182,7 +184,7 @@ impl Filter {
     /// [`Error::Failure`] when there is no such device, [`Error::Input`] for a mask of what is no picture of colours.
     pub fn new(
         library: Library,
-        looks: Vec<Look>,
+        looks: Vec<MaskedStyle>,
         backend: Backend,
         space: Option<Space>,
         threads: u32,
@@ -195,13 +197,13 @@ impl Filter {
     ///
     /// # Errors
     /// As [`Filter::new`].
-    pub fn beside(&self, looks: Vec<Look>) -> Result<Self> {
+    pub fn beside(&self, looks: Vec<MaskedStyle>) -> Result<Self> {
         let (library, device) = (self.library.clone(), self.device.clone());
         Ok(Self { library, layers: layers(looks)?, device, space: self.space, threads: self.threads })
     }
 
-    /// How many of them should work on the frames of a sequence. Two on a graphics device: while it computes one frame,
-    /// another one is uploaded or read back. Frames that depend on others are done by one, which knows them.
+    /// Number of them that should work on the frames of a sequence. Two on a graphics device: while it computes one
+    /// frame, another one is uploaded or read back. Frames that depend on others are done by one, which knows them.
     ///
     /// # Errors
     /// [`Error::Failure`] when the library fails.
@@ -254,7 +256,7 @@ impl Filter {
             let size = (color.width(), color.height());
             let usual = self.library.request(size).map_err(|e| e.at(name, "use a smaller picture"))?;
             let request = Asked::of(picture, source.state, working.space, own.number).request(usual);
-            let job = Job { at, there, request, color, window };
+            let job = LayerJob { at, there, request, color, window };
             let share = 1.0 / count as f32;
             let mut report = |done: f32| progress((at as f32 + done) * share);
             let meaning = Meaning { state: source.state, space: working.space };
@@ -277,7 +279,7 @@ impl Filter {
     fn layered(
         &mut self,
         name: &str,
-        job: &Job<'_>,
+        job: &LayerJob<'_>,
         (channels, precision): (u32, Precision),
         meaning: Meaning,
         progress: &mut dyn FnMut(f32),
@@ -312,12 +314,17 @@ impl Planner {
     ///
     /// # Errors
     /// As [`Filter::new`].
-    pub fn new(library: Library, looks: Vec<Look>) -> Result<Self> {
+    pub fn new(library: Library, looks: Vec<MaskedStyle>) -> Result<Self> {
         let mut guides = Vec::new();
         for look in &looks {
             guides.extend(usable_guides(&library, &look.style)?);
         }
-        Ok(Self { library, layers: layers(looks)?, guides, last: None })
+        Ok(Self { library, layers: layers(looks)?, guides, has_flow: false, last: None })
+    }
+
+    /// Counts the painted flow map that each frame has, if it has one.
+    pub fn with_flow(self, has_flow: bool) -> Self {
+        Self { has_flow, ..self }
     }
 
     /// Guides that the styles can use.
@@ -336,13 +343,15 @@ impl Planner {
         }
         let refused = |e: isophote_loader::Error| e.at(name, "choose another picture or style");
         let pixels = u64::from(size.0) * u64::from(size.1);
-        let guides = self.guides.iter().fold(0, |all, guide| all | guide_bit(guide.id()));
+        let is_counted = |guide: &&Guide| **guide != Guide::Flow || self.has_flow;
+        let guides = self.guides.iter().filter(is_counted).map(|guide| guide.id());
         // One look is made at a time; what it keeps of frames stays.
         let (mut kept, mut most) = (0, 0);
         for layer in &self.layers {
             let style = &layer.look.style;
             let mut request = style.request(&self.library, size).map_err(refused)?;
-            request.guides = guides | layer.bits();
+            let all = guides.clone().chain(layer.guide());
+            request.guides = self.library.guide_bits(all).map_err(refused)?;
             let frames = self.library.frames(&style.graph).map_err(refused)?;
             let plan = match frames {
                 [0, 0] => style.graph.plan(&request),
@@ -378,7 +387,7 @@ impl Planner {
         frames(&self.library, &self.layers)
     }
 
-    /// How many frames are held while `frame` is done: it and all that it depends on.
+    /// Number of frames that are held while `frame` is done: it and all that it depends on.
     ///
     /// # Errors
     /// As [`Planner::frames`].
@@ -387,7 +396,7 @@ impl Planner {
         Ok((past + future + 1) as u64)
     }
 
-    /// What the frame `file` needs; nothing when it will be refused, which is reported when its turn comes.
+    /// Needs of the frame `file`; nothing when it will be refused, which is reported when its turn comes.
     ///
     /// # Errors
     /// As [`Planner::filter_memory`].
@@ -396,14 +405,15 @@ impl Planner {
         let filter = self.filter_memory(&file.display().to_string(), frame, size)?;
         // Each as it is read, as it is kept and as one of all frames.
         let masks = self.layers.iter().filter(|layer| layer.look.mask.is_some()).count() as u64;
-        let masks = u64::from(size.0) * u64::from(size.1) * 4 * 3 * masks;
-        Ok(Some(Needs { frame: opened.weight().saturating_add(masks), filter }))
+        let masks = masks + if self.has_flow { 4 } else { 0 };
+        let maps = u64::from(size.0) * u64::from(size.1) * 4 * 3 * masks;
+        Ok(Some(Needs { frame: opened.weight().saturating_add(maps), filter }))
     }
 }
 
 /// One picture of a frame.
 #[derive(Clone, Copy)]
-struct Job<'a> {
+struct LayerJob<'a> {
     at: usize,
     /// The change to the working space.
     there: Option<&'a Change>,
@@ -455,6 +465,7 @@ pub fn usable_guides(library: &Library, style: &Style) -> Result<Vec<Guide>> {
                 Kind::Depth => guides.push(Guide::Depth),
                 Kind::ObjectId => guides.push(Guide::ObjectId),
                 Kind::Position => guides.push(Guide::RestPosition),
+                Kind::Flow => guides.push(Guide::Flow),
                 Kind::Motion if is_steady && port.id == "motion" => guides.push(Guide::Motion),
                 Kind::Motion if is_steady => guides.push(Guide::MotionForward),
                 _ => {}

@@ -18,7 +18,6 @@ use std::path::{Path, PathBuf};
 use serde_json::{Map, Value, json};
 
 use super::masks::MaskChoice;
-use crate::stylize::looks;
 use crate::stylize::preset::{self, Preset};
 use crate::stylize::source;
 use crate::stylize::style::Style;
@@ -115,8 +114,8 @@ impl Entry {
 /// The style of this name with parameters, as a preset in the folder of the looks.
 fn preset_of(place: &Path, name: &str, params: Option<Value>) -> Result<Preset> {
     let own = json!({ "style": name, "parameters": params.unwrap_or(Value::Object(Map::new())) });
-    let own = Preset::parse(place, &own.to_string())?;
-    let is_look = looks::id(Path::new(name)).is_some();
+    let own = preset::parse(place, &own.to_string())?;
+    let is_look = preset::id_of_look(Path::new(name)).is_some();
     let file = if is_look { PathBuf::from(name) } else { place.with_file_name(name) };
     let is_file = Path::new(name).extension().is_some_and(|e| e.eq_ignore_ascii_case("json"));
     if !(is_look || is_file) {
@@ -126,7 +125,7 @@ fn preset_of(place: &Path, name: &str, params: Option<Value>) -> Result<Preset> 
     if preset::is_graph(&text) {
         return Ok(own);
     }
-    let mut preset = Preset::parse(&file, &text)?;
+    let mut preset = preset::parse(&file, &text)?;
     // Graph files lie beside their preset, which may be in another folder than the looks.
     if preset.style.to_ascii_lowercase().ends_with(".json") {
         let folder = Path::new(name).parent().unwrap_or(Path::new(""));

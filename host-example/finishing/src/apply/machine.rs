@@ -1,9 +1,9 @@
-//! How much memory this machine has, or the part of it that this process may use.
+//! Memory of this machine, or the part of it that this process may use.
 
 use std::fs;
 use std::path::{Component, Path, PathBuf};
 
-/// Where Linux shows what it knows.
+/// Root of the folders where Linux shows what it knows.
 const ROOT: &str = "/";
 
 /// Bytes of memory of the machine; where the process is in control groups with limits, as containers are, the least of

@@ -1,4 +1,4 @@
-//! Masks of a run: where they come from, and each in its picture's size.
+//! Masks of a run, and its painted flow map: where they come from, and each in its picture's size.
 //!
 //! A mask is a number for each pixel. Files of colours stand for their luminance, 0.2126 R + 0.7152 G + 0.0722 B of the numbers
 //! as they are stored; alpha is never looked at. What is no number is 0, and all is cut to 0..=1.
@@ -11,27 +11,41 @@ use isophote_exr_edit::Window;
 use super::tasks::Tasks;
 use isophote_files::error::{Error, Result};
 use isophote_files::frames::{self, Pattern};
-use isophote_pictures::exr::{self, MaskSource, OnUnknown, Picture};
+use isophote_pictures::exr::{self, MaskSource, OnUnknown, Picture, Selection};
 use isophote_pictures::pixels::{Pixels, Samples};
 use isophote_pictures::read::{self, Source, Unread};
+
+/// The guide that a flow map is.
+const FLOW: &str = "flow";
 
 /// Where a mask comes from, and whether what it leaves out is meant.
 #[derive(Clone, Debug)]
 pub struct MaskChoice {
-    /// Where it comes from.
+    /// Source of the mask.
     pub source: MaskSource,
-    /// Whether it is turned round.
+    /// True where it is turned round.
     pub invert: bool,
 }
 
-/// The masks of a run.
+/// The masks of a run, and its painted flow map.
 #[derive(Debug, Default)]
-pub struct Masks(Vec<Mask>);
+pub struct Masks {
+    masks: Vec<Mask>,
+    flow: Option<Flow>,
+}
+
+/// A painted flow map: RGBA as it is stored.
+#[derive(Debug)]
+struct Flow {
+    place: Place,
+    /// The map that all frames have in common.
+    kept: Mutex<Option<(Frame, Pixels)>>,
+}
 
 #[derive(Debug)]
 struct Mask {
     place: Place,
-    /// What of the file is the mask, where that is not all of it.
+    /// Part of the file that is the mask, where that is not all of it.
     source: Option<MaskSource>,
     invert: bool,
     on_unknown: OnUnknown,
@@ -74,7 +88,16 @@ impl Masks {
             };
             Ok(Mask { place, source, invert: choice.invert, on_unknown, kept: Mutex::new(None) })
         };
-        choices.iter().map(mask).collect::<Result<_>>().map(Self)
+        Ok(Self { masks: choices.iter().map(mask).collect::<Result<_>>()?, flow: None })
+    }
+
+    /// The same with the painted flow map of a file, or of one for each frame.
+    ///
+    /// # Errors
+    /// As [`Masks::new`].
+    pub fn with_flow(self, path: Option<&Path>) -> Result<Self> {
+        let flow = |path| -> Result<Flow> { Ok(Flow { place: Place::of(path)?, kept: Mutex::new(None) }) };
+        Ok(Self { flow: path.map(flow).transpose()?, ..self })
     }
 
     /// Makes sure that all frames have their files; those of a video are not known.
@@ -82,10 +105,11 @@ impl Masks {
     /// # Errors
     /// [`Error::Input`] naming files that are missing.
     pub fn check(&self, tasks: Option<&Tasks>) -> Result<()> {
-        for mask in &self.0 {
-            match (&mask.place, tasks) {
+        let masks = self.masks.iter().map(|mask| (&mask.place, "masks"));
+        for (place, what) in masks.chain(self.flow.iter().map(|flow| (&flow.place, "flow maps"))) {
+            match (place, tasks) {
                 (Place::Files(pattern), Some(tasks)) if !tasks.is_sequence() => {
-                    let problem = "names masks by frame, and there is one picture";
+                    let problem = format!("names {what} by frame, and there is one picture");
                     return Err(Error::file(&pattern.file(0), problem, "name one file"));
                 }
                 (Place::Files(pattern), Some(tasks)) => {
@@ -93,13 +117,13 @@ impl Masks {
                     let missing: Vec<i64> = frames.filter(|frame| !pattern.file(*frame).is_file()).collect();
                     if let Some(first) = missing.first() {
                         let problem = format!(
-                            "is no file; masks of the frames {} are missing",
+                            "is no file; {what} of the frames {} are missing",
                             frames::summary(&missing)
                         );
                         return Err(Error::file(
                             &pattern.file(*first),
                             problem,
-                            "give other --frames, or other masks",
+                            format!("give other --frames, or other {what}"),
                         ));
                     }
                 }
@@ -118,8 +142,20 @@ impl Masks {
         for picture in &mut source.pictures {
             let frame =
                 Frame { data: picture.window(), display: picture.display.unwrap_or(picture.window()) };
-            picture.masks.resize(self.0.len(), None);
-            for (mask, slot) in self.0.iter().zip(&mut picture.masks) {
+            if let Some(flow) = &self.flow {
+                match flow.of_frame(number, frame) {
+                    Ok(pixels) => {
+                        picture.guides.retain(|(name, _)| *name != FLOW);
+                        picture.guides.push((FLOW, pixels));
+                    }
+                    Err(error @ Error::Failure { .. }) => return Err(error),
+                    Err(error) => {
+                        picture.refused.get_or_insert(error);
+                    }
+                }
+            }
+            picture.masks.resize(self.masks.len(), None);
+            for (mask, slot) in self.masks.iter().zip(&mut picture.masks) {
                 let path = match &mask.place {
                     Place::Picture => {
                         *slot = slot.take().map(|values| mask.finished(values));
@@ -144,18 +180,10 @@ impl Masks {
 impl Mask {
     /// The mask that a file holds for a picture of this frame.
     fn of_file(&self, path: &Path, frame: Frame) -> Result<Pixels> {
-        let mut kept = self.kept.lock().unwrap_or_else(PoisonError::into_inner);
-        if let Some((_, pixels)) = kept.as_ref().filter(|(known, _)| *known == frame) {
-            return Ok(pixels.clone());
-        }
-        let pixels = self.finished(self.read(path, frame)?);
-        if matches!(self.place, Place::File(_)) {
-            *kept = Some((frame, pixels.clone()));
-        }
-        Ok(pixels)
+        of_file(&self.kept, &self.place, frame, || Ok(self.finished(self.read(path, frame)?)))
     }
 
-    /// What is in a file, in the size of a picture.
+    /// Mask in a file, in the size of a picture.
     fn read(&self, path: &Path, frame: Frame) -> Result<Pixels> {
         let unread = Unread::open(path)?;
         let opened = match unread.any(path)? {
@@ -199,8 +227,76 @@ impl Mask {
     }
 }
 
+impl Flow {
+    /// The map of a frame.
+    fn of_frame(&self, number: Option<i64>, frame: Frame) -> Result<Pixels> {
+        let path = match &self.place {
+            Place::Files(pattern) => pattern.file(number.unwrap_or_default()),
+            Place::File(path) => path.clone(),
+            Place::Picture => PathBuf::new(),
+        };
+        of_file(&self.kept, &self.place, frame, || Self::read(&path, frame))
+    }
+
+    /// What is in a file, in the size of a picture.
+    fn read(path: &Path, frame: Frame) -> Result<Pixels> {
+        let source = read::open(path, &Selection::default())?.decode(path)?;
+        let Some(picture) = source.pictures.into_iter().next() else {
+            return Err(Error::file(path, "is empty", "name another flow map"));
+        };
+        let own = picture.window();
+        let window = frame
+            .place(own, picture.display)
+            .map_err(|problem| Error::file(path, problem, "paint flow maps of the picture's size"))?;
+        let channels = picture.pixels.channels() as usize;
+        if channels < 3 {
+            let problem = "is grey, and its red and green are to say where flow leads";
+            return Err(Error::file(path, problem, "name a picture of colours"));
+        }
+        let numbers = picture.pixels.to_f32();
+        // Beside the map nothing is painted.
+        let mut map = vec![0.0; window.width * window.height * 4];
+        for y in 0..window.height {
+            for x in 0..window.width {
+                let (column, row) =
+                    (i64::from(window.x - own.x) + x as i64, i64::from(window.y - own.y) + y as i64);
+                if (0..own.width as i64).contains(&column) && (0..own.height as i64).contains(&row) {
+                    let from =
+                        &numbers[(row as usize * own.width + column as usize) * channels..][..channels];
+                    let to = &mut map[(y * window.width + x) * 4..][..4];
+                    // What has no alpha counts fully.
+                    to[3] = 1.0;
+                    to[..channels].copy_from_slice(from);
+                }
+            }
+        }
+        Pixels::new(window.width as u32, window.height as u32, 4, Samples::F32(map)).ok_or_else(|| {
+            Error::file(path, "does not hold as many pixels as it says", "name another flow map")
+        })
+    }
+}
+
+/// What a file holds for a picture of this frame: as it was kept, or as it is read, and kept where all frames have it in
+/// common.
+fn of_file(
+    kept: &Mutex<Option<(Frame, Pixels)>>,
+    place: &Place,
+    frame: Frame,
+    read: impl FnOnce() -> Result<Pixels>,
+) -> Result<Pixels> {
+    let mut kept = kept.lock().unwrap_or_else(PoisonError::into_inner);
+    if let Some((_, pixels)) = kept.as_ref().filter(|(known, _)| *known == frame) {
+        return Ok(pixels.clone());
+    }
+    let pixels = read()?;
+    if matches!(place, Place::File(_)) {
+        *kept = Some((frame, pixels.clone()));
+    }
+    Ok(pixels)
+}
+
 impl Frame {
-    /// Which window of a mask belongs to the picture: the same part of the display, or else all of it.
+    /// Window of a mask that belongs to the picture: the same part of the display, or else all of it.
     fn place(self, data: Window, display: Option<Window>) -> std::result::Result<Window, String> {
         let display = display.unwrap_or(data);
         let size = |window: Window| (window.width, window.height);

@@ -1,4 +1,4 @@
-//! How much memory frames may take together.
+//! Memory that frames may take together.
 
 use std::path::Path;
 use std::str::FromStr;

@@ -8,9 +8,9 @@ use std::path::{Path, PathBuf};
 use std::sync::Arc;
 
 use super::filter::Planner;
+use super::frame_cache::{CachedFrame, Window};
 use super::masks::Masks;
 use super::memory::{Budget, Needs, too_large};
-use super::reel::{Held, Window};
 use super::tasks::Task;
 use isophote_files::error::{Error, Result};
 use isophote_files::frames::Pattern;
@@ -18,14 +18,14 @@ use isophote_files::limits;
 use isophote_pictures::exr::{self, Selection};
 use isophote_pictures::read::{Opened, Source, Unread};
 
-/// Where the frames of a run come from.
+/// Source of the frames of a run.
 #[derive(Clone, Copy, Debug)]
-pub struct Footage<'a> {
+pub struct FrameSource<'a> {
     /// The sequence, whose frames beyond the run's are read where others depend on them.
     pub frames: Option<&'a Pattern>,
     /// Motion vectors in files of their own.
     pub motion: Option<&'a Pattern>,
-    /// What is read of EXR files.
+    /// Selection of what is read of EXR files.
     pub selection: &'a Selection,
     /// Masks of the run.
     pub masks: &'a Masks,
@@ -36,7 +36,7 @@ pub struct Footage<'a> {
 /// Reads the frames of a run.
 #[derive(Debug)]
 pub struct Reader<'a> {
-    footage: Footage<'a>,
+    frame_source: FrameSource<'a>,
     /// Knows what frames depend on and need.
     planner: Planner,
     /// Frames whose result will be written.
@@ -44,15 +44,20 @@ pub struct Reader<'a> {
     /// The first frame, where it was opened before.
     first: Option<(PathBuf, Opened)>,
     /// Frames that the last one depended on; none where a file cannot be read.
-    held: Vec<(i64, Option<Arc<Held<'a>>>)>,
+    held: Vec<(i64, Option<Arc<CachedFrame<'a>>>)>,
 }
 
 impl<'a> Reader<'a> {
     /// Of the frames `tasks`, of which `first` is the first, where it was opened before.
-    pub fn new(footage: Footage<'a>, planner: Planner, tasks: &[Task], first: Option<Opened>) -> Self {
+    pub fn new(
+        frame_source: FrameSource<'a>,
+        planner: Planner,
+        tasks: &[Task],
+        first: Option<Opened>,
+    ) -> Self {
         let first = tasks.first().map(|task| task.input.clone()).zip(first);
         let tasks = tasks.iter().filter_map(|task| task.frame).collect();
-        Self { footage, planner, tasks, first, held: Vec::new() }
+        Self { frame_source, planner, tasks, first, held: Vec::new() }
     }
 
     /// Forgets that the first frame was opened: it is not done.
@@ -63,7 +68,7 @@ impl<'a> Reader<'a> {
     /// Reads a frame and the neighbours that it depends on and that there are. Waits for room.
     ///
     /// # Errors
-    /// What is wrong with the frame's own file, and [`Error::Failure`] where memory is short.
+    /// The problem with the frame's own file, and [`Error::Failure`] where memory is short.
     pub fn window(&mut self, task: &Task) -> Result<Window<'a>> {
         let Some(frame) = task.frame else {
             let own = Arc::new(self.read(&task.input, None, 1)?);
@@ -79,7 +84,7 @@ impl<'a> Reader<'a> {
         for towards in [-1, 1] {
             let reach = if towards < 0 { past } else { future };
             for number in (1..=reach).map(|n| frame + towards * n) {
-                let Some(pattern) = self.footage.frames else { break };
+                let Some(pattern) = self.frame_source.frames else { break };
                 let path = pattern.file(number);
                 let is_bad = self.held.iter().any(|(n, held)| *n == number && held.is_none());
                 if is_bad || !path.is_file() {
@@ -100,7 +105,7 @@ impl<'a> Reader<'a> {
     }
 
     /// A frame, from memory or from its file.
-    fn frame(&mut self, number: i64, path: &Path, span: u64) -> Result<Arc<Held<'a>>> {
+    fn frame(&mut self, number: i64, path: &Path, span: u64) -> Result<Arc<CachedFrame<'a>>> {
         if let Some((_, held)) = self.held.iter().find(|(n, _)| *n == number)
             && let Some(held) = held
         {
@@ -114,8 +119,8 @@ impl<'a> Reader<'a> {
 
     /// Reads a frame when there is room for its file, and decodes it when there is room for all that it needs; `span` frames
     /// are held together.
-    fn read(&mut self, path: &Path, number: Option<i64>, span: u64) -> Result<Held<'a>> {
-        let Footage { selection, budget, .. } = self.footage;
+    fn read(&mut self, path: &Path, number: Option<i64>, span: u64) -> Result<CachedFrame<'a>> {
+        let FrameSource { selection, budget, .. } = self.frame_source;
         let share = budget.share();
         let grow = |needs: Needs| {
             let together = needs.of(span);
@@ -134,12 +139,12 @@ impl<'a> Reader<'a> {
             limits::must_have(needs.total(), &path.display().to_string())?;
         }
         let mut source = opened.decode(path)?;
-        if let (Some(pattern), Some(number)) = (self.footage.motion, number) {
+        if let (Some(pattern), Some(number)) = (self.frame_source.motion, number) {
             add_motion(&mut source, &pattern.file(number), selection)?;
         }
         let is_written = number.is_none_or(|number| self.tasks.contains(&number));
-        self.footage.masks.add(&mut source, number)?;
-        Ok(Held::new(number, source, is_written, share))
+        self.frame_source.masks.add(&mut source, number)?;
+        Ok(CachedFrame::new(number, source, is_written, share))
     }
 }
 

@@ -13,7 +13,7 @@ use isophote_files::error::{Error, Result};
 use isophote_files::output;
 use isophote_files::replacing::Consent;
 
-/// What became of a frame.
+/// Outcome of a frame.
 #[derive(Debug)]
 pub enum Outcome {
     /// It was written; so many samples were replaced.
@@ -47,7 +47,7 @@ impl Counts {
         self.written + self.skipped + self.failed
     }
 
-    /// Whether all of so many frames were done.
+    /// Checks that all of so many frames were done.
     ///
     /// # Errors
     /// [`Error::Failure`] when the run was stopped before, and as [`check_failed`].
@@ -60,7 +60,7 @@ impl Counts {
     }
 }
 
-/// Whether no frame failed.
+/// Checks that no frame failed.
 ///
 /// # Errors
 /// [`Error::Input`] with how many did.
@@ -81,11 +81,11 @@ pub struct Report {
     bar: ProgressBar,
     json: bool,
     sequence: bool,
-    /// How many there are; none where nobody knows exactly.
+    /// Number of all frames; none where nobody knows exactly.
     frames: Option<u64>,
     /// Hundredths of the picture that were told of.
     told: AtomicU32,
-    /// Whether it was said that nothing can be printed.
+    /// True where it was said that nothing can be printed.
     unheard: AtomicBool,
     started: Instant,
     counts: Mutex<Counts>,

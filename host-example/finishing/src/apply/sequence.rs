@@ -8,8 +8,8 @@ use std::sync::mpsc::{Receiver, SyncSender, sync_channel};
 use std::thread::{Builder, Scope, ScopedJoinHandle};
 
 use super::filter::{Filter, Filtered};
+use super::frame_cache::{CachedFrame, Window};
 use super::reader::Reader;
-use super::reel::{Held, Window};
 use super::report::{Outcome, Report};
 use super::tasks::Task;
 use isophote_files::error::{Error, Result};
@@ -24,7 +24,7 @@ use std::sync::Arc;
 /// Most frames between being read and being written: one in each hand and one waiting between them.
 pub const MOST_IN_FLIGHT: u64 = 5;
 
-/// How a run is done.
+/// Run over the frames of a sequence.
 #[derive(Debug)]
 pub struct Run<'a> {
     /// All frames.
@@ -33,9 +33,9 @@ pub struct Run<'a> {
     pub format: Format,
     /// Consent to replace files.
     pub consent: Consent,
-    /// Whether frames are read and written beside being filtered.
+    /// Threads on which frames are read and written beside being filtered, if they are.
     pub threads: Threads,
-    /// Where progress is reported.
+    /// Report of the progress.
     pub report: &'a Report,
     /// Set when the run shall end early.
     pub stop: &'a Stop,
@@ -50,7 +50,7 @@ struct Ready<'a> {
 /// A frame that was filtered.
 struct Done<'a> {
     task: &'a Task,
-    own: Arc<Held<'a>>,
+    own: Arc<CachedFrame<'a>>,
     exr: Option<ExrFile>,
     filtered: Filtered,
 }
@@ -60,7 +60,7 @@ impl<'a> Run<'a> {
     /// with its error. `reader` reads these frames for the filters' style; there is at least one filter.
     ///
     /// # Errors
-    /// What kept a frame from being written, [`Error::Failure`] of the library or the device.
+    /// The problem that kept a frame from being written, [`Error::Failure`] of the library or the device.
     pub fn all(&self, filters: &mut [Filter], mut reader: Reader<'a>) -> Result<()> {
         match (self.threads, filters) {
             (_, []) => Ok(()),

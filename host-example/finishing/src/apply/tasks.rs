@@ -1,4 +1,4 @@
-//! Which files a run reads and writes.
+//! Files that a run reads and writes.
 
 use std::path::{Path, PathBuf};
 
@@ -14,9 +14,9 @@ use isophote_files::replacing::Made;
 pub struct Task {
     /// Its number in a sequence.
     pub frame: Option<i64>,
-    /// What is read.
+    /// Path that is read.
     pub input: PathBuf,
-    /// What is written.
+    /// Path that is written.
     pub output: PathBuf,
 }
 
@@ -27,7 +27,7 @@ impl Task {
     }
 }
 
-/// What becomes of a run when frames are missing.
+/// Treatment of missing frames by a run.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
 pub enum OnMissing {
     /// It does not start.
@@ -95,7 +95,7 @@ impl Tasks {
         })
     }
 
-    /// Whether they are frames of a sequence.
+    /// True where they are frames of a sequence.
     pub fn is_sequence(&self) -> bool {
         self.sequence.is_some()
     }

@@ -4,13 +4,10 @@
 //! after the scene's, and read the renderer's textures directly. Once warm, a frame creates no GPU object and
 //! is one submission.
 
-pub mod lengths;
-pub mod looks;
 pub mod precision;
 pub mod preset;
 pub mod source;
 pub mod style;
-pub mod title;
 
 use std::sync::Arc;
 
@@ -64,7 +61,8 @@ impl Stylizer {
         self.frames.depth()
     }
 
-    /// Whether the renderer must [add rest positions](isophote_render::renderer::Renderer::add_rest_positions) before targets are bound.
+    /// True where the renderer must [add rest positions](isophote_render::renderer::Renderer::add_rest_positions)
+    /// before targets are bound.
     ///
     /// # Errors
     /// [`isophote_files::error::Error::Failure`] when the library fails.
@@ -77,13 +75,13 @@ impl Stylizer {
         self.frames.forget();
     }
 
-    /// Whether the output is a colour (linear Rec.709, premultiplied alpha, `Rgba32Float`) or a scalar
+    /// Kind of the output: a colour (linear Rec.709, premultiplied alpha, `Rgba32Float`) or a scalar
     /// (`R32Float`).
     pub fn kind(&self) -> Kind {
         self.style.kind
     }
 
-    /// What [`Stylizer::encode`] writes. Another one after [`Stylizer::resize`], and after
+    /// Texture that [`Stylizer::encode`] writes. Another one after [`Stylizer::resize`], and after
     /// [`Stylizer::update`] when that says so.
     pub fn output(&self) -> &wgpu::TextureView {
         self.frames.output()
@@ -203,7 +201,7 @@ impl Stylizer {
         self.frames.plan()
     }
 
-    /// What was made on the device for this style so far.
+    /// Number of things made on the device for this style so far.
     pub fn counts(&self) -> Counts {
         self.frames.counts()
     }
@@ -223,7 +221,7 @@ impl Style {
         self.named().plan(library, request, known)
     }
 
-    /// What frames read of those before, where all are known.
+    /// Images of frames before that frames read, where all are known.
     ///
     /// # Errors
     /// As [`Named::plan`].
@@ -232,7 +230,7 @@ impl Style {
     }
 }
 
-/// What the renderer's frames are: linear light, premultiplied, with guides.
+/// Request of the renderer's frames: linear light, premultiplied, with guides.
 ///
 /// # Errors
 /// [`isophote_files::error::Error::Input`] for impossible sizes.

@@ -1,4 +1,4 @@
-//! How precisely graphics devices compute.
+//! Precision in which graphics devices compute.
 
 use clap::ValueEnum;
 
@@ -8,7 +8,7 @@ use isophote_loader::abi::{
     ISOPHOTE_PRECISION_EXACT, ISOPHOTE_PRECISION_FAST, ISOPHOTE_PRECISION_HALF, IsophotePrecision,
 };
 
-/// How precisely graphics devices compute a style; the CPU always computes exactly.
+/// Precision in which graphics devices compute a style; the CPU always computes exactly.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, ValueEnum)]
 pub enum Precision {
     /// As the CPU does, in 32-bit floats.

@@ -1,4 +1,4 @@
-//! What `--style` and `--set` say, as a graph of the library.
+//! Style that `--style` and `--set` name, as a graph of the library.
 
 use std::ffi::OsStr;
 use std::path::Path;
@@ -6,15 +6,13 @@ use std::str::FromStr;
 
 use serde_json::{Map, Value};
 
-use super::lengths::Lengths;
-use super::preset::{self, Animated, Preset, Track};
+use super::preset::{self, Lengths, Preset};
 use super::source;
-use crate::stylize::looks;
 use isophote_files::error::{AtPlace, Error, Result};
 use isophote_files::{frames, output};
 use isophote_loader::abi::IsophoteRequest;
-use isophote_loader::catalogue::{Kind, Node, Param, Port};
-use isophote_loader::{Graph, Library};
+use isophote_loader::catalogue::{Kind, Node};
+use isophote_loader::{Graph, Library, Style as Tracks};
 
 /// One `--set`: `id=value`, or `node.id=value` for one node of a graph.
 #[derive(Clone, Debug, PartialEq, Eq)]
@@ -60,14 +58,12 @@ pub struct Style {
     pub name: String,
     /// The graph.
     pub graph: Graph,
-    /// What it yields.
+    /// Kind of image that it yields.
     pub kind: Kind,
-    /// What its lengths mean.
+    /// Unit of its lengths.
     pub lengths: Lengths,
-    /// Whether it is one node, index 0, with what feeds it.
-    single: bool,
-    /// Parameters that change from frame to frame.
-    animated: Vec<Animated>,
+    /// Its parameters by name and by frame.
+    tracks: Tracks,
 }
 
 impl Style {
@@ -86,9 +82,8 @@ impl Style {
     /// # Errors
     /// As [`Style::load`].
     pub fn of_preset(library: &Library, path: &Path, preset: &Preset) -> Result<Self> {
-        let mut style = Self::of(inside(library, path, preset)?, path.as_os_str())?;
-        style.follow_all(preset)?;
-        style.picture()
+        let tracks = open_text(library, path, &preset::text(preset)?, Some(preset))?;
+        Self::of(tracks, path.as_os_str())?.picture()
     }
 
     /// Itself, where it yields a picture.
@@ -108,42 +103,39 @@ impl Style {
     /// # Errors
     /// As [`Style::load`].
     pub fn any(library: &Library, name: impl AsRef<OsStr>, settings: &[Setting]) -> Result<Self> {
-        let mut opened = open(library, name.as_ref())?;
-        let preset = opened.preset.take();
-        let mut style = Self::of(opened, name.as_ref())?;
-        if let Some(preset) = &preset {
-            style.follow_all(preset)?;
-        }
+        let style = Self::of(open(library, name.as_ref())?, name.as_ref())?;
         for setting in settings {
-            let (node, _) = style.set(setting)?;
-            style.animated.retain(|a| (a.node, &a.param) != (node, &setting.param));
+            style.set(setting)?;
         }
         Ok(style)
     }
 
-    /// All that keeps the preset of the file `path` from being used, beside what [`Preset::examine`] finds.
-    pub fn faults(library: &Library, path: &Path, preset: &Preset) -> Vec<Error> {
-        let opened = inside(library, path, preset).and_then(|opened| Self::of(opened, path.as_os_str()));
-        let mut style = match opened {
-            Ok(style) => style,
-            Err(fault) => return vec![fault],
+    /// All that keeps the preset of the file `path` from being used.
+    ///
+    /// # Errors
+    /// As [`preset::examine`].
+    pub fn faults(library: &Library, path: &Path, text: &str) -> Result<(Preset, Vec<Error>)> {
+        let (preset, faults) = preset::examine(path, text)?;
+        let graph = match graph_beside(library, path, &preset) {
+            Ok(graph) => graph,
+            Err(fault) => return Ok((preset, faults.into_iter().chain([fault]).collect())),
         };
-        let mut faults = Vec::new();
-        for (param, track) in &preset.params {
-            style.follow(param, track, &mut faults);
-        }
-        faults
+        let place = path.display().to_string();
+        let failed = |e: isophote_loader::Error| e.at(&place, FIX);
+        let all = library.check_preset(&place, text, graph.as_deref()).map_err(failed)?;
+        Ok((preset, all.into_iter().map(|fault| Error::of_fault(fault, &place, FIX)).collect()))
     }
 
-    fn of(opened: Opened, name: &OsStr) -> Result<Self> {
-        let Opened { graph, single, .. } = opened;
+    fn of(tracks: Tracks, name: &OsStr) -> Result<Self> {
         let name = name.to_string_lossy().into_owned();
+        let graph = tracks.graph().map_err(|e| e.at(&name, "choose another style"))?;
         let kind =
             graph.output_kind().map_err(|e| e.at(&name, "name the node whose output is the graph's"))?;
-        Ok(Self { name, graph, kind, lengths: Lengths::default(), single, animated: Vec::new() })
+        let lengths = if tracks.reference_height() == 0 { Lengths::Pixels } else { Lengths::Relative };
+        Ok(Self { name, graph, kind, lengths, tracks })
     }
 
-    /// What is asked of the library for pictures of a size, with lengths as the style means them.
+    /// Request to the library for pictures of a size, with lengths as the style means them.
     ///
     /// # Errors
     /// As [`Library::request`].
@@ -155,10 +147,8 @@ impl Style {
     /// Warns of keyframes before and after all of `frames`.
     pub fn warn_of_keys_beyond(&self, frames: &[i64]) {
         let (Some(first), Some(last)) = (frames.iter().min(), frames.iter().max()) else { return };
-        let mut keys: Vec<i64> = self.animated.iter().flat_map(Animated::frames).collect();
+        let mut keys = self.tracks.frames();
         keys.retain(|key| !(first..=last).contains(&key));
-        keys.sort_unstable();
-        keys.dedup();
         if !keys.is_empty() {
             output::warn(format_args!(
                 "{}: the keyframes {} are outside the frames {first} to {last}",
@@ -173,70 +163,18 @@ impl Style {
     /// # Errors
     /// [`Error::Input`] when the library refuses a value.
     pub fn at_frame(&self, frame: i64) -> Result<bool> {
-        for animated in &self.animated {
-            let value = animated.at(frame);
-            self.graph.set(animated.node, &animated.param, &value).map_err(|e| {
-                e.at(
-                    format!("{}: parameter '{}' at frame {frame}", self.name, animated.param),
-                    "choose other keys",
-                )
-            })?;
-        }
-        Ok(!self.animated.is_empty())
+        let set = self.tracks.at_frame(self.graph.handle(), frame);
+        set.map_err(|e| e.at("keyframes", "choose other keys").within(Path::new(&self.name)))
     }
 
-    /// Whether parameters change from frame to frame.
+    /// Tells whether parameters change from frame to frame.
     pub fn is_animated(&self) -> bool {
-        !self.animated.is_empty()
+        !self.tracks.frames().is_empty()
     }
 
     /// The value at a frame of the animated parameter that a preset names `name`.
     pub fn animated_at(&self, name: &str, frame: i64) -> Option<String> {
-        self.animated.iter().find(|a| a.name == name).map(|a| a.at(frame))
-    }
-
-    /// Takes over all that a preset says.
-    fn follow_all(&mut self, preset: &Preset) -> Result<()> {
-        self.lengths = preset.lengths.unwrap_or_default();
-        let mut faults = Vec::new();
-        for (param, track) in &preset.params {
-            self.follow(param, track, &mut faults);
-        }
-        faults.into_iter().next().map_or(Ok(()), Err)
-    }
-
-    /// Takes over what a preset says of a parameter. What it cannot take is added to `faults`.
-    fn follow(&mut self, name: &str, track: &Track, faults: &mut Vec<Error>) {
-        let place = format!("{}: parameter '{name}'", self.name);
-        match track {
-            Track::Still(value) => faults.extend(self.follow_value(name, value, &place).err()),
-            Track::Keys { keys, step } => {
-                let mut refused = Vec::new();
-                // From the last to the first, whose value stays.
-                for (frame, value) in keys.iter().rev() {
-                    let put = self.follow_value(name, value, &format!("{place} at frame {frame}"));
-                    let animated = put.and_then(|(node, param)| {
-                        let is_first = *frame == keys[0].0;
-                        is_first.then(|| Animated::new(&place, (name, node, &param), keys, *step)).transpose()
-                    });
-                    match animated {
-                        Ok(animated) => self.animated.extend(animated),
-                        Err(fault) => refused.push(fault),
-                    }
-                }
-                faults.extend(refused.into_iter().rev());
-            }
-        }
-    }
-
-    /// Sets a parameter by the name that a preset has for it; returns the index of its node and what that says of it.
-    fn follow_value(&self, name: &str, value: &str, place: &str) -> Result<(u32, Param)> {
-        let unknown = || Error::input(place, "is no name", "write the id of a parameter");
-        let setting = format!("{name}={value}").parse::<Setting>().map_err(|_| unknown())?;
-        let (node, spec) = self.put(&setting, place)?;
-        // The node has taken a value for it.
-        let param = spec.params.into_iter().find(|p| p.id == setting.param).ok_or_else(unknown)?;
-        Ok((node, param))
+        self.tracks.value(name, frame)
     }
 
     /// Sets a parameter of the node that is named, or of the only one that has it. Returns the index of the node
@@ -246,7 +184,13 @@ impl Style {
     /// [`Error::Input`] when there is no such node or parameter, several nodes have the parameter, or it cannot
     /// have the value.
     pub fn set(&self, setting: &Setting) -> Result<(u32, Node)> {
-        self.put(setting, &format!("--set {setting}"))
+        let name = match &setting.node {
+            Some(node) => format!("{node}.{}", setting.param),
+            None => setting.param.clone(),
+        };
+        let fail = |e: isophote_loader::Error| e.at(format!("--set {setting}"), "see the graph's nodes");
+        let node = self.tracks.set(self.graph.handle(), &name, &setting.value).map_err(fail)?;
+        Ok((node, self.graph.spec(node).map_err(fail)?))
     }
 
     /// Makes all nodes that can be steady over time so, from 0 to 1.
@@ -261,8 +205,8 @@ impl Style {
         for node in 0..self.graph.count() {
             let spec = self.graph.spec(node).map_err(fail)?;
             if spec.params.iter().any(|p| p.id == PARAM) {
-                self.graph.set(node, PARAM, &steadiness.to_string()).map_err(fail)?;
-                self.animated.retain(|a| (a.node, a.param.as_str()) != (node, PARAM));
+                let name = format!("{}.{PARAM}", self.graph.name(node).map_err(fail)?);
+                self.tracks.set(self.graph.handle(), &name, &steadiness.to_string()).map_err(fail)?;
                 found = true;
             }
         }
@@ -273,7 +217,7 @@ impl Style {
         Ok(())
     }
 
-    /// Whether a node of the graph can use pictures of a kind.
+    /// True where a node of the graph can use pictures of a kind.
     ///
     /// # Errors
     /// [`Error::Failure`] when the library fails.
@@ -287,16 +231,16 @@ impl Style {
         Ok(false)
     }
 
-    /// Whether a node of the graph reads the mask that enters it.
+    /// Whether a node of the graph reads a guide that enters it by its name.
     ///
     /// # Errors
     /// [`Error::Failure`] when the library fails.
-    pub fn takes_mask(&self) -> Result<bool> {
+    pub fn takes(&self, guide: &str) -> Result<bool> {
         let json = self.graph.to_json().map_err(|e| e.at(&self.name, "choose another style"))?;
         let graph: Value = serde_json::from_str(&json).unwrap_or_default();
         let nodes = graph["nodes"].as_array().into_iter().flatten();
         let mut sources = nodes.filter_map(|node| node["inputs"].as_object()).flat_map(Map::values);
-        Ok(sources.any(|source| source == "@mask"))
+        Ok(sources.any(|source| *source == format!("@{guide}")))
     }
 
     /// Lets all nodes that can be steady over time estimate motion from the pictures themselves.
@@ -328,154 +272,70 @@ impl Style {
         }
         Ok(())
     }
-
-    /// [`Style::set`], where `place` says in messages who wants it.
-    fn put(&self, setting: &Setting, place: &str) -> Result<(u32, Node)> {
-        let fail = |e: isophote_loader::Error| e.at(place, "see the graph's nodes");
-        let graph = &self.graph;
-        let mut named = Vec::new();
-        for node in 0..graph.count() {
-            named.push((node, graph.name(node).map_err(fail)?, graph.spec(node).map_err(fail)?));
-        }
-        let put = |(node, _, spec): &(u32, String, Node)| {
-            let fix = format!("`isophote nodes {}` lists its parameters", spec.id);
-            graph.set(*node, &setting.param, &setting.value).map_err(|e| e.at(place, fix))?;
-            Ok((*node, spec.clone()))
-        };
-        if let Some(wanted) = &setting.node {
-            let Some(node) = named.iter().find(|(_, name, _)| name == wanted) else {
-                let names: Vec<&str> = named.iter().map(|(_, name, _)| name.as_str()).collect();
-                return Err(Error::input(
-                    place,
-                    format!("the graph has no node '{wanted}'"),
-                    format!("choose from {}", names.join(", ")),
-                ));
-            };
-            return put(node);
-        }
-        let mut holders =
-            named.iter().filter(|(_, _, spec)| spec.params.iter().any(|p| p.id == setting.param));
-        match (holders.next(), holders.next(), named.first()) {
-            // The node that was asked for comes before those that only feed it.
-            (Some(node), Some(_), _) if self.single && node.0 == 0 => put(node),
-            (Some(node), None, _) => put(node),
-            // It is asked even when it has no such parameter: its message names the nearest.
-            (None, _, Some(node)) if self.single => put(node),
-            (None, ..) => {
-                let names: Vec<&str> = named.iter().map(|(_, _, spec)| spec.id).collect();
-                Err(Error::input(
-                    place,
-                    format!("no node of the graph has a parameter '{}'", setting.param),
-                    format!("`isophote nodes NODE` lists the parameters of {}", names.join(", ")),
-                ))
-            }
-            (Some((_, first, _)), Some((_, second, _)), _) => Err(Error::input(
-                place,
-                format!("several nodes of the graph have a parameter '{}'", setting.param),
-                format!("write {first}.{0} or {second}.{0}", setting.param),
-            )),
-        }
-    }
 }
 
-/// What the name of a style stands for.
-struct Opened {
-    graph: Graph,
-    /// Whether it is a single node with what feeds it.
-    single: bool,
-    /// What sets its parameters.
-    preset: Option<Preset>,
-}
+/// How to put most presets right.
+const FIX: &str = "correct the file";
 
-fn open(library: &Library, style: &OsStr) -> Result<Opened> {
+fn open(library: &Library, style: &OsStr) -> Result<Tracks> {
     if let Some(json) = style.to_str().filter(|text| preset::is_written_out(text)) {
-        let graph = library.graph_from_json(json).map_err(|e| e.at("the graph", "correct it"))?;
-        return Ok(Opened { graph, single: false, preset: None });
+        return open_text(library, Path::new("the graph"), json, None);
     }
     let path = Path::new(style);
     // No node has a name that is no text.
-    let refused = match library.single(&style.to_string_lossy()) {
-        Ok(graph) => {
-            let graph = fed(library, graph).map_err(|e| e.at(path.display(), "use a graph file"))?;
-            return Ok(Opened { graph, single: true, preset: None });
+    let name = style.to_string_lossy();
+    let is_file = (looks_like_file(path) || path.exists()) && preset::id_of_look(path).is_none();
+    match library.style(&name) {
+        Ok(tracks) => Ok(tracks),
+        Err(_) if is_file => {
+            let text = source::read(path)?;
+            let preset = if preset::is_graph(&text) { None } else { Some(preset::parse(path, &text)?) };
+            open_text(library, path, &text, preset.as_ref())
         }
-        Err(refused) => refused,
-    };
-    if !(looks_like_file(path) || path.exists() || looks::id(path).is_some()) {
-        let fix = path.to_str().and_then(looks::meant).map_or_else(
-            || {
-                "name a node that `isophote nodes` lists, a look, or a graph file or preset (.json)"
-                    .to_owned()
-            },
-            |look| format!("did you mean '{look}'?"),
-        );
-        return Err(refused.at(path.display(), fix));
+        Err(refused) if preset::id_of_look(path).is_some() => Err(preset::no_look(refused, path)),
+        Err(refused) => {
+            let fix = "name a node that `isophote nodes` lists, a look, or a graph file or preset (.json)";
+            Err(refused.at(path.display(), fix))
+        }
     }
-    let json = source::read(path)?;
-    if preset::is_graph(&json) {
-        let graph =
-            library.graph_from_json(&json).map_err(|e| e.at(path.display(), "correct the graph file"))?;
-        return Ok(Opened { graph, single: false, preset: None });
-    }
-    let preset = Preset::parse(path, &json)?;
-    let opened = inside(library, path, &preset)?;
-    Ok(Opened { preset: Some(preset), ..opened })
 }
 
-/// Whether the name of a style can be that of a file alone, since no node has such a name.
+/// The style of the text of a file; `preset` is what it says, if it is no graph.
+fn open_text(library: &Library, path: &Path, text: &str, preset: Option<&Preset>) -> Result<Tracks> {
+    let graph = preset.map_or(Ok(None), |preset| graph_beside(library, path, preset))?;
+    let place = path.display().to_string();
+    library.style_from_json(&place, text, graph.as_deref()).map_err(|e| e.at(&place, FIX))
+}
+
+/// The text of the graph file that the preset of the file `path` names, if it names one. Of a node and a file of one name the
+/// node counts.
+fn graph_beside(library: &Library, path: &Path, preset: &Preset) -> Result<Option<String>> {
+    let inner = preset::style_beside(preset, path);
+    let named = Path::new(&inner);
+    let is_no_file = preset.style.is_empty()
+        || preset::is_written_out(&preset.style)
+        || preset::id_of_look(named).is_some()
+        || library.find_node(&preset.style).is_ok()
+        || !(looks_like_file(named) || named.exists());
+    if is_no_file {
+        return Ok(None);
+    }
+    source::read(named).map(Some).map_err(|e| e.within(path))
+}
+
+/// True where the name of a style can be that of a file alone, since no node has such a name.
 fn looks_like_file(style: &Path) -> bool {
     style.extension().is_some_and(|e| e.eq_ignore_ascii_case("json")) || style.components().count() > 1
 }
 
-/// Whether a style is a file, and neither a node nor a look nor a graph written out. Of a node and a file of one name the
-/// node counts.
+/// True where a style is a file, and neither a node nor a look nor a graph written out. Of a node and a file of one
+/// name the node counts.
 pub fn is_file(style: &Path) -> bool {
-    if looks::id(style).is_some() || style.to_str().is_some_and(preset::is_written_out) {
+    if preset::id_of_look(style).is_some() || style.to_str().is_some_and(preset::is_written_out) {
         return false;
     }
     let is_node = |library: Library| library.find_node(&style.to_string_lossy()).is_ok();
     looks_like_file(style) || style.is_file() && !Library::open().is_ok_and(is_node)
-}
-
-/// The graph that the preset of the file `path` sets the parameters of.
-fn inside(library: &Library, path: &Path, preset: &Preset) -> Result<Opened> {
-    let inner = preset.style_beside(path);
-    let named = Path::new(&inner);
-    if looks::id(named).is_some() || named.is_file() && !preset::is_graph(&source::read(named)?) {
-        return Err(Error::file(
-            path,
-            format!("its style '{}' is no graph", named.display()),
-            "name a node or a graph file",
-        ));
-    }
-    open(library, &inner).map_err(|e| e.within(path))
-}
-
-/// Feeds what a single node needs and no picture gives, such as a tensor, from the first node of the catalogue
-/// that makes it of pictures alone.
-fn fed(library: &Library, mut graph: Graph) -> isophote_loader::Result<Graph> {
-    let spec = graph.spec(0)?;
-    for port in spec.inputs.iter().filter(|p| !p.optional && !is_picture(p)) {
-        let nodes = library.catalogue()?.nodes;
-        let makes = |n: &&Node| {
-            n.output.kind == port.kind
-                && n.inputs.iter().all(|p| p.optional || is_picture(p))
-                && n.id != spec.id
-        };
-        // Without one the input stays open, which the library reports when it plans.
-        let Some(feeder) = nodes.iter().find(makes) else { continue };
-        let index = graph.add(port.id, feeder.id)?;
-        for picture in feeder.inputs.iter().filter(|p| is_picture(p)) {
-            graph.connect_input(picture.id, index)?;
-        }
-        graph.connect(index, 0, port.id)?;
-    }
-    Ok(graph)
-}
-
-/// Whether an input takes a picture that enters the graph, by its name.
-fn is_picture(port: &Port) -> bool {
-    ["color", "normal", "depth", "object_id", "motion", "motion_forward", "rest_position"].contains(&port.id)
 }
 
 #[cfg(test)]

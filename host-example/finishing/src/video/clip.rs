@@ -23,7 +23,7 @@ const TIMED: [&str; 3] = ["mp4", "mov", "matroska"];
 const WEBM: &str = "webm";
 /// Frames that are rather decoded than left out by sending the decoder elsewhere.
 const NEAR: i64 = 24;
-/// What to do about a video that cannot be decoded.
+/// Advice about a video that cannot be decoded.
 const FIX: &str = "name an intact video that ffmpeg reads";
 
 /// A video file.
@@ -64,7 +64,7 @@ impl Clip {
         Ok(Self { path: path.to_owned(), stream, times, count, decoder: None })
     }
 
-    /// What it says of itself.
+    /// Properties that it gives of itself.
     pub fn stream(&self) -> &Stream {
         &self.stream
     }

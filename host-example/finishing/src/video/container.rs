@@ -2,7 +2,7 @@
 
 use std::path::Path;
 
-/// What stands for standard input and output, which carry YUV4MPEG.
+/// Name for standard input and output, which carry YUV4MPEG.
 const PIPE: &str = "-";
 
 /// Extensions of videos with the container's name for ffmpeg.
@@ -21,7 +21,7 @@ const CONTAINERS: [(&str, &str); 9] = [
 /// YUV4MPEG, which has no sound.
 pub const Y4M: &str = "yuv4mpegpipe";
 
-/// Whether a path names a video.
+/// True where a path names a video.
 pub fn is_video(path: &Path) -> bool {
     container(path).is_some()
 }
@@ -35,7 +35,7 @@ pub fn container(path: &Path) -> Option<&'static str> {
     CONTAINERS.iter().find(|(known, _)| *known == extension).map(|(_, name)| *name)
 }
 
-/// Whether a path stands for standard input or output.
+/// True where a path stands for standard input or output.
 pub fn is_pipe(path: &Path) -> bool {
     path.as_os_str() == PIPE
 }

@@ -11,7 +11,7 @@ use super::process::{self, PROTOCOLS, command};
 use super::stream::Stream;
 use isophote_pictures::pixels::{Pixels, Samples};
 
-/// How ffmpeg changes between RGB and what videos hold.
+/// Options by which ffmpeg changes between RGB and what videos hold.
 pub const EXACT: &str = "flags=bicubic+accurate_rnd+full_chroma_int+full_chroma_inp";
 
 /// Treatment of a video that is damaged or cut short.
@@ -19,11 +19,11 @@ pub const EXACT: &str = "flags=bicubic+accurate_rnd+full_chroma_int+full_chroma_
 pub enum OnError {
     /// Nothing is written.
     Fail,
-    /// What can be read of it is written.
+    /// The part of it that can be read is written.
     Skip,
 }
 
-/// Where a video comes from.
+/// Origin of a video.
 #[derive(Clone, Copy, Debug)]
 pub enum Origin<'a> {
     /// A file.

@@ -13,13 +13,13 @@ use isophote_files::error::{Error, Result};
 use isophote_files::files;
 use isophote_pictures::pixels::Pixels;
 
-/// What to do about an encoder that refuses.
+/// Advice about an encoder that refuses.
 const FIX: &str = "name another kind of video, or other options by --encode";
 
 /// Standard output.
 const PIPED: &str = "pipe:1";
 
-/// How a video is made.
+/// Options by which a video is made.
 #[derive(Clone, Copy, Debug)]
 pub struct Encoding<'a> {
     /// Size, rate and form of its frames.
@@ -76,7 +76,7 @@ impl Encoder {
         self.is_open
     }
 
-    /// Whether it has taken every frame.
+    /// True where it has taken every frame.
     pub fn is_open(&self) -> bool {
         self.is_open
     }
@@ -114,7 +114,7 @@ impl Encoder {
     }
 }
 
-/// Why there is no video.
+/// Error of a video that was not made.
 fn failure(output: &Path, place: Option<&Path>, end: &End) -> Error {
     use ErrorKind::{FileTooLarge, QuotaExceeded, StorageFull};
     let said = end.said();

@@ -13,9 +13,9 @@ use super::probe;
 use super::stream::Stream;
 use super::y4m::Header;
 
-/// What separates words within arguments.
+/// Signs that separate words within arguments.
 const SIGNS: [char; 5] = [',', ':', '=', '/', '+'];
-/// What attacks are made of.
+/// Snippets that attacks are made of.
 const SNIPPETS: [&str; 24] = [
     ",vidstabdetect=result=/tmp/x",
     ",movie=/etc/passwd[a];[a]overlay",

@@ -18,7 +18,7 @@ type Bytes = BufReader<Box<dyn Read + Send>>;
 /// A video that was opened.
 pub struct Input<'a> {
     path: &'a Path,
-    /// What it says of itself.
+    /// Properties that it gives of itself.
     pub stream: Stream,
     content: Content,
 }
@@ -67,7 +67,7 @@ impl<'a> Input<'a> {
         Ok(Self { path, stream: header.stream(length), content: Content::Y4m(Pipe { header, bytes }) })
     }
 
-    /// What the decoder reads.
+    /// Origin that the decoder reads.
     pub fn origin(&self) -> Origin<'a> {
         match self.content {
             Content::Packets(_) => Origin::File(self.path),
@@ -75,10 +75,10 @@ impl<'a> Input<'a> {
         }
     }
 
-    /// How much is missing of what the container promises, in words, as far as can be told before anything is decoded.
+    /// Part that is missing of what the container promises, in words, as far as can be told before anything is decoded.
     ///
     /// # Errors
-    /// What ffmpeg complains of.
+    /// The complaint of ffmpeg.
     pub fn missing(&self) -> Result<Option<String>> {
         match &self.content {
             Content::Packets(packets) => packets.missing(self.path, &self.stream),
@@ -86,7 +86,7 @@ impl<'a> Input<'a> {
         }
     }
 
-    /// Whether so many decoded frames are fewer than there are.
+    /// True where so many decoded frames are fewer than there are.
     pub fn lacks(&self, decoded: u64) -> bool {
         matches!(&self.content, Content::Packets(packets) if packets.lacks(&self.stream, decoded))
     }
@@ -96,7 +96,7 @@ impl<'a> Input<'a> {
         Some(self.path).filter(|_| matches!(self.content, Content::Packets(_)))
     }
 
-    /// What is to be handed to the decoder.
+    /// Pipe to be handed to the decoder.
     pub fn pipe(&mut self) -> Option<&mut Pipe> {
         match &mut self.content {
             Content::Packets(_) => None,

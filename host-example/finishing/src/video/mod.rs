@@ -22,4 +22,4 @@ pub use self::clip::Clip;
 pub use self::container::is_video;
 pub use self::decode::OnError;
 pub use self::film::{Film, shown};
-pub use self::run::{Job, run};
+pub use self::run::{VideoJob, run};

@@ -1,4 +1,4 @@
-//! What lies in a video, packet by packet, and whether that is all that its container promises.
+//! Packets that lie in a video, compared with what its container promises.
 
 use std::path::Path;
 
@@ -6,7 +6,7 @@ use super::process::{self, Process, at};
 use super::stream::{Promise, Stream};
 use isophote_files::error::Result;
 
-/// What to do about a video whose packets cannot be read.
+/// Advice about a video whose packets cannot be read.
 const FIX: &str = "name an intact video that ffmpeg reads";
 /// Seconds by which times are rounded.
 const ROUNDED: f64 = 0.05;
@@ -20,7 +20,7 @@ pub struct Packets {
     shown: Vec<Option<f64>>,
     /// When the last one has been shown, in seconds.
     end: f64,
-    /// What ffmpeg complains of, also about sound and whatever else lies in the file.
+    /// Complaint of ffmpeg, also about sound and whatever else lies in the file.
     complaint: Option<String>,
 }
 
@@ -28,7 +28,7 @@ impl Packets {
     /// Reads them.
     ///
     /// # Errors
-    /// What ffmpeg complains of.
+    /// The complaint of ffmpeg.
     pub fn of(path: &Path, stream: &Stream) -> Result<Self> {
         Self::read(path, stream, &[])
     }
@@ -72,7 +72,7 @@ impl Packets {
         times
     }
 
-    /// What is missing of what the container promises, in words.
+    /// Part that is missing of what the container promises, in words.
     ///
     /// # Errors
     /// As [`Packets::of`].
@@ -95,7 +95,7 @@ impl Packets {
         Ok(if is_trimmed { complaint() } else { Some(said()) })
     }
 
-    /// Whether that many decoded frames are fewer than are shown, where the container counts exactly.
+    /// True where that many decoded frames are fewer than are shown, where the container counts exactly.
     pub fn lacks(&self, stream: &Stream, decoded: u64) -> bool {
         let shown = self.shown.len() as u64;
         let slack = match stream.promise {

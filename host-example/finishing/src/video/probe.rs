@@ -15,9 +15,9 @@ use isophote_pictures::read::check_size;
 
 /// Share by which the mean rate of frames that last equally long may be off.
 const STEADY: f64 = 0.1;
-/// What ffmpeg complains of where a file is of no kind that it may read.
+/// Complaint of ffmpeg where a file is of no kind that it may read.
 const REFUSED: &str = "not on whitelist";
-/// What is asked.
+/// Entries that are asked for.
 const WANTED: &str = "stream=index,width,height,pix_fmt,avg_frame_rate,r_frame_rate,nb_frames,duration,\
     sample_aspect_ratio,color_range,color_space,color_transfer,color_primaries:stream_side_data=rotation:\
     stream_tags=DURATION:format=format_name,nb_streams,duration";
@@ -126,7 +126,7 @@ fn rates(stream: &Value, unknown: &mut Vec<&'static str>) -> [Ratio; 2] {
     [mean, exact.unwrap_or(mean)]
 }
 
-/// What a stream says of its colours, by the options that say so of another.
+/// Tags that a stream gives of its colours, by the options that give them to another.
 fn tags(stream: &Value, unknown: &mut Vec<&'static str>) -> Vec<[&'static str; 2]> {
     let tags: [(_, _, _, &[(&str, &str)]); 4] = [
         ("color_range", "-color_range", "range of colours", &RANGES),
@@ -144,7 +144,7 @@ fn tags(stream: &Value, unknown: &mut Vec<&'static str>) -> Vec<[&'static str; 2
     tags.into_iter().filter_map(known).collect()
 }
 
-/// How much a container says that it holds.
+/// Number of frames, or time, that a container says that it holds.
 fn promise(found: &Value, mean: Ratio) -> Promise {
     let (stream, format) = (&found["streams"][0], &found["format"]);
     let count: Option<u64> = stream["nb_frames"].as_str().and_then(|n| n.parse().ok()).filter(|n| *n > 0);
@@ -167,7 +167,7 @@ fn promise(found: &Value, mean: Ratio) -> Promise {
     }
 }
 
-/// How many frames there are, about.
+/// Number of frames there are, about.
 fn frames(found: &Value, promise: Promise, rate: Ratio) -> u64 {
     match promise {
         Promise::Frames { count, .. } => count,
@@ -191,7 +191,7 @@ fn clock(text: &str) -> Option<f64> {
     Some(hour * 3600.0 + minute * 60.0 + second).filter(|seconds| *seconds > 0.0)
 }
 
-/// Whether pixels of this form are red, green and blue.
+/// True where pixels of this form are red, green and blue.
 fn is_rgb(pixels: &str) -> bool {
     pixels.contains("rgb") || pixels.contains("bgr") || pixels.starts_with("gb")
 }

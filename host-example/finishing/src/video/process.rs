@@ -13,7 +13,7 @@ use isophote_files::error::{Error, Result};
 const MOST: usize = 400;
 /// Most complaints that are kept.
 const MOST_LINES: usize = 1000;
-/// How ffmpeg may open what it reads: no network, and no other programs.
+/// Protocols by which ffmpeg may open what it reads: no network, and no other programs.
 pub const PROTOCOLS: [&str; 2] = ["-protocol_whitelist", "file,pipe"];
 /// Kinds of files that are read, which hold their pictures themselves: no playlists.
 const KINDS: [&str; 2] = [
@@ -41,12 +41,12 @@ pub fn read(command: &mut Command, path: &Path) {
     command.args(PROTOCOLS).args(KINDS).arg("-i").arg(file(path));
 }
 
-/// Why a process did not do its work.
+/// Reason why a process did not do its work.
 #[derive(Debug)]
 pub enum Problem {
     /// It cannot be started.
     Missing(Error),
-    /// What it said.
+    /// Message that it wrote.
     Said(String),
 }
 
@@ -100,25 +100,25 @@ impl Complaints {
     }
 }
 
-/// How a process ended.
+/// End of a process.
 #[derive(Debug)]
 pub struct End {
-    /// Whether it ended well.
+    /// True where it ended well.
     pub is_good: bool,
-    /// What it complained of.
+    /// Complaints of the process.
     pub complaints: Complaints,
     has_code: bool,
     status: String,
 }
 
 impl End {
-    /// What it says for itself.
+    /// Message that it gives.
     pub fn said(&self) -> String {
         let silent = || format!("it says nothing ({})", self.status);
         format!("ffmpeg cannot do it: {}", self.complaints.first().unwrap_or_else(silent))
     }
 
-    /// Whether it ended by itself without doing its work.
+    /// True where it ended by itself without doing its work.
     pub fn is_refusal(&self) -> bool {
         !self.is_good && self.has_code
     }
@@ -171,15 +171,15 @@ impl Process {
         Ok(process)
     }
 
-    /// What a command prints.
+    /// Text that a command prints.
     ///
     /// # Errors
-    /// What is wrong with it.
+    /// The problem with it.
     pub fn output(command: &mut Command) -> std::result::Result<String, Problem> {
         Self::heard(command).map(|(text, _)| text)
     }
 
-    /// What a command prints, and what it complains of though it ends well.
+    /// Text that a command prints, and its complaints though it ends well.
     ///
     /// # Errors
     /// As [`Process::output`].
@@ -199,7 +199,7 @@ impl Process {
         &mut self.child
     }
 
-    /// What it complains of, also while it works.
+    /// Its complaints, also while it works.
     pub fn complaints(&self) -> Complaints {
         self.complaints.clone()
     }

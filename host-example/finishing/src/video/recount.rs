@@ -8,7 +8,7 @@ use serde_json::Value;
 use super::container::{Y4M, container};
 use super::process::{PROTOCOLS, Problem, Process, command, file};
 
-/// How many frames lie in a file of that container that was just written.
+/// Number of frames in a file of that container that was just written.
 ///
 /// # Errors
 /// [`Problem`] where it cannot be read, or there is no ffprobe.

@@ -13,9 +13,9 @@ use super::input::Input;
 use super::process::{End, Process, at};
 use super::stream::Stream;
 use crate::apply::filter::Filter;
+use crate::apply::frame_cache::{CachedFrame, Window};
 use crate::apply::masks::Masks;
 use crate::apply::memory::Budget;
-use crate::apply::reel::{Held, Window};
 use crate::apply::report::{Outcome, Report};
 use crate::apply::tasks::Task;
 use isophote_files::error::{Error, Result};
@@ -26,25 +26,25 @@ use isophote_pictures::pixels::{Pixels, Precision};
 use isophote_pictures::read::{ImageState, Source};
 use isophote_pictures::write::Format;
 
-/// What to do about a video that is damaged.
+/// Advice about a video that is damaged.
 const DAMAGED: &str = "use an intact file, or give --on-error skip to write what can be read";
 /// Frames between a process and the filter.
 const AHEAD: usize = 2;
 
 /// A video that is to be filtered.
 #[derive(Debug)]
-pub struct Job<'a> {
-    /// What is read: a file, or `-`.
+pub struct VideoJob<'a> {
+    /// Input: a file, or `-`.
     pub input: &'a Path,
-    /// What is written: a file, or `-`.
+    /// Output: a file, or `-`.
     pub output: &'a Path,
     /// Treatment of a file that is there.
     pub existing: Existing,
     /// Options of the encoder instead of the usual ones.
     pub encode: Option<&'a str>,
-    /// What to do where the input is damaged.
+    /// Treatment of a damaged input.
     pub on_error: OnError,
-    /// Whether lines of JSON are wanted.
+    /// True where lines of JSON are wanted.
     pub json: bool,
     /// Masks of the frames, which count from 1.
     pub masks: &'a Masks,
@@ -57,7 +57,7 @@ pub struct Job<'a> {
 /// # Errors
 /// [`Error::Input`] for what ffmpeg does not read or write; [`Error::Failure`] without ffmpeg, when it or the filter fails,
 /// the video is damaged or the disk full, or the run is stopped.
-pub fn run(job: &Job<'_>, filter: &mut Filter) -> Result<()> {
+pub fn run(job: &VideoJob<'_>, filter: &mut Filter) -> Result<()> {
     let mut input = Input::open(job.input)?;
     let missing = input.missing()?;
     if let Some(missing) = missing.as_ref().filter(|_| job.on_error == OnError::Fail) {
@@ -81,11 +81,11 @@ pub fn run(job: &Job<'_>, filter: &mut Filter) -> Result<()> {
 /// Frames that went through the filter.
 struct Filtered {
     count: u64,
-    /// Where they went; nothing where there were none.
+    /// Encoder that they went to; nothing where there were none.
     encoder: Option<Encoder>,
 }
 
-impl Job<'_> {
+impl VideoJob<'_> {
     /// Decodes, filters and encodes to `place`. Of the input something may be missing, in words.
     fn all(
         &self,
@@ -130,7 +130,7 @@ impl Job<'_> {
         encoder.ok_or_else(none)?.end()
     }
 
-    /// Whether all frames of the input were decoded well; where what is damaged is skipped, says what it was.
+    /// Checks that all frames of the input were decoded well; where what is damaged is skipped, says what it was.
     fn check(
         &self,
         input: &Input<'_>,
@@ -185,10 +185,10 @@ impl Job<'_> {
             let mut source = Source { pictures: vec![picture], state, profile: None, exr: None };
             self.masks.add(&mut source, Some(number))?;
             source.check()?;
-            Ok::<_, Error>(Arc::new(Held::new(Some(number), source, false, budget.share())))
+            Ok::<_, Error>(Arc::new(CachedFrame::new(Some(number), source, false, budget.share())))
         };
         let mut decoded = decoded.into_iter().zip(1..).map(hold);
-        let mut frames: VecDeque<Arc<Held<'_>>> = VecDeque::new();
+        let mut frames: VecDeque<Arc<CachedFrame<'_>>> = VecDeque::new();
         let (mut encoder, mut count) = (None::<Encoder>, 0);
         loop {
             if self.stop.is_requested() {

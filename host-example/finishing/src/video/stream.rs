@@ -1,4 +1,4 @@
-//! What a video says of itself. It holds no text of the file's: numbers, and words of closed lists.
+//! Properties that a video gives of itself. They hold no text of the file's: numbers, and words of closed lists.
 
 use super::closed::Ratio;
 
@@ -13,11 +13,11 @@ pub struct Stream {
     pub height: u32,
     /// Frames per second.
     pub rate: Ratio,
-    /// Whether all frames last as long.
+    /// True where all frames last as long.
     pub is_steady: bool,
     /// Frames, about; 0 where nobody knows.
     pub frames: u64,
-    /// How much there is of it, as far as the container says.
+    /// Promise of the container about how much there is of it.
     pub promise: Promise,
     /// Form of its pixels, such as yuv420p.
     pub pixels: &'static str,
@@ -27,11 +27,11 @@ pub struct Stream {
     pub range: &'static str,
     /// The matrix between RGB and luma with chroma, as ffmpeg's filter names it.
     pub matrix: &'static str,
-    /// What the file says of its colours, by the options that say so of another.
+    /// Tags that the file gives of its colours, by the options that give them to another.
     pub tags: Vec<[&'static str; 2]>,
 }
 
-/// How much a container says that it holds.
+/// Promise of a container about how much it holds.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Promise {
     /// It says nothing, or counts what is there.
@@ -40,7 +40,7 @@ pub enum Promise {
     Frames {
         /// Frames.
         count: u64,
-        /// How many may be missing.
+        /// Number that may be missing.
         slack: u64,
     },
     /// So many seconds.

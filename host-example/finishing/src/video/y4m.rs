@@ -1,6 +1,6 @@
 //! YUV4MPEG streams: their first line in numbers and words of closed lists, and their frames on the way to ffmpeg.
 //!
-//! What a stream says is never handed on. ffmpeg gets a line that is made anew, and pixels.
+//! Nothing that a stream says is never handed on. ffmpeg gets a line that is made anew, and pixels.
 
 use std::io::{self, BufRead, Read, Write};
 use std::path::Path;
@@ -10,9 +10,9 @@ use super::stream::{Promise, Stream};
 use isophote_files::error::{Error, Result};
 use isophote_pictures::read::check_size;
 
-/// How every stream begins.
+/// Beginning of every stream.
 pub const MAGIC: &[u8] = b"YUV4MPEG2";
-/// How every frame begins.
+/// Beginning of every frame.
 const FRAME: &[u8] = b"FRAME";
 /// Longest first line of a stream or a frame.
 const MOST_HEADER: u64 = 1024;
@@ -37,7 +37,7 @@ pub struct Header {
     size: [u32; 2],
     rate: Ratio,
     aspect: Option<Ratio>,
-    /// Which fields of a frame come first, by the letter for it.
+    /// Order of the fields of a frame, by the letter for it.
     fields: Option<char>,
     /// An entry of [`FORMS`].
     form: (&'static str, &'static str, [u32; 2]),
@@ -165,7 +165,7 @@ impl Header {
     }
 }
 
-/// Whether samples of a form have more than 8 bits, which its name ends with.
+/// True where samples of a form have more than 8 bits, which its name ends with.
 fn is_deep(form: &str) -> bool {
     let bits = form.strip_prefix("mono").or_else(|| form.rsplit_once('p').map(|(_, bits)| bits));
     bits.is_some_and(|bits| bits.parse::<u8>().is_ok())

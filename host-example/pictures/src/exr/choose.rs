@@ -13,12 +13,12 @@ use super::mattes::{Matte, Ranks, mattes, pick};
 use super::motion;
 use super::names::{Group, Model, REST, groups, is_matte, rank};
 
-/// What is read of a file, and where the result goes.
+/// Selection of what is read of a file, and where the result goes.
 #[derive(Clone, Debug, Default)]
 pub struct Selection {
     /// The layer; the main one without.
     pub layer: Option<String>,
-    /// Whether that layer may hold data instead of colours.
+    /// True where that layer may hold data instead of colours.
     pub force: bool,
     /// The view; all without.
     pub view: Option<String>,
@@ -30,11 +30,11 @@ pub struct Selection {
     pub guides: Vec<GuideChoice>,
     /// Guides that the style can use.
     pub wanted: Vec<Guide>,
-    /// What motion vectors mean; what the names of their layers say without.
+    /// Meaning of motion vectors; that which the names of their layers tell without.
     pub convention: Option<Convention>,
-    /// Where masks come from.
+    /// Sources of masks.
     pub masks: Vec<MaskSource>,
-    /// What becomes of frames that do not know a name of a mask.
+    /// Treatment of frames that do not know a name of a mask.
     pub on_unknown: OnUnknown,
 }
 
@@ -54,7 +54,7 @@ impl Selection {
     }
 }
 
-/// What a renderer knows beside colour.
+/// Guides that a renderer gives beside colour.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Guide {
     /// Normals.
@@ -63,18 +63,27 @@ pub enum Guide {
     Depth,
     /// Numbers of objects.
     ObjectId,
-    /// Where things were in the frame before.
+    /// Places of things in the frame before.
     Motion,
-    /// Where things are in the frame after.
+    /// Places of things in the frame after.
     MotionForward,
-    /// Where surfaces are before anything moves.
+    /// Positions of surfaces before anything moves.
     RestPosition,
+    /// A painted flow map.
+    Flow,
 }
 
 impl Guide {
     /// All of them.
-    pub const ALL: [Self; 6] =
-        [Self::Normal, Self::Depth, Self::ObjectId, Self::Motion, Self::MotionForward, Self::RestPosition];
+    pub const ALL: [Self; 7] = [
+        Self::Normal,
+        Self::Depth,
+        Self::ObjectId,
+        Self::Motion,
+        Self::MotionForward,
+        Self::RestPosition,
+        Self::Flow,
+    ];
 
     /// The name of the graph's input.
     pub fn id(self) -> &'static str {
@@ -85,27 +94,28 @@ impl Guide {
             Self::Motion => "motion",
             Self::MotionForward => "motion_forward",
             Self::RestPosition => "rest_position",
+            Self::Flow => "flow",
         }
     }
 
-    /// Whether it tells of motion.
+    /// True for motion.
     pub fn is_motion(self) -> bool {
         matches!(self, Self::Motion | Self::MotionForward)
     }
 
-    /// Whether it has three components, of which all are 0 where there is no surface.
+    /// True where it has three components, of which all are 0 where there is no surface.
     pub fn is_of_surfaces(self) -> bool {
         matches!(self, Self::Normal | Self::RestPosition)
     }
 }
 
-/// How to write a guide.
-const FIX: &str = "write normal=LAYER, depth=LAYER, object_id=LAYER, motion=LAYER, motion_forward=LAYER or rest_position=LAYER";
+/// Forms in which a guide is written.
+const FIX: &str = "write normal=LAYER, depth=LAYER, object_id=LAYER, motion=LAYER, motion_forward=LAYER, rest_position=LAYER or flow=LAYER";
 
 /// One `--guide`.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct GuideChoice {
-    /// Which.
+    /// The guide.
     pub guide: Guide,
     /// The layer or channel; nothing for none.
     pub layer: Option<String>,
@@ -127,13 +137,13 @@ impl FromStr for GuideChoice {
 pub struct Chosen {
     /// Its channels with their view.
     pub group: Group,
-    /// How its colour is made of channels.
+    /// Colour model by which its colour is made of channels.
     pub model: Model,
     /// The channels of its colour.
     pub colors: Vec<usize>,
     /// The channel of its alpha.
     pub alpha: Option<usize>,
-    /// What guides it.
+    /// Sources of its guides.
     pub guides: Vec<Source>,
     /// The masks that are in the file, one for each that was asked for.
     pub masks: Vec<Option<ChosenMask>>,
@@ -148,20 +158,20 @@ impl Chosen {
     }
 }
 
-/// Where a guide comes from.
+/// Source of a guide.
 #[derive(Clone, Debug)]
 pub struct Source {
-    /// Which.
+    /// The guide.
     pub guide: Guide,
     /// Index of the part.
     pub part: usize,
     /// Its channels.
     pub channels: Vec<usize>,
-    /// What is made of them.
+    /// Meaning of the channels.
     pub meaning: Meaning,
 }
 
-/// What is made of the channels of a guide.
+/// Meaning of the channels of a guide.
 #[derive(Clone, Copy, Debug)]
 pub enum Meaning {
     /// They are it.
@@ -216,7 +226,7 @@ pub fn choose(exr: &File, folder: &Path, selection: &Selection) -> Result<Vec<Ch
     if chosen.is_empty() { Err(no_view(&groups, selection)) } else { Ok(chosen) }
 }
 
-/// Why a file has no picture that could be taken; `found` is a layer that holds something else.
+/// Error of a file that has no picture that could be taken; `found` is a layer that holds something else.
 fn no_picture(
     exr: &File,
     groups: &[Group],
@@ -245,7 +255,7 @@ fn no_picture(
     }
 }
 
-/// Why a file has no picture of the view that was asked for.
+/// Error of a file that has no picture of the view that was asked for.
 fn no_view(groups: &[Group], selection: &Selection) -> Fault {
     let mut views: Vec<&str> = groups.iter().filter_map(|g| g.view.as_deref()).collect();
     views.dedup();
@@ -267,7 +277,7 @@ fn is_named(exr: &File, group: &Group, wanted: &str) -> bool {
         || (group.prefix.is_empty() && part == wanted)
 }
 
-/// How likely a layer is the picture that is meant, as [`rank`], where Cryptomattes may have any name.
+/// Rank of a layer as the picture that is meant, as [`rank`], where Cryptomattes may have any name.
 pub fn likely(group: &Group, mattes: &[Matte<'_>]) -> Option<u32> {
     rank(group).filter(|_| mattes.iter().all(|matte| !matte.has(&group.layer)))
 }
@@ -408,6 +418,10 @@ fn xyz(group: &Group) -> Option<Vec<usize>> {
     group.all(["X", "Y", "Z"]).or_else(|| group.all(["R", "G", "B"]))
 }
 
+fn rgba(group: &Group) -> Option<Vec<usize>> {
+    group.all(["R", "G", "B", "A"])
+}
+
 /// Motion vectors in a group; `name` is the layer that was asked for.
 fn vectors(
     exr: &File,
@@ -437,7 +451,7 @@ fn source(exr: &File, group: &Group, guide: Guide, name: Option<&str>) -> Option
     };
     if let Some(name) = name {
         let channel = group.members.iter().find(|(_, at)| part.channels[*at].name == name).map(|m| m.1);
-        if !guide.is_of_surfaces() && channel.is_some() {
+        if !guide.is_of_surfaces() && guide != Guide::Flow && channel.is_some() {
             return channel.map(|c| found(vec![c]));
         }
         if !is_named(exr, group, name) {
@@ -447,6 +461,7 @@ fn source(exr: &File, group: &Group, guide: Guide, name: Option<&str>) -> Option
             Guide::Normal | Guide::RestPosition => xyz(group),
             Guide::Depth => single(&["Z", "depth", "Y", "V", "R"]).map(|c| vec![c]),
             Guide::ObjectId => single(&["id", "object_id", "Y", "R"]).map(|c| vec![c]),
+            Guide::Flow => rgba(group),
             Guide::Motion | Guide::MotionForward => None,
         }
         .map(found);
@@ -473,7 +488,9 @@ fn source(exr: &File, group: &Group, guide: Guide, name: Option<&str>) -> Option
             _ => vec![["id", "object_id", "objectid"].iter().find_map(|c| group.member(c))?],
         },
         Guide::RestPosition if REST.contains(&word.as_str()) => xyz(group)?,
-        Guide::RestPosition | Guide::Motion | Guide::MotionForward => return None,
+        // "flow" alone may be optical flow.
+        Guide::Flow if matches!(word.as_str(), "flow_map" | "flowmap") => rgba(group)?,
+        Guide::RestPosition | Guide::Flow | Guide::Motion | Guide::MotionForward => return None,
     };
     Some(found(channels))
 }

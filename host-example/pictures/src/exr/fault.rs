@@ -1,4 +1,4 @@
-//! Why an EXR file is refused.
+//! Reason why an EXR file is refused.
 
 use std::path::Path;
 
@@ -11,9 +11,9 @@ pub enum Fault {
     File(isophote_exr_edit::Error),
     /// It lacks what was chosen.
     Choice {
-        /// What is so.
+        /// The fact that is refused.
         problem: String,
-        /// How to put it right.
+        /// Advice to put it right.
         fix: String,
     },
 }

@@ -12,7 +12,7 @@ use super::picture::{self, Picture};
 use crate::pixels::{MOST_PIXELS, Pixels, Samples};
 use isophote_files::error::Result;
 
-/// What one file may take at most, whatever it says of itself. How many files are in memory at the same time is
+/// Most that one file may take, whatever it says of itself. The number of files that are in memory at the same time is
 /// decided by what they weigh; see [`Opened::weight`].
 const LIMITS: Limits = Limits { memory: 16 << 30, pixels: MOST_PIXELS };
 
@@ -107,7 +107,7 @@ fn folder(path: &Path) -> &Path {
     path.parent().unwrap_or(Path::new(""))
 }
 
-/// Whether all chunks of a file are there.
+/// True where all chunks of a file are there.
 pub fn is_whole(bytes: Vec<u8>) -> bool {
     File::parse(bytes, LIMITS).is_ok()
 }
@@ -134,7 +134,7 @@ impl Opened {
         open().map_err(|fault| fault.of(path))
     }
 
-    /// What can be chosen in the file, and what is.
+    /// Choices that the file offers, and those made.
     pub fn offers(&self) -> Offers {
         offers::offers(&self.exr, &self.chosen)
     }
@@ -186,7 +186,7 @@ pub struct ExrFile {
     selection: Selection,
     chosen: Vec<Chosen>,
     decoded: Vec<Option<Decoded>>,
-    /// What changes in each part.
+    /// Changes of each part.
     edits: Vec<Option<Edit>>,
 }
 

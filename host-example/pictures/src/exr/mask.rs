@@ -15,7 +15,7 @@ use isophote_files::{frames, output};
 /// Channels and layers in a message.
 const MOST_SHOWN: usize = 16;
 
-/// Where a mask comes from.
+/// Source of a mask.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub enum MaskSource {
     /// A file of its own, or files by frame.
@@ -26,7 +26,7 @@ pub enum MaskSource {
     Mattes(MatteChoice),
 }
 
-/// What becomes of a frame that does not know a name.
+/// Treatment of a frame that does not know a name.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, ValueEnum)]
 pub enum OnUnknown {
     /// It fails.
@@ -56,7 +56,7 @@ impl FromStr for MaskSource {
 pub struct ChosenMask {
     /// Its parts and channels there.
     pub layers: Vec<Ranks>,
-    /// What covers pixels; nothing where the only channel is the mask.
+    /// Ids that cover pixels; nothing where the only channel is the mask.
     wanted: Option<Wanted>,
 }
 
@@ -71,7 +71,7 @@ struct Wanted {
     missing: Vec<Unknown>,
 }
 
-/// What to say of a name that is not there.
+/// Message about a name that is not there.
 #[derive(Clone, Debug)]
 struct Unknown {
     problem: String,

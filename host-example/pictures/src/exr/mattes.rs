@@ -1,4 +1,4 @@
-//! Which Cryptomattes a file holds, by the attributes of its headers, and which channels are theirs.
+//! The Cryptomattes that a file holds, by the attributes of its headers, and the channels that are theirs.
 //!
 //! A Cryptomatte `crypto_object` has attributes `cryptomatte/f834d0a/name` and so on, and layers `crypto_object00`,
 //! `crypto_object01` ..., each with two ranks: an id in red with its coverage in green, another in blue with its in alpha.
@@ -13,7 +13,7 @@ use super::fault::Fault;
 use super::names::Group;
 use isophote_files::input;
 
-/// How the names of attributes begin.
+/// Beginning of the names of attributes.
 const PREFIX: &str = "cryptomatte/";
 /// The only hash and conversion that the specification knows.
 const HASH: &str = "MurmurHash3_32";
@@ -27,7 +27,7 @@ const PXR24: u8 = 5;
 #[derive(Debug)]
 pub struct Matte<'a> {
     key: &'a str,
-    /// How its layers are called, but for their numbers.
+    /// Name of its layers, but for their numbers.
     pub name: String,
     hash: Option<&'a [u8]>,
     conversion: Option<&'a [u8]>,
@@ -121,12 +121,12 @@ impl Matte<'_> {
         digits.bytes().all(|b| b.is_ascii_digit()).then(|| digits.parse().ok())?
     }
 
-    /// Whether a layer is one of its, the preview included.
+    /// True where a layer is one of its, the preview included.
     pub fn has(&self, layer: &str) -> bool {
         layer == self.name || self.number(layer).is_some()
     }
 
-    /// Whether the id of a name that is nowhere listed can be told.
+    /// True where the id of a name that is nowhere listed can be told.
     pub fn is_hashed(&self) -> bool {
         self.hash.is_none_or(|hash| hash == HASH.as_bytes())
     }
@@ -184,7 +184,7 @@ impl Matte<'_> {
     /// Its names, of a picture in `folder`.
     ///
     /// # Errors
-    /// What is wrong with the manifest.
+    /// The problem with the manifest.
     pub fn manifest(&self, folder: &Path) -> Result<Manifest, String> {
         let too_large = || format!("has more than {MOST_BYTES} bytes");
         if let Some(name) = self.file {

@@ -1,6 +1,6 @@
 //! OpenEXR files, of which the picture alone is changed.
 //!
-//! What is the picture and what guides it is chosen by the names of channels; [`isophote_exr_edit`] reads them and
+//! The picture and its guides are chosen by the names of channels; [`isophote_exr_edit`] reads them and
 //! writes the result, and keeps every other byte of the file.
 
 mod choose;

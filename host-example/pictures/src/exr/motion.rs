@@ -9,7 +9,7 @@ use isophote_motion::{Convention, Rule, Way};
 pub struct Found {
     /// The channels of x and y.
     pub channels: Vec<usize>,
-    /// How they are turned into the library's.
+    /// Rule by which they are turned into the library's.
     pub rule: Rule,
 }
 

@@ -1,4 +1,4 @@
-//! Which channels of a file belong together, by their names: layers, views and components.
+//! Channels of a file that belong together, by their names: layers, views and components.
 //!
 //! A channel's full name is `layer.view.component`, where layers may nest and the default view has no name
 //! ("Storing Multi-View Images in OpenEXR Files"); in files of several parts a part may name the layer and the
@@ -125,7 +125,7 @@ fn own_name(part: &Part) -> String {
 /// Layers of points of undeformed objects, in lower case: RenderMan's and Arnold's names, Houdini's, and words.
 pub const REST: [&str; 6] = ["pref", "__pref", "p_ref", "rest", "restposition", "rest_position"];
 
-/// How likely a layer is the picture that an artist means when naming none: less is more likely.
+/// Rank of a layer as the picture that an artist means when naming none: less is more likely.
 pub fn rank(group: &Group) -> Option<u32> {
     const MAIN: [&str; 9] = ["rgba", "rgb", "beauty", "combined", "color", "colour", "main", "c", "image"];
     const DATA: [&str; 37] = [
@@ -179,7 +179,7 @@ pub fn rank(group: &Group) -> Option<u32> {
     }
 }
 
-/// Whether a layer is a Cryptomatte, whose numbers are neither colours nor ids.
+/// True where a layer is a Cryptomatte, whose numbers are neither colours nor ids.
 pub fn is_matte(layer: &str) -> bool {
     layer.to_ascii_lowercase().contains("crypto")
 }

@@ -1,4 +1,4 @@
-//! What can be chosen in a file, for whoever chooses from a list instead of by name.
+//! Choices that a file offers to whoever chooses from a list instead of by name.
 
 use isophote_exr_edit::File;
 
@@ -6,7 +6,7 @@ use super::choose::{Chosen, Guide, likely};
 use super::mattes::mattes;
 use super::names::groups;
 
-/// What of a file can be chosen, and what is.
+/// Choices that a file offers, and those made.
 #[derive(Clone, Debug, Default, PartialEq, Eq)]
 pub struct Offers {
     /// The layers, in the file's order.
@@ -26,11 +26,11 @@ pub struct Layer {
     pub name: String,
     /// The views that show it.
     pub views: Vec<String>,
-    /// Whether it holds data instead of colours, which are read by force only.
+    /// True where it holds data instead of colours, which are read by force only.
     pub is_data: bool,
 }
 
-/// What can be chosen in a file of which `chosen` was chosen.
+/// Choices that a file offers of which `chosen` was chosen.
 pub fn offers(exr: &File, chosen: &[Chosen]) -> Offers {
     let mattes = mattes(exr);
     let mut offers = Offers::default();

@@ -24,13 +24,13 @@ pub struct Picture {
     pub guides: Vec<(&'static str, Pixels)>,
     /// Red, green, blue, white: x and y of each.
     pub chromaticities: Option<[f32; 8]>,
-    /// Where its first pixel stands in the display window's coordinates.
+    /// Place of its first pixel in the display window's coordinates.
     pub origin: [i32; 2],
     /// The display window, where the picture may be a part of it or more.
     pub display: Option<Window>,
-    /// How much of results is used, 0 to 1: a mask for each that was asked for.
+    /// Share of results that is used, 0 to 1: a mask for each that was asked for.
     pub masks: Vec<Option<Pixels>>,
-    /// Why there can be no result of it, for want of masks; neighbouring frames may depend on it all the same.
+    /// Reason why there can be no result of it, for want of masks; neighbouring frames may depend on it all the same.
     pub refused: Option<Error>,
 }
 
@@ -261,7 +261,7 @@ pub fn guide(
         let vectors = all.as_chunks::<3>().0.iter().flat_map(valid).collect();
         return Ok(Pixels::new(size.0, size.1, 4, Samples::F32(vectors)));
     }
-    Ok(Pixels::new(size.0, size.1, 1, Samples::F32(all)))
+    Ok(Pixels::new(size.0, size.1, count as u32, Samples::F32(all)))
 }
 
 /// As floats; integers that floats do not tell apart are folded into those that they do.

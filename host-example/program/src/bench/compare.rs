@@ -11,7 +11,7 @@ use isophote_files::input;
 /// Most bytes of a saved run; real ones have some hundred thousands.
 const MOST_BYTES: u64 = 64 << 20;
 
-/// What a run saved with `--save` or printed with `--json` measured.
+/// Measurements of a run saved with `--save` or printed with `--json`.
 #[derive(Debug)]
 pub struct Saved {
     threads: u64,
@@ -53,8 +53,8 @@ impl Saved {
         self.threads
     }
 
-    /// How often as long `entry` takes now, and each of its passes; none where it was not measured, and no
-    /// passes where they are others now.
+    /// Ratio of the time that `entry` takes now to that before, and those of its passes; none where it was not
+    /// measured, and no passes where they are others now.
     pub fn ratios(&self, entry: &Entry) -> Option<(f64, Vec<f64>)> {
         let before = self.entries.iter().find(|e| {
             e.node == entry.node

@@ -1,4 +1,4 @@
-//! What was measured of one node.
+//! Measurements of one node.
 
 /// One node on one backend.
 #[derive(Debug)]
@@ -24,7 +24,7 @@ pub struct Entry {
 pub struct PassEntry {
     /// The kernel.
     pub kernel: String,
-    /// How long it took.
+    /// Time of the run.
     pub seconds: f64,
     /// Pixels written.
     pub pixels: u64,

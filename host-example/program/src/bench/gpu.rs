@@ -107,7 +107,7 @@ impl Bench {
         Ok(started.elapsed().as_secs_f64())
     }
 
-    /// What a node runs on a picture of a size, what it reads of frames before, and how many.
+    /// Plan of a node on a picture of a size, the frames before that it reads, and the number of them.
     fn plan(&self, library: &Library, subject: &Subject, size: (u32, u32)) -> Result<(Plan, Past, u32)> {
         let style = Style::any(library, &subject.node, &subject.settings)?;
         self.precision.apply(&style)?;

@@ -15,7 +15,7 @@ mod timer;
 use isophote_finishing::stylize::style::Setting;
 use isophote_pictures::pixels::{Pixels, Samples};
 
-/// What is measured: a node, with other values than the defaults where they are given.
+/// Subject of a measurement: a node, with other values than the defaults where they are given.
 #[derive(Debug)]
 pub struct Subject {
     /// As it was written.

@@ -1,4 +1,4 @@
-//! What this machine can do at most, measured: fused multiply-adds and bytes copied per second, on all
+//! Peak of this machine, measured: fused multiply-adds and bytes copied per second, on all
 //! threads. Benchmarks state the share of it that a pass attains.
 
 use std::hint::black_box;

@@ -1,4 +1,4 @@
-//! What other programs take for the like, beside which our times stand in the table of `--markdown`.
+//! Times of other programs for the like, beside which our times stand in the table of `--markdown`.
 //!
 //! Measured once, on two idle cores of an AMD EPYC of the third generation (Milan), 1920x1080, the
 //! computation alone.
@@ -6,7 +6,7 @@
 /// Milliseconds of another program.
 #[derive(Debug)]
 pub struct Peer {
-    /// What of ours it is like, as it is given to `--node`.
+    /// Node of ours that it is like, as it is given to `--node`.
     pub subject: &'static str,
     /// The other program.
     pub program: &'static str,

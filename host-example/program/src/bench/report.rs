@@ -10,7 +10,7 @@ use isophote_files::error::{Error, Result};
 use isophote_files::output;
 use isophote_loader::Library;
 
-/// What was measured on.
+/// Machine that was measured on.
 #[derive(Debug)]
 pub struct Machine {
     threads: usize,
@@ -25,7 +25,7 @@ impl Machine {
     }
 }
 
-/// How measurements are printed.
+/// Form in which measurements are printed.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Shown {
     /// As text, each as soon as it is there.
@@ -115,7 +115,7 @@ impl Report {
         text
     }
 
-    /// What comes before the table.
+    /// Prints the heading before the table.
     ///
     /// # Errors
     /// As [`output::print`].
@@ -151,7 +151,7 @@ impl Report {
         output::print(&text)
     }
 
-    /// What comes after the table: all as JSON, or what the comparison came to.
+    /// Prints the end after the table: all as JSON, or what the comparison came to.
     ///
     /// # Errors
     /// As [`Report::json`] and [`output::print`].

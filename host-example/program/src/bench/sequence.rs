@@ -5,9 +5,9 @@ use super::throughput::{Throughput, measure};
 use isophote_files::error::{Error, Result};
 use isophote_files::output;
 use isophote_finishing::apply::backend::Backend;
-use isophote_finishing::apply::filter::{Filter, Look, Planner};
+use isophote_finishing::apply::filter::{Filter, MaskedStyle, Planner};
 use isophote_finishing::apply::memory::{self, Bytes};
-use isophote_finishing::stylize::lengths::Lengths;
+use isophote_finishing::stylize::preset::Lengths;
 use isophote_finishing::stylize::style::Style;
 use isophote_loader::Library;
 use isophote_pictures::pixels::Pixels;
@@ -24,7 +24,7 @@ pub fn run(subjects: &[Subject], picture: &Pixels, frames: u32, json: bool) -> R
             let mut style = Style::load(&library, &subject.node, &subject.settings)?;
             // As in the other tables.
             style.lengths = Lengths::Pixels;
-            Ok::<_, Error>(vec![Look::whole(style)])
+            Ok::<_, Error>(vec![MaskedStyle::whole(style)])
         };
         let planner = Planner::new(library.clone(), looks()?)?;
         let mut filter = Filter::new(library.clone(), looks()?, Backend::Cpu, None, 0)?;

@@ -1,4 +1,4 @@
-//! How well reading and writing of a sequence hide behind filtering, for `isophote bench`.
+//! Measures, for `isophote bench`, how well reading and writing of a sequence hide behind filtering.
 
 use std::fs;
 use std::path::Path;
@@ -13,10 +13,10 @@ use isophote_files::limits::Threads;
 use isophote_files::replacing::Consent;
 use isophote_files::stop::Stop;
 use isophote_finishing::apply::filter::{Filter, Planner};
+use isophote_finishing::apply::frame_cache::{CachedFrame, Window};
 use isophote_finishing::apply::masks::Masks;
 use isophote_finishing::apply::memory::Budget;
-use isophote_finishing::apply::reader::{Footage, Reader};
-use isophote_finishing::apply::reel::{Held, Window};
+use isophote_finishing::apply::reader::{FrameSource, Reader};
 use isophote_finishing::apply::report::Report;
 use isophote_finishing::apply::sequence::Run;
 use isophote_finishing::apply::tasks::Task;
@@ -26,7 +26,7 @@ use isophote_pictures::pixels::Pixels;
 use isophote_pictures::read;
 use isophote_pictures::write::Format;
 
-/// What was measured.
+/// Throughput that was measured.
 #[derive(Clone, Copy, Debug, Serialize)]
 pub struct Throughput {
     /// Frames of the sequence.
@@ -68,12 +68,12 @@ pub fn measure(
     let mut filter_seconds = 0.0;
     let (budget, report) = (Budget::new(bound, filters.len()), Report::new(tasks.len(), false, false));
     let masks = Masks::default();
-    let footage =
-        Footage { frames: None, motion: None, selection: &selection, masks: &masks, budget: &budget };
+    let frame_source =
+        FrameSource { frames: None, motion: None, selection: &selection, masks: &masks, budget: &budget };
     // The first of these runs makes the plan and is not counted.
     for (at, task) in tasks.iter().take(1).chain(&tasks).enumerate() {
         let source = read::read(&task.input, &selection)?;
-        let own = Arc::new(Held::new(task.frame, source, true, budget.share()));
+        let own = Arc::new(CachedFrame::new(task.frame, source, true, budget.share()));
         let (exr, window) = (own.take_exr(), Window { own: Arc::clone(&own), frames: vec![own] });
         let started = Instant::now();
         filters[0].run("a frame", &window, exr.as_ref(), Format::Exr, &mut |_| {})?;
@@ -92,7 +92,7 @@ pub fn measure(
     };
     forget_peak();
     let started = Instant::now();
-    let result = run.all(filters, Reader::new(footage, planner, &tasks, None));
+    let result = run.all(filters, Reader::new(frame_source, planner, &tasks, None));
     let seconds = started.elapsed().as_secs_f64();
     let counts = report.end(false);
     result?;

@@ -14,11 +14,11 @@ use isophote_files::replacing::Made;
 use isophote_files::stop::Stop;
 use isophote_finishing::apply::backend::Backend;
 use isophote_finishing::apply::dry_run::DryRun;
-use isophote_finishing::apply::filter::{self, Filter, Look, Planner};
+use isophote_finishing::apply::filter::{self, Filter, MaskedStyle, Planner};
 use isophote_finishing::apply::looks::{self, Entry};
 use isophote_finishing::apply::masks::{MaskChoice, Masks};
 use isophote_finishing::apply::memory::{self, Budget, Bytes, Needs, too_large};
-use isophote_finishing::apply::reader::{Footage, Reader};
+use isophote_finishing::apply::reader::{FrameSource, Reader};
 use isophote_finishing::apply::report::{self, Outcome, Report};
 use isophote_finishing::apply::sequence::Run;
 use isophote_finishing::apply::tasks::{OnMissing, Task, Tasks};
@@ -54,7 +54,7 @@ pub struct ApplyArgs {
     /// Frames of the sequence, such as 1001-1100x2,1200 [default: all that are on disk].
     #[arg(long, value_name = "LIST", allow_hyphen_values = true)]
     pub frames: Option<FrameList>,
-    /// What to do when frames of the sequence have no file.
+    /// Treatment of frames of the sequence that have no file.
     #[arg(long, value_enum, default_value_t = OnMissing::Fail)]
     pub on_missing: OnMissing,
     /// Limit of memory, such as 8GiB, which decides how many frames are worked on at once; frames that need more are
@@ -79,13 +79,13 @@ pub struct ApplyArgs {
     /// Sets a parameter; node.id=value for one node of a graph. May be repeated.
     #[arg(long, value_name = "ID=VALUE")]
     pub set: Vec<Setting>,
-    /// What lengths of parameters are.
+    /// Meaning of lengths of parameters.
     #[command(flatten)]
     pub lengths: LengthArgs,
-    /// How precisely it does on graphics devices.
+    /// Precision on graphics devices.
     #[command(flatten)]
     pub precision: PrecisionArgs,
-    /// Where the filter runs.
+    /// Place where the filter runs.
     #[arg(long, value_enum, default_value_t = Backend::Auto)]
     pub backend: Backend,
     /// Colour space of the picture and of the result; without it sRGB for integers, linear for floats, and what
@@ -108,15 +108,15 @@ pub struct ApplyArgs {
     #[arg(long, value_name = "NEWLAYER")]
     pub into: Option<String>,
     /// The layer of an EXR file that guides the filter: normal=LAYER, depth=LAYER, object_id=LAYER, motion=LAYER,
-    /// motion_forward=LAYER or rest_position=LAYER, or none instead of a layer. Without it guides are found by names such as
-    /// N, normal, Z, depth, P, id, backward, Vector, velocity, Pref and rest; where there is no id, the Cryptomatte of objects
+    /// motion_forward=LAYER, rest_position=LAYER or flow=LAYER, or none instead of a layer. Without it guides are found by names
+    /// such as N, normal, Z, depth, P, id, backward, Vector, velocity, Pref, rest and flow_map; where there is no id, the Cryptomatte of objects
     /// stands for it, which is object_id=cryptomatte, or `object_id=cryptomatte[LAYER]` for another. May be repeated.
     #[arg(long, value_name = "GUIDE=LAYER")]
     pub guide: Vec<GuideChoice>,
-    /// How much of the result is used where: a file such as mask.png, one for each frame (mask.####.exr), a layer or channel of
-    /// the EXR file, or things of its Cryptomatte: `cryptomatte:hero,props/*` or `cryptomatte[crypto_material]:skin`. A star in
-    /// a name stands for any letters, ? for one, and a backslash makes either ordinary. Files of colours count by luminance;
-    /// alpha never counts.
+    /// Share of the result that is used where: a file such as mask.png, one for each frame (mask.####.exr), a layer
+    /// or channel of the EXR file, or things of its Cryptomatte: `cryptomatte:hero,props/*` or
+    /// `cryptomatte[crypto_material]:skin`. A star in a name stands for any letters, ? for one, and a backslash makes
+    /// either ordinary. Files of colours count by luminance; alpha never counts.
     #[arg(long, value_name = "MASK", value_hint = ValueHint::FilePath)]
     pub mask: Option<MaskSource>,
     /// EXR files that have the mask's layer or Cryptomatte, such as ids.####.exr [default: the input].
@@ -125,9 +125,13 @@ pub struct ApplyArgs {
     /// Uses the result where the mask is not.
     #[arg(long, requires = "mask")]
     pub invert: bool,
-    /// What to do in frames that do not know a name of the mask's.
+    /// Treatment of frames that do not know a name of the mask's.
     #[arg(long, value_enum, default_value_t = OnUnknown::Fail)]
     pub on_unknown: OnUnknown,
+    /// A painted flow map, along which the style draws: a file such as flow.png, or one for each frame (flow.####.exr). Red and
+    /// green say where it leads, 0.5 for nowhere, and alpha how much it counts.
+    #[arg(long, value_name = "FILE", value_hint = ValueHint::FilePath)]
+    pub flow: Option<PathBuf>,
     /// How steady frames of a sequence are, from 0 to 1: neighbouring frames are carried along motion and averaged before
     /// the style decides anything. Needs motion vectors in the EXR files, or --motion [default: what the style says].
     #[arg(long, value_name = "S")]
@@ -135,15 +139,15 @@ pub struct ApplyArgs {
     /// EXR files with motion vectors, one for each frame: mv.####.exr; or estimate, for optical flow of the pictures.
     #[arg(long, value_name = "FILES", value_hint = ValueHint::FilePath)]
     pub motion: Option<PathBuf>,
-    /// What motion vectors mean: isophote, arnold, blender, renderman, vray or unreal, and after commas what differs, of
-    /// units=pixels|normalised|ndc, y=up|down, direction=backward|forward, sign=1|-1, centre=NUMBER and scale=NUMBER
-    /// [default: what the name of their layer says].
+    /// Meaning of motion vectors: isophote, arnold, blender, renderman, vray or unreal, and after commas what
+    /// differs, of units=pixels|normalised|ndc, y=up|down, direction=backward|forward, sign=1|-1, centre=NUMBER and
+    /// scale=NUMBER [default: what the name of their layer says].
     #[arg(long, value_name = "NAME")]
     pub motion_convention: Option<Convention>,
     /// Options of ffmpeg's encoder for a video, such as "-c:v libx265 -crf 20".
     #[arg(long, value_name = "OPTIONS", allow_hyphen_values = true)]
     pub encode: Option<String>,
-    /// What to do where a video is damaged or cut short: fail, or write what can be read of it and warn.
+    /// Treatment of a video that is damaged or cut short: fail, or write what can be read of it and warn.
     #[arg(long, value_enum, default_value_t = OnError::Fail)]
     pub on_error: OnError,
     /// Threads on the CPU; 0 for one per core.
@@ -176,13 +180,14 @@ pub fn run(args: &ApplyArgs) -> Result<()> {
         looks.iter().for_each(|look| look.style.warn_of_keys_beyond(&frames));
     }
     let choices = args.masks(&entries);
-    let masks = Masks::new(&choices, args.mask_from.as_deref(), args.on_unknown)?;
+    let masks = args.maps(&choices, &looks)?;
     masks.check(Some(&tasks))?;
     let selection = args.selection(&library, &looks, &choices, format)?;
     let motion = args.motion_files(&tasks, &selection)?;
     let opened = args.open_first(&tasks, &selection)?;
     let backend = if args.dry_run { Backend::Cpu } else { args.backend };
-    let mut planner = Planner::new(library.clone(), args.looks(&library, files.style, &entries)?)?;
+    let planner = Planner::new(library.clone(), args.looks(&library, files.style, &entries)?)?;
+    let mut planner = planner.with_flow(args.flow.is_some());
     args.check_results(&tasks, &planner, &choices)?;
     let filter = Filter::new(library.clone(), looks, backend, args.space, args.threads)?;
     let most = args.memory.unwrap_or_else(memory::usual);
@@ -208,7 +213,7 @@ pub fn run(args: &ApplyArgs) -> Result<()> {
         }
     }
     let budget = Budget::new(most.0, filters.len());
-    let footage = Footage {
+    let frame_source = FrameSource {
         frames: tasks.sequence.as_ref(),
         motion: motion.as_ref(),
         selection: &selection,
@@ -217,7 +222,7 @@ pub fn run(args: &ApplyArgs) -> Result<()> {
     };
     let run =
         Run { tasks: &tasks.ready, format, consent: args.consent(), threads, report: &report, stop: &stop };
-    let result = run.all(&mut filters, Reader::new(footage, planner, &tasks.ready, opened));
+    let result = run.all(&mut filters, Reader::new(frame_source, planner, &tasks.ready, opened));
     let counts = report.end(result.is_ok());
     result?;
     counts.check(files.input, tasks.ready.len(), args.consent())
@@ -225,16 +230,16 @@ pub fn run(args: &ApplyArgs) -> Result<()> {
 
 /// The files that the command line names.
 pub struct Files<'a> {
-    /// What is done; a file or the name of a node or look.
+    /// Style: a file or the name of a node or look.
     pub style: &'a Path,
-    /// What is read.
+    /// Path that is read.
     pub input: &'a Path,
-    /// What is written.
+    /// Path that is written.
     pub output: &'a Path,
 }
 
 impl ApplyArgs {
-    /// What the first picture needs of memory, where that can be known: no more than there is.
+    /// Memory that the first picture needs, where that can be known: no more than there is.
     fn needs(
         &self,
         planner: &mut Planner,
@@ -323,14 +328,14 @@ impl ApplyArgs {
                 "name files of masks, or EXR files by --mask-from",
             );
         }
-        let masks = Masks::new(&choices, self.mask_from.as_deref(), self.on_unknown)?;
+        let masks = self.maps(&choices, &looks)?;
         masks.check(None)?;
         let mut filter = Filter::new(library, looks, self.backend, self.space, self.threads)?;
         let stop = Stop::on_signals();
         let (input, output, encode) = (files.input, files.output, self.encode.as_deref());
         let run = |existing| {
             let (on_error, json, masks, stop) = (self.on_error, self.json, &masks, &stop);
-            let job = video::Job { input, output, existing, encode, on_error, json, masks, stop };
+            let job = video::VideoJob { input, output, existing, encode, on_error, json, masks, stop };
             video::run(&job, &mut filter)
         };
         self.consent().write(made, Path::is_file, run).map(drop)
@@ -341,23 +346,23 @@ impl ApplyArgs {
         self.layered.as_deref().map_or_else(|| Ok(Vec::new()), looks::read)
     }
 
-    /// What is done to every picture: the looks of a file, or else the style.
-    fn looks(&self, library: &Library, name: &Path, entries: &[Entry]) -> Result<Vec<Look>> {
+    /// Looks that every picture gets: those of a file, or else the style.
+    fn looks(&self, library: &Library, name: &Path, entries: &[Entry]) -> Result<Vec<MaskedStyle>> {
         let mut masks = 0..;
         let looks = if entries.is_empty() {
             let style = Style::load(library, name, &self.set)?;
-            vec![Look { style, mask: self.mask.as_ref().and_then(|_| masks.next()) }]
+            vec![MaskedStyle { style, mask: self.mask.as_ref().and_then(|_| masks.next()) }]
         } else {
             let look = |entry: &Entry| {
                 let style = entry.style(library)?;
-                Ok(Look { style, mask: entry.mask.as_ref().and_then(|_| masks.next()) })
+                Ok(MaskedStyle { style, mask: entry.mask.as_ref().and_then(|_| masks.next()) })
             };
             entries.iter().map(look).collect::<Result<_>>()?
         };
         self.timed(looks)
     }
 
-    /// Where it is done.
+    /// Masks of where it is done.
     fn masks(&self, entries: &[Entry]) -> Vec<MaskChoice> {
         let choice = |source: &MaskSource| MaskChoice { source: source.clone(), invert: self.invert };
         let own = self.mask.iter().map(choice);
@@ -365,9 +370,9 @@ impl ApplyArgs {
     }
 
     /// The looks with what the command line says of time and lengths. Of several, one that knows of time is enough.
-    fn timed(&self, mut looks: Vec<Look>) -> Result<Vec<Look>> {
+    fn timed(&self, mut looks: Vec<MaskedStyle>) -> Result<Vec<MaskedStyle>> {
         let mut refused = Vec::new();
-        for Look { style, .. } in &mut looks {
+        for MaskedStyle { style, .. } in &mut looks {
             self.lengths.apply(style);
             self.precision.precision.apply(style)?;
             refused.extend(self.steadiness.and_then(|steadiness| style.steady(steadiness).err()));
@@ -380,6 +385,24 @@ impl ApplyArgs {
         } else {
             refused.into_iter().next().map_or(Ok(looks), Err)
         }
+    }
+
+    /// What lies over the pictures: masks, and the flow map.
+    ///
+    /// # Errors
+    /// As [`Masks::new`]; [`Error::Input`] for a flow map that no style would follow.
+    fn maps(&self, choices: &[MaskChoice], looks: &[Look]) -> Result<Masks> {
+        if self.flow.is_some() {
+            let mut followed = false;
+            for look in looks {
+                followed |= look.style.takes("flow")?;
+            }
+            if !followed {
+                let fix = "choose another style, or connect @flow in its graph";
+                return Err(Error::input("--flow", "the style follows no flow map", fix));
+            }
+        }
+        Masks::new(choices, self.mask_from.as_deref(), self.on_unknown)?.with_flow(self.flow.as_deref())
     }
 
     /// The files of motion vectors.
@@ -451,7 +474,7 @@ impl ApplyArgs {
     }
 
     /// Guides that are looked for.
-    fn wanted(&self, library: &Library, looks: &[Look]) -> Result<Vec<Guide>> {
+    fn wanted(&self, library: &Library, looks: &[MaskedStyle]) -> Result<Vec<Guide>> {
         let mut wanted = Vec::new();
         for look in looks {
             wanted.extend(filter::usable_guides(library, &look.style)?);
@@ -460,11 +483,11 @@ impl ApplyArgs {
         Ok(wanted)
     }
 
-    /// What is read of EXR files.
+    /// Selection of what is read of EXR files.
     fn selection(
         &self,
         library: &Library,
-        looks: &[Look],
+        looks: &[MaskedStyle],
         masks: &[MaskChoice],
         format: Format,
     ) -> Result<Selection> {

@@ -36,7 +36,7 @@ pub struct BenchArgs {
     /// Prints JSON.
     #[arg(long)]
     json: bool,
-    /// Where to measure [default: both].
+    /// Backend to measure [default: both].
     #[arg(long, value_enum)]
     backend: Option<BenchBackend>,
     #[command(flatten)]
@@ -79,7 +79,7 @@ pub struct BenchArgs {
     force: ForceArgs,
 }
 
-/// What `bench` measures.
+/// Backend that `bench` measures.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
 enum BenchBackend {
     /// The CPU, against its own peak.

@@ -23,12 +23,12 @@ const LONGEST_NAME: usize = 128;
 /// Options of `farm`.
 #[derive(Args, Debug)]
 pub struct FarmArgs {
-    /// What to do.
+    /// Command to carry out.
     #[command(subcommand)]
     command: FarmCommand,
 }
 
-/// What `farm` does.
+/// Commands of `farm`.
 #[derive(Debug, Subcommand)]
 enum FarmCommand {
     /// Writes an Open Job Description template (jobtemplate-2023-09) for an apply command.

@@ -1,4 +1,4 @@
-//! Which arguments of `apply` name files, and what part those have in a run: one list for everything that has to find or
+//! Arguments of `apply` that name files, and the part of each in a run: one list for everything that has to find or
 //! to spare them.
 
 use std::collections::BTreeSet;
@@ -32,7 +32,7 @@ pub enum Part {
 pub struct Place<'a> {
     /// Id of the argument.
     pub id: &'static str,
-    /// What it is for.
+    /// Part of the file in a run.
     pub part: Part,
     /// The path as it was written.
     pub path: &'a Path,
@@ -64,6 +64,7 @@ impl ApplyArgs {
             (output, Part::Result, Some(files.output)),
             ("mask", Part::Frames, mask),
             ("mask_from", Part::Frames, self.mask_from.as_deref()),
+            ("flow", Part::Frames, self.flow.as_deref()),
             ("motion", Part::Frames, self.motion.as_deref().filter(|_| !self.estimates_motion())),
         ];
         // Standard input and output have no path.
@@ -73,7 +74,7 @@ impl ApplyArgs {
         Ok(named.into_iter().filter_map(place).collect())
     }
 
-    /// Whether motion is to be found in the pictures themselves.
+    /// True where motion is to be found in the pictures themselves.
     pub fn estimates_motion(&self) -> bool {
         self.motion.as_deref() == Some(Path::new(ESTIMATE))
     }

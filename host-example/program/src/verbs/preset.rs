@@ -11,11 +11,9 @@ use isophote_files::error::{AtPlace, Error, Result};
 use isophote_files::identity::is_same;
 use isophote_files::replacing::{Consent, Inputs, Made};
 use isophote_files::{files, output};
-use isophote_finishing::stylize::looks::{self, Look};
-use isophote_finishing::stylize::preset::{self, Preset, Track};
+use isophote_finishing::stylize::preset::{self, Look, Preset, Title, Track};
 use isophote_finishing::stylize::source;
 use isophote_finishing::stylize::style::{Setting, Style};
-use isophote_finishing::stylize::title::{self, Title};
 use isophote_loader::Library;
 use isophote_loader::catalogue::ParamKind;
 
@@ -106,7 +104,7 @@ impl SaveArgs {
 
 /// A text for the title of a preset.
 fn line(text: &str) -> std::result::Result<String, String> {
-    title::is_line(text).then(|| text.to_owned()).ok_or_else(|| "write something on one line".to_owned())
+    preset::is_line(text).then(|| text.to_owned()).ok_or_else(|| "write something on one line".to_owned())
 }
 
 /// Runs the verb.
@@ -127,38 +125,40 @@ pub fn run(args: &PresetArgs) -> Result<()> {
 }
 
 fn list(args: &ListArgs) -> Result<()> {
-    let mut looks = looks::all()?;
-    looks.retain(|look| args.tag.iter().all(|tag| look.preset.title.tags.contains(tag)));
+    let all = preset::looks()?.into_iter().map(|look| Ok((preset::of_look(&look)?, look)));
+    let mut looks: Vec<(Preset, Look)> = all.collect::<Result<_>>()?;
+    let all_tags = |looks: &[(Preset, Look)]| -> Vec<String> {
+        looks.iter().flat_map(|(preset, _)| preset.title.tags.clone()).collect()
+    };
+    let mut tags = all_tags(&looks);
+    looks.retain(|(preset, _)| args.tag.iter().all(|tag| preset.title.tags.contains(tag)));
     if looks.is_empty() {
-        let mut tags: Vec<String> =
-            looks::all()?.into_iter().flat_map(|look| look.preset.title.tags).collect();
         tags.sort();
         tags.dedup();
         let place = format!("--tag {}", args.tag.join(" --tag "));
         return Err(Error::input(place, "no look has that", format!("choose from {}", tags.join(", "))));
     }
     if args.json {
-        let objects = looks.iter().map(|look| {
-            let mut object = look.preset.object();
-            object.insert("look".into(), look.style().into());
-            Value::Object(object)
+        let objects = looks.iter().map(|(_, look)| {
+            let mut object: Value = serde_json::from_str(look.json).unwrap_or_default();
+            object["look"] = look.name().into();
+            object
         });
         return output::print(&format!("{:#}\n", objects.collect::<Value>()));
     }
-    let width = |text: fn(&Look) -> usize| looks.iter().map(text).max().unwrap_or(0) + 2;
-    let ids = width(|look| look.style().len());
-    let names = width(|look| look.preset.title.name.as_deref().unwrap_or_default().len());
+    let width = |text: fn(&(Preset, Look)) -> usize| looks.iter().map(text).max().unwrap_or(0) + 2;
+    let ids = width(|(_, look)| look.name().len());
+    let names = width(|(preset, _)| preset.title.name.as_deref().unwrap_or_default().len());
     let mut text = format!("{} look{}\n", looks.len(), if looks.len() == 1 { "" } else { "s" });
     let mut style = "";
-    for look in &looks {
-        let preset = &look.preset;
+    for (preset, look) in &looks {
         if style != preset.style {
             style = &preset.style;
             text += &format!("\n{style}\n");
         }
         let [name, about] =
             [&preset.title.name, &preset.title.about].map(|t| t.as_deref().unwrap_or_default());
-        text += &format!("  {:ids$}{name:names$}{about}\n", look.style());
+        text += &format!("  {:ids$}{name:names$}{about}\n", look.name());
     }
     output::print(&text)
 }
@@ -179,8 +179,8 @@ fn base(library: &Library, style: &Style, args: &SaveArgs) -> Result<Preset> {
     if preset::is_graph(&text) {
         return Ok(plain(from(file, base)?));
     }
-    let preset = Preset::parse(base, &text)?;
-    let inner = preset.style_beside(base);
+    let preset = preset::parse(base, &text)?;
+    let inner = preset::style_beside(&preset, base);
     let is_same = inner == *preset.style;
     let style = if is_same { preset.style } else { from(file, Path::new(&inner))? };
     Ok(Preset { style, ..preset })
@@ -218,7 +218,7 @@ fn save(library: &Library, args: &SaveArgs) -> Result<()> {
     if is_same(&file.with_file_name(&preset.style), file) {
         return Err(Error::file(file, "is the graph that the preset is for", "name another file"));
     }
-    let text = preset.to_json();
+    let text = preset::text(&preset)?;
     let write = |existing| files::write_bytes(file, existing, text.as_bytes());
     args.consent().write(made(args), |_| false, write).map(drop)
 }
@@ -248,7 +248,7 @@ fn show(library: &Library, file: &Path, frame: Option<i64>) -> Result<()> {
     if !tags.is_empty() {
         text += &format!("tags: {}\n", tags.join(", "));
     }
-    text += &format!("{}\n", preset.style_shown());
+    text += &format!("{}\n", preset::style_shown(&preset));
     for (name, track) in &preset.params {
         let value = match track {
             Track::Still(value) => value.clone(),
@@ -273,7 +273,7 @@ fn show(library: &Library, file: &Path, frame: Option<i64>) -> Result<()> {
 fn check(library: &Library, files: &[PathBuf]) -> Result<()> {
     let mut wrong = 0;
     for file in files {
-        match faults(library, file) {
+        match source::read(file).and_then(|text| Style::faults(library, file, &text)) {
             Ok((preset, faults)) if faults.is_empty() => {
                 let frames: Vec<i64> = preset.params.iter().flat_map(|(_, track)| track.frames()).collect();
                 let animated = match (frames.iter().min(), frames.iter().max()) {
@@ -284,7 +284,7 @@ fn check(library: &Library, files: &[PathBuf]) -> Result<()> {
                 output::print(&format!(
                     "{}: {} with {count} parameter{}{animated}\n",
                     file.display(),
-                    preset.style_shown(),
+                    preset::style_shown(&preset),
                     if count == 1 { "" } else { "s" }
                 ))?;
             }
@@ -314,29 +314,11 @@ fn report(fault: Error) -> Result<()> {
     Ok(())
 }
 
-/// What can be read of the preset of a file, and all that is wrong with it.
-fn faults(library: &Library, file: &Path) -> Result<(Preset, Vec<Error>)> {
-    let (preset, mut faults) = Preset::examine(file, &text(file)?)?;
-    if !preset.style.is_empty() {
-        faults.extend(Style::faults(library, file, &preset));
-    }
-    Ok((preset, faults))
-}
-
 /// The preset of a file, and the style that it makes.
 fn open(library: &Library, file: &Path) -> Result<(Style, Preset)> {
-    let preset = Preset::parse(file, &text(file)?)?;
+    let preset = preset::parse(file, &source::read(file)?)?;
     let style = Style::any(library, file, &[])?;
     Ok((style, preset))
-}
-
-/// The text of a preset.
-fn text(file: &Path) -> Result<String> {
-    let text = source::read(file)?;
-    if preset::is_graph(&text) {
-        return Err(Error::file(file, "is a graph and no preset", "name a preset"));
-    }
-    Ok(text)
 }
 
 /// The default of a parameter as `--set` takes it; nothing of a kind that this program does not know.

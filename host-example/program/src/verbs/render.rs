@@ -38,8 +38,8 @@ pub struct RenderArgs {
     /// Size of the picture in pixels.
     #[arg(long, value_name = "WxH", default_value = "1280x720", value_parser = parse_size)]
     size: (u32, u32),
-    /// How many frames, from 1; or which, such as 1001-1100x2,1200. Of an animation, frame 1 is at --start: with 24 frames
-    /// per second, 49-72 is its third second.
+    /// Number of frames, from 1; or a list of them, such as 1001-1100x2,1200. Of an animation, frame 1 is at --start:
+    /// with 24 frames per second, 49-72 is its third second.
     #[arg(long, value_name = "N|LIST", default_value = "1", value_parser = FrameList::or_count, allow_hyphen_values = true)]
     frames: FrameList,
     /// Leaves pictures alone that are there already and whole, and a video that is there; makes the others.
@@ -64,7 +64,7 @@ pub struct RenderArgs {
     /// Exposes and tone-maps the colour of EXR files too, as PNG files and the window have it.
     #[arg(long)]
     tone_mapped: bool,
-    /// How frames are stylized: none, the id of a node, a look, or a graph file or preset (.json).
+    /// Style of the frames: none, the id of a node, a look, or a graph file or preset (.json).
     #[arg(long, default_value = "none")]
     style: PathBuf,
     /// Sets a parameter of the style; node.id=value for one node of a graph. May be repeated.
@@ -74,7 +74,7 @@ pub struct RenderArgs {
     lengths: LengthArgs,
     #[command(flatten)]
     precision: PrecisionArgs,
-    /// How steady the style is over time, from 0 to 1: frames before are carried along the scene's motion and averaged
+    /// Steadiness of the style over time, from 0 to 1: frames before are carried along the scene's motion and averaged
     /// before the style decides anything [default: what the style says].
     #[arg(long, value_name = "S")]
     steadiness: Option<f32>,
@@ -285,7 +285,7 @@ impl RenderArgs {
     }
 }
 
-/// What the renderer knows of a pixel beside its colour: target, names of channels, precision.
+/// Guide, which the renderer knows of a pixel beside its colour: target, names of channels, precision.
 type Guide = (fn(&Targets) -> Option<&Target>, &'static [&'static str], Precision);
 
 /// Named as compositors and `apply` know them.

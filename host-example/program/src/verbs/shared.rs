@@ -3,13 +3,14 @@
 use std::path::PathBuf;
 
 use clap::Args;
+use clap::builder::{PossibleValue, PossibleValuesParser, TypedValueParser};
 
 use isophote_files::error::Result;
 use isophote_files::files::Existing;
 use isophote_files::replacing::Consent;
 use isophote_finishing::staging::ReadingArgs;
-use isophote_finishing::stylize::lengths::Lengths;
 use isophote_finishing::stylize::precision::Precision;
+use isophote_finishing::stylize::preset::Lengths;
 use isophote_finishing::stylize::style::Style;
 use isophote_pictures::pixels::MOST_PIXELS;
 use isophote_scene::Scene;
@@ -19,7 +20,7 @@ use isophote_scene::Scene;
 pub struct SceneArgs {
     /// The scene: .gltf, .glb or .obj.
     pub scene: PathBuf,
-    /// How it is read.
+    /// Options of reading it.
     #[command(flatten)]
     pub reading: ReadingArgs,
 }
@@ -34,13 +35,27 @@ impl SceneArgs {
     }
 }
 
-/// What lengths of a style mean.
+/// Meaning of a style's lengths.
 #[derive(Args, Clone, Copy, Debug)]
 pub struct LengthArgs {
     /// What lengths of parameters are: pixels of a picture 1080 lines high, so that pictures of all sizes get the same look,
     /// or pixels of the picture itself [default: what the preset says, else relative].
-    #[arg(long, value_enum)]
+    #[arg(long, value_parser = lengths())]
     pub lengths: Option<Lengths>,
+}
+
+/// Reads the words for lengths.
+fn lengths() -> impl TypedValueParser<Value = Lengths> {
+    let word = |lengths: Lengths| {
+        PossibleValue::new(lengths.id()).help(match lengths {
+            Lengths::Relative => {
+                "Pixels of a picture 1080 lines high: pictures of all sizes get the same look"
+            }
+            Lengths::Pixels => "Pixels of the picture itself",
+        })
+    };
+    let of = |word: String| Lengths::ALL.into_iter().find(|lengths| lengths.id() == word);
+    PossibleValuesParser::new(Lengths::ALL.map(word)).try_map(move |word| of(word).ok_or("write a word"))
 }
 
 impl LengthArgs {
@@ -50,10 +65,10 @@ impl LengthArgs {
     }
 }
 
-/// How precisely graphics devices compute a style.
+/// Precision in which graphics devices compute a style.
 #[derive(Args, Clone, Copy, Debug)]
 pub struct PrecisionArgs {
-    /// How precisely graphics devices compute; the CPU always computes exactly.
+    /// Precision in which graphics devices compute; the CPU always computes exactly.
     #[arg(long, value_enum, default_value_t)]
     pub precision: Precision,
 }
@@ -81,7 +96,7 @@ impl ForceArgs {
 /// Width and height in pixels, such as `1280x720`.
 ///
 /// # Errors
-/// What to write instead.
+/// Advice what to write instead.
 pub fn parse_size(text: &str) -> std::result::Result<(u32, u32), String> {
     let parse = || {
         let (width, height) = text.split_once(['x', 'X'])?;

@@ -11,8 +11,8 @@ use isophote_finishing::stylize::style::{Setting, Style};
 use isophote_loader::Library;
 use isophote_window::document::kind::Kind;
 use isophote_window::document::{self, Document};
-use isophote_window::look::{Look, PLAIN};
-use isophote_window::reel::Reel;
+use isophote_window::look::{EditedLook, PLAIN};
+use isophote_window::playback::Playback;
 use isophote_window::scenery::{Lighting, Scenery, Staging};
 use isophote_window::session::Session;
 use isophote_window::settings::Settings;
@@ -80,7 +80,7 @@ pub fn run(args: &ViewArgs) -> Result<()> {
 fn open(session: &mut Session, path: &Path, args: &ViewArgs) -> Result<()> {
     let document = Document::open(path, &document::Options::default())?;
     if document.kind() != Kind::Scene {
-        session.show_reel(Reel::new(document)?);
+        session.show_playback(Playback::new(document)?);
         return Ok(());
     }
     let scene = args.reading.load(path)?;
@@ -104,14 +104,15 @@ fn open(session: &mut Session, path: &Path, args: &ViewArgs) -> Result<()> {
 }
 
 /// The looks of the keys, checked to be usable.
-fn looks(library: &Library, args: &ViewArgs) -> Result<Vec<Look>> {
+fn looks(library: &Library, args: &ViewArgs) -> Result<Vec<EditedLook>> {
     let mut names = args.style.clone();
     if names.is_empty() {
         names.push(PLAIN.into());
         let catalogue = library.catalogue().map_err(|e| e.at("the library", "install it again"))?;
         names.extend(catalogue.nodes.iter().filter(|n| n.group == "styles").map(|n| n.id.into()));
     }
-    let looks: Vec<Look> = names.iter().map(|name| Look::open(library, name)).collect::<Result<_>>()?;
+    let looks: Vec<EditedLook> =
+        names.iter().map(|name| EditedLook::open(library, name)).collect::<Result<_>>()?;
     let styles: Vec<Style> =
         looks.iter().filter_map(|look| look.style(library).transpose()).collect::<Result<_>>()?;
     styles.iter().try_for_each(|style| args.precision.precision.apply(style))?;

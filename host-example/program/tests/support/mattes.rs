@@ -30,7 +30,7 @@ pub fn id(name: &str) -> f32 {
     f32::from_bits(known.1)
 }
 
-/// What covers a pixel, the most first.
+/// Things that cover a pixel, the most first.
 pub fn ranks(x: usize, y: usize) -> Vec<(&'static str, f32)> {
     match (x, y) {
         (0..4, _) => vec![],
@@ -44,7 +44,7 @@ pub fn ranks(x: usize, y: usize) -> Vec<(&'static str, f32)> {
     }
 }
 
-/// How much of a pixel some things cover.
+/// Share of a pixel that some things cover.
 pub fn coverage(names: &[&str]) -> Vec<f32> {
     let of = |at: usize| {
         ranks(at % SIZE.0, at / SIZE.0).iter().filter(|(n, _)| names.contains(n)).map(|(_, c)| c).sum()

@@ -173,7 +173,7 @@ pub fn assets() -> Option<PathBuf> {
     folder.is_dir().then_some(folder)
 }
 
-/// Whether ffmpeg is there; where it must be, its absence fails.
+/// True where ffmpeg is there; where it must be, its absence fails.
 pub fn has_ffmpeg() -> bool {
     let is_there = |name: &str| Command::new(name).arg("-version").output().is_ok_and(|o| o.status.success());
     if is_there("ffmpeg") && is_there("ffprobe") {

@@ -1,5 +1,5 @@
-//! What other programs do to a window: files dropped on it, by the source's side of XDND, version 5, windows that cover it,
-//! and being asked to close.
+//! Acts of other programs on a window: files dropped on it, by the source's side of XDND, version 5, windows that
+//! cover it, and being asked to close.
 
 use std::path::Path;
 use std::time::{Duration, Instant};
@@ -16,7 +16,7 @@ use x11rb::wrapper::ConnectionExt as _;
 
 /// This only ends a test that hangs.
 const PATIENCE: Duration = Duration::from_secs(60);
-/// Where on the screen files are dropped.
+/// Place on the screen where files are dropped.
 const PLACE: [u32; 2] = [60, 90];
 
 type Answer<T> = Result<T, Box<dyn std::error::Error>>;

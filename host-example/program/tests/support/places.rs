@@ -1,4 +1,4 @@
-//! Where controls lie in the window.
+//! Places of controls in the window.
 
 use egui::accesskit::Role;
 use egui_kittest::Harness;
@@ -17,7 +17,7 @@ pub fn places(session: Session, (width, height): (u32, u32)) -> impl FnMut(&str,
     }
 }
 
-/// How often Tab is pressed in such a window until a button has the focus.
+/// Number of times that Tab is pressed in such a window until a button has the focus.
 pub fn tabs_to(session: Session, size: (u32, u32), label: &str) -> usize {
     const MOST: usize = 100;
     let mut harness = laid_out(session, size);

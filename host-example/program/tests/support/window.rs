@@ -75,7 +75,7 @@ impl Display {
         self.folder.path()
     }
 
-    /// What xdotool answers, if it succeeds.
+    /// Output of xdotool, if it succeeds.
     pub fn xdotool(&self, arguments: &[&str]) -> Option<String> {
         let output = Command::new("xdotool").env("DISPLAY", &self.name).args(arguments).output().ok()?;
         output.status.success().then(|| String::from_utf8_lossy(&output.stdout).trim().to_owned())
@@ -142,7 +142,7 @@ impl<'d> Window<'d> {
         format!("'{}' {}", self.title(), self.said())
     }
 
-    /// What it has said on standard error.
+    /// Text that it has written to standard error.
     pub fn said(&self) -> String {
         self.said.lock().expect("the test goes on").clone()
     }

@@ -14,7 +14,7 @@ pub struct Accessors<'a> {
     pub budget: &'a Budget,
 }
 
-/// Which elements of an accessor are read.
+/// Elements of an accessor that are read.
 #[derive(Clone, Copy)]
 pub enum Pick<'a> {
     /// All of them.
@@ -39,7 +39,7 @@ impl Pick<'_> {
         }
     }
 
-    /// Where an element ends up, if it is read.
+    /// Place that an element ends up at, if it is read.
     fn place(self, element: usize) -> Option<usize> {
         match self {
             Self::All => Some(element),
@@ -48,7 +48,7 @@ impl Pick<'_> {
     }
 }
 
-/// What an accessor holds, as plain numbers.
+/// Content of an accessor, as plain numbers.
 #[derive(Debug, PartialEq)]
 pub struct Floats {
     /// Numbers per element.
@@ -209,7 +209,7 @@ impl Accessors<'_> {
     }
 }
 
-/// Where the components of an element lie: the columns of matrices start at multiples of four bytes.
+/// Places of the components of an element: the columns of matrices start at multiples of four bytes.
 struct Layout {
     component: usize,
     rows: usize,

@@ -17,7 +17,7 @@ use crate::model::Scene;
 pub struct Outline<'a> {
     /// The document with lists of channels that are empty, line for line as it was.
     pub text: Cow<'a, str>,
-    /// What was taken out.
+    /// Channels that were taken out.
     pub channels: Channels,
 }
 

@@ -170,7 +170,7 @@ fn read_material(material: &gltf::Material, scene: &mut Scene) -> Material {
     }
 }
 
-/// How a material uses a texture; `None` where the texture has no image.
+/// Use of a texture by a material; `None` where the texture has no image.
 fn texture_use(
     material: &str,
     texture: usize,

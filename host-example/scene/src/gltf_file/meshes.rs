@@ -45,7 +45,7 @@ pub fn read(document: &gltf::Document, accessors: &Accessors, scene: &mut Scene)
     Ok(())
 }
 
-/// What the parts of a primitive are read with.
+/// Reader of the parts of a primitive.
 struct Reader<'a> {
     source: gltf::Primitive<'a>,
     accessors: &'a Accessors<'a>,

@@ -1,4 +1,4 @@
-//! Where the bytes of a glTF come from: the binary chunk, data URIs, and files beside it. A file may only name
+//! Sources of the bytes of a glTF: the binary chunk, data URIs, and files beside it. A file may only name
 //! others in its own folder or below, so that opening a scene from anywhere cannot read anything else.
 
 use std::fs::{self, File};
@@ -49,7 +49,7 @@ fn base64_decode(text: &[u8]) -> Option<Vec<u8>> {
     Some(out)
 }
 
-/// Whether a reference begins with a URL scheme such as `http:`.
+/// True where a reference begins with a URL scheme such as `http:`.
 fn has_scheme(uri: &str) -> bool {
     uri.split_once(':').is_some_and(|(scheme, _)| {
         scheme.starts_with(|c: char| c.is_ascii_alphabetic())
@@ -76,7 +76,7 @@ pub fn open(owner: &Path, reference: &str) -> std::result::Result<(File, PathBuf
     }
 }
 
-/// Where an open file really lies. Only Linux says so; elsewhere its path is followed once more.
+/// Path at which an open file really lies. Only Linux says so; elsewhere its path is followed once more.
 fn place_of(file: &File, path: &Path) -> io::Result<PathBuf> {
     #[cfg(target_os = "linux")]
     if let Ok(place) = fs::read_link(format!("/proc/self/fd/{}", std::os::fd::AsRawFd::as_raw_fd(file))) {

@@ -13,7 +13,7 @@ use super::statements::{UNNAMED, number, statements, words};
 /// is the origin of ours.
 const NO_TEXTURE: &str = "vt 0 1\n";
 
-/// How much of everything a file holds, and whether any vertex has a colour.
+/// Numbers of everything that a file holds, and true where any vertex has a colour.
 #[derive(Default)]
 struct Totals {
     positions: usize,
@@ -64,7 +64,7 @@ pub fn normal_form(text: &str) -> Result<(String, usize), String> {
 
 struct Writer {
     totals: Totals,
-    /// What came before the current statement, which negative indices count back from.
+    /// Numbers of what came before the current statement, which negative indices count back from.
     seen: Totals,
     vertices: String,
     rest: String,

@@ -1,4 +1,4 @@
-//! What whole glTF files mean.
+//! Meaning of whole glTF files.
 
 use std::fs;
 

@@ -8,11 +8,11 @@ use winit::keyboard::{Key, NamedKey};
 
 use super::App;
 use crate::leaving::Leaving;
-use crate::session::Wish;
+use crate::session::Request;
 use crate::ui;
 
 impl App {
-    /// What a key does.
+    /// Does what a key stands for.
     pub(super) fn key(&mut self, event: &KeyEvent) {
         let key = event.logical_key.as_ref();
         if !self.is_for_window(&event.logical_key) {
@@ -38,7 +38,7 @@ impl App {
             Key::Character("z") if !self.modifiers.shift_key() => session.undo(),
             Key::Character("z" | "Z" | "y") => session.redo(),
             Key::Character("e") => session.plan_export(),
-            Key::Character("o") => session.wishes.push(Wish::ChooseFile),
+            Key::Character("o") => session.requests.push(Request::ChooseFile),
             Key::Character("s") => session.save_look(self.modifiers.shift_key()),
             Key::Character("S") => session.save_look(true),
             _ => {}
@@ -61,8 +61,8 @@ impl App {
         self.modifiers.control_key() || self.modifiers.super_key()
     }
 
-    /// Whether a key is not for the field that is being typed in, or for the menu that is open. Those that close the window
-    /// or a dialog are for the window in fields, too.
+    /// True for a key that is not for the field that is being typed in, or for the menu that is open. Those that
+    /// close the window or a dialog are for the window in fields, too.
     fn is_for_window(&self, key: &Key) -> bool {
         let Some(context) = self.input.as_ref().map(State::egui_ctx) else { return true };
         let closes = self.is_command() && matches!(key.as_ref(), Key::Character("q" | "Q"));

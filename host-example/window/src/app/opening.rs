@@ -14,7 +14,8 @@ use crate::ui;
 use isophote_example::desktop;
 use isophote_files::error::Result;
 
-/// How often a device is opened anew, in vain, before what is open is put away, and then before the window gives up.
+/// Number of times that a device is opened anew, in vain, before what is open is put away, and then before the window
+/// gives up.
 const REVIVALS: u32 = 3;
 /// Time until the next attempt, where none can be opened: a driver that starts again takes a while.
 const PAUSE: Duration = Duration::from_secs(1);
@@ -61,7 +62,7 @@ impl App {
         Ok(Arc::clone(self.window.insert(Arc::new(window))))
     }
 
-    /// What the controls hear of; their textures are at most so many texels across.
+    /// State of the controls, by which they hear of events; their textures are at most so many texels across.
     fn controls(&self, event_loop: &ActiveEventLoop, window: &Window, texels: usize) -> State {
         let context = egui::Context::default();
         ui::theme::apply(&context);

@@ -3,10 +3,10 @@
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
 
-use crate::look::Look;
-use isophote_finishing::stylize::title::Title;
+use crate::look::EditedLook;
+use isophote_finishing::stylize::preset::Title;
 
-/// Where a look belongs.
+/// Group that a look belongs to.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub enum Group {
     /// A folder of the user.
@@ -21,8 +21,8 @@ pub enum Group {
 #[derive(Clone, Debug, PartialEq)]
 pub enum Content {
     /// The look.
-    Look(Arc<Look>),
-    /// What is wrong.
+    Look(Arc<EditedLook>),
+    /// Message about what is wrong.
     Broken(String),
 }
 
@@ -31,15 +31,15 @@ pub enum Content {
 pub struct Entry {
     /// Its number, which it keeps while it stays the same.
     pub id: u64,
-    /// Where it belongs.
+    /// Group that it belongs to.
     pub group: Group,
-    /// What it is opened as: the id of a style, a look that ships, or a file.
+    /// Name that it is opened by: the id of a style, a look that ships, or a file.
     pub source: PathBuf,
-    /// What people call it.
+    /// Name for people.
     pub name: String,
-    /// What people call its style.
+    /// Name of its style for people.
     pub style: String,
-    /// What it says about itself.
+    /// Description and tags that it gives of itself.
     pub title: Title,
     /// The look itself.
     pub content: Content,
@@ -47,7 +47,7 @@ pub struct Entry {
 
 impl Entry {
     /// The look, where it can be used.
-    pub fn look(&self) -> Option<&Arc<Look>> {
+    pub fn look(&self) -> Option<&Arc<EditedLook>> {
         match &self.content {
             Content::Look(look) => Some(look),
             Content::Broken(_) => None,
@@ -59,7 +59,7 @@ impl Entry {
         matches!(self.group, Group::Folder(_)).then_some(&*self.source)
     }
 
-    /// Whether its file can hold a name and tags, which graphs cannot.
+    /// True where its file can hold a name and tags, which graphs cannot.
     pub fn has_title(&self) -> bool {
         self.file().is_some() && self.look().is_some_and(|look| !look.is_graph())
     }

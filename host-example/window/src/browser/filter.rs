@@ -1,8 +1,8 @@
-//! Which looks are shown: words that are searched for, and tags that are wanted.
+//! Choice of the looks that are shown: words that are searched for, and tags that are wanted.
 
 use super::entry::Entry;
 
-/// What is asked of looks.
+/// Conditions that looks must meet to be shown.
 #[derive(Clone, Debug, Default, PartialEq, Eq)]
 pub struct Filter {
     /// Words; each must be in the name, a tag or the style.
@@ -12,12 +12,12 @@ pub struct Filter {
 }
 
 impl Filter {
-    /// Whether everything is shown.
+    /// True where everything is shown.
     pub fn is_empty(&self) -> bool {
         self.text.trim().is_empty() && self.tags.is_empty()
     }
 
-    /// Whether a look is shown.
+    /// True where a look is shown.
     pub fn takes(&self, entry: &Entry) -> bool {
         let tags = &entry.title.tags;
         let has_word = |word: &str| {
@@ -62,7 +62,7 @@ mod tests {
 
     use super::super::entry::{Content, Group};
     use super::*;
-    use isophote_finishing::stylize::title::Title;
+    use isophote_finishing::stylize::preset::Title;
 
     fn entry(name: &str, style: &str, tags: &[&str]) -> Entry {
         Entry {

@@ -6,10 +6,9 @@ use std::path::{Path, PathBuf};
 use std::sync::Arc;
 
 use super::entry::{Content, Group};
-use crate::look::{Look, PLAIN};
+use crate::look::{EditedLook, PLAIN};
 use isophote_files::error::Error;
-use isophote_finishing::stylize::looks;
-use isophote_finishing::stylize::title::Title;
+use isophote_finishing::stylize::preset::Title;
 use isophote_loader::Library;
 
 /// Most folders within folders.
@@ -17,49 +16,49 @@ const DEEPEST: usize = 4;
 /// Most files of all folders together.
 const MOST_FILES: usize = 2000;
 
-/// What is to be read.
+/// Request for a listing.
 #[derive(Debug)]
-pub struct Question {
+pub struct ListingRequest {
     /// The library.
     pub library: Library,
     /// The user's folders.
     pub folders: Vec<PathBuf>,
 }
 
-/// What was found.
+/// Looks that were found.
 #[derive(Debug, Default)]
 pub struct Listing {
     /// The looks, those of one group together.
     pub found: Vec<Found>,
     /// Files and folders that may change.
     pub watched: Vec<PathBuf>,
-    /// What is wrong with folders.
+    /// Problems of folders.
     pub problems: Vec<Error>,
 }
 
 /// One look.
 #[derive(Debug)]
 pub struct Found {
-    /// Where it belongs.
+    /// Group that it belongs to.
     pub group: Group,
-    /// What it is opened as.
+    /// Name that it is opened by.
     pub source: PathBuf,
-    /// What people call its style.
+    /// Name of its style for people.
     pub style: String,
     /// The look, or why it cannot be used.
     pub content: Content,
 }
 
 /// Reads everything anew.
-pub fn read(Question { library, folders }: Question) -> Listing {
+pub fn read(ListingRequest { library, folders }: ListingRequest) -> Listing {
     let mut listing = Listing::default();
     let mut seen = HashSet::new();
     for folder in folders {
         // Two names of one folder, or one inside the other, show each file once.
         listing.read_folder(&library, &folder, 0, &mut seen);
     }
-    for look in looks::all().unwrap_or_default() {
-        listing.found.push(found(&library, Group::Shipped, look.style().into()));
+    for look in library.looks().unwrap_or_default() {
+        listing.found.push(found(&library, Group::Shipped, look.name().into()));
     }
     listing.found.push(found(&library, Group::Styles, PLAIN.into()));
     let nodes = library.catalogue().map(|catalogue| catalogue.nodes).unwrap_or_default();
@@ -106,15 +105,15 @@ impl Listing {
 }
 
 fn found(library: &Library, group: Group, source: PathBuf) -> Found {
-    let (style, content) = match Look::open(library, &source) {
+    let (style, content) = match EditedLook::open(library, &source) {
         Ok(look) => (style_of(library, &look), Content::Look(Arc::new(look))),
         Err(error) => (String::new(), Content::Broken(error.to_string())),
     };
     Found { group, source, style, content }
 }
 
-/// What people call the style of a look.
-fn style_of(library: &Library, look: &Look) -> String {
+/// Name of a look's style for people.
+fn style_of(library: &Library, look: &EditedLook) -> String {
     match library.find_node(&look.preset.style) {
         Ok(node) => node.label.to_owned(),
         Err(_) if look.is_plain() => String::new(),
@@ -123,7 +122,7 @@ fn style_of(library: &Library, look: &Look) -> String {
 }
 
 impl Found {
-    /// What people call it.
+    /// Name for people.
     pub fn name(&self) -> String {
         match &self.content {
             Content::Look(look) => look.name.clone(),
@@ -131,7 +130,7 @@ impl Found {
         }
     }
 
-    /// What it says about itself; a style by itself says what its node does.
+    /// Description and tags that it gives of itself; a style by itself says what its node does.
     pub fn title(&self, library: &Library) -> Title {
         let Content::Look(look) = &self.content else { return Title::default() };
         let about = match self.group {

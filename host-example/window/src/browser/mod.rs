@@ -3,7 +3,7 @@
 pub mod entry;
 pub mod filter;
 pub mod listing;
-pub mod titling;
+pub mod title_edit;
 
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
@@ -11,7 +11,7 @@ use std::sync::Arc;
 use self::entry::{Entry, Group};
 use self::filter::Filter;
 use self::listing::{Found, Listing};
-use self::titling::Titling;
+use self::title_edit::TitleEdit;
 use isophote_loader::Library;
 
 /// Most looks that are compared at once.
@@ -20,9 +20,9 @@ pub const MOST_COMPARED: usize = 6;
 /// All looks and how they are shown.
 #[derive(Debug, Default)]
 pub struct Browser {
-    /// Whether it is shown instead of the picture.
+    /// True where it is shown instead of the picture.
     pub is_open: bool,
-    /// What is shown of the looks.
+    /// Conditions of the looks that are shown.
     pub filter: Filter,
     /// The look whose details are shown.
     pub selected: Option<u64>,
@@ -30,12 +30,12 @@ pub struct Browser {
     pub marked: Vec<u64>,
     /// Cards in a row, as they were last laid out.
     pub columns: usize,
-    /// Whether the selected card is to be scrolled to.
+    /// True where the selected card is to be scrolled to.
     pub scrolls: bool,
-    /// Whether the looks are to be read anew.
+    /// True where the looks are to be read anew.
     pub is_outdated: bool,
     /// A name and tags that are being changed.
-    pub titling: Option<Titling>,
+    pub title_edit: Option<TitleEdit>,
     /// The file that is to be deleted, if its owner agrees.
     pub deleting: Option<PathBuf>,
     /// Files and folders that may change.
@@ -103,7 +103,7 @@ impl Browser {
         self.entries.iter().find(|entry| entry.source == source)
     }
 
-    /// What is shown, by groups.
+    /// The looks that are shown, by groups.
     pub fn groups(&self) -> Vec<(&Group, Vec<&Arc<Entry>>)> {
         let mut groups: Vec<(&Group, Vec<&Arc<Entry>>)> = Vec::new();
         for entry in self.entries.iter().filter(|entry| self.filter.takes(entry)) {

@@ -11,7 +11,7 @@ use isophote_pictures::read::{ImageState, Source};
 use isophote_pictures::space::Space;
 use isophote_pictures::working::WorkingSpace;
 
-/// What an infinity becomes when the library reads it.
+/// Number that an infinity becomes when the library reads it.
 const LARGEST_HALF: f32 = 65504.0;
 
 /// A frame, or a picture by itself. The same bits as those that the library makes of what `apply` hands over.
@@ -26,11 +26,11 @@ pub struct Frame {
     /// Red, green, blue and alpha, rows from the top. Colour is multiplied by alpha where the picture is scene-referred, and
     /// is apart from it where it is display-referred: multiplied and divided again it would not be the same.
     pub color: Vec<[f32; 4]>,
-    /// What the request says of the picture.
+    /// Properties of the picture that the request names.
     pub asked: Asked,
-    /// Whether colour has light where alpha is 0 or little, which is filtered by itself.
+    /// True where colour has light where alpha is 0 or little, which is filtered by itself.
     pub has_light: bool,
-    /// What the file knows beside colour.
+    /// Guides that the file holds beside colour.
     pub guides: Vec<GuideImage>,
     /// Samples of the colour that were NaN or infinite and were replaced.
     pub replaced: u64,
@@ -39,7 +39,7 @@ pub struct Frame {
 /// A guide over the pixels of its frame.
 #[derive(Clone, Debug, PartialEq)]
 pub struct GuideImage {
-    /// Which; its id names the graph's input.
+    /// The guide; its id names the graph's input.
     pub guide: Guide,
     /// Numbers a pixel: 4 of normals and rest positions, of which the last is 0 where there is no surface, 2 of motion, which
     /// is no number where it is unknown, else 1.
@@ -80,12 +80,12 @@ impl Frame {
         })
     }
 
-    /// Whether colour is multiplied by alpha.
+    /// True where colour is multiplied by alpha.
     pub fn is_premultiplied(&self) -> bool {
         self.asked.state == ImageState::SceneReferred
     }
 
-    /// What `apply` asks of the library for this frame, in a request of its size with the guides that are wanted.
+    /// Request of `apply` to the library for this frame, of its size and with the guides that are wanted.
     pub fn request(&self, usual: IsophoteRequest) -> IsophoteRequest {
         let request = self.asked.request(usual);
         let alpha = if self.has_light { ISOPHOTE_ALPHA_EMISSIVE } else { request.alpha };
@@ -121,7 +121,7 @@ fn colors(pixels: &Pixels) -> (Vec<[f32; 4]>, u64) {
     (color, replaced)
 }
 
-/// Whether a premultiplied colour has more light than its coverage can explain, by the library's measure: more than
+/// True where a premultiplied colour has more light than its coverage can explain, by the library's measure: more than
 /// alpha / (1 - alpha)^4.
 fn is_beyond_coverage(pixel: &[f32; 4]) -> bool {
     let [r, g, b, alpha] = *pixel;

@@ -1,4 +1,4 @@
-//! What a path holds.
+//! Kind of document that a path holds.
 
 use std::io::Read;
 use std::path::{Path, PathBuf};
@@ -25,7 +25,7 @@ pub enum Kind {
 const SCENES: [&str; 3] = ["gltf", "glb", "obj"];
 /// First bytes of a binary glTF file.
 const GLB: &[u8] = b"glTF";
-/// What can be opened, for messages.
+/// List of the kinds that can be opened, for messages.
 const KNOWN: &str = "open a picture (PNG, JPEG, TIFF, WebP, HDR, EXR), a sequence of them, a video, or a scene (glTF, GLB, OBJ)";
 
 impl Kind {

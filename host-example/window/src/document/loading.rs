@@ -6,7 +6,7 @@ use std::thread::Builder;
 use isophote_files::error::{Error, Result};
 use isophote_files::limits;
 
-/// What is being made on another thread. Dropped, it is finished there and thrown away.
+/// Work on another thread. Dropped, it is finished there and thrown away.
 #[derive(Debug)]
 pub struct Loading<T> {
     result: Receiver<Result<T>>,
@@ -45,7 +45,7 @@ impl<T: Send + 'static> Loading<T> {
     /// Waits for the result.
     ///
     /// # Errors
-    /// What became of the work.
+    /// The error that the work ended with.
     pub fn wait(self) -> Result<T> {
         self.result.recv().unwrap_or_else(|_| Err(broken()))
     }

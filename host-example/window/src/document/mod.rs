@@ -1,4 +1,4 @@
-//! What the window shows: a scene, a picture, a sequence or a video, opened as `apply` opens it.
+//! The document that the window shows: a scene, a picture, a sequence or a video, opened as `apply` opens it.
 //!
 //! Pictures come as [`Frame`]s, which hold what `apply` would hand to the library. Nothing is read on the thread of the
 //! window: a document is opened by [`Document::begin`], and frames are read by a thread of its own, a little before they are
@@ -35,14 +35,14 @@ const ATTEMPTS: usize = 8;
 /// Frames per second of sequences, which do not tell.
 const RATE: f64 = 24.0;
 
-/// How a document is opened.
+/// Options by which a document is opened.
 #[derive(Clone, Debug)]
 pub struct Options {
-    /// What of EXR files; guides that styles may want are all looked for.
+    /// Selection within EXR files; guides that styles may want are all looked for.
     pub selection: Selection,
-    /// What numbers mean, where it is not the file that says so.
+    /// Space of the numbers, where it is not the file that says so.
     pub space: Option<Space>,
-    /// Whether a picture that is one of several numbered ones stands for all of them.
+    /// True where a picture that is one of several numbered ones stands for all of them.
     pub as_sequence: bool,
     /// Most bytes of frames in memory.
     pub cache: u64,
@@ -85,7 +85,7 @@ pub struct Document {
     kind: Kind,
     path: PathBuf,
     offers: Offers,
-    /// What was asked for.
+    /// The selection that was asked for.
     selection: Selection,
     content: Content,
 }
@@ -131,7 +131,7 @@ impl Document {
         Ok(Self { kind, path, offers, selection: options.selection.clone(), content })
     }
 
-    /// What it is.
+    /// Kind of the document.
     pub fn kind(&self) -> Kind {
         self.kind
     }
@@ -141,12 +141,12 @@ impl Document {
         &self.path
     }
 
-    /// What can be chosen in an EXR file, and what is.
+    /// Choices that an EXR file offers, and those made.
     pub fn offers(&self) -> &Offers {
         &self.offers
     }
 
-    /// What was asked for of an EXR file.
+    /// Selection that was asked for of an EXR file.
     pub fn selection(&self) -> &Selection {
         &self.selection
     }
@@ -171,7 +171,7 @@ impl Document {
     /// As [`Document::frame`], but waits for it.
     ///
     /// # Errors
-    /// Why there is none.
+    /// The reason why there is none.
     pub fn wait(&self, number: i64) -> Result<Arc<Frame>> {
         match &self.content {
             Content::None => Err(self.no_frames()),
@@ -180,7 +180,7 @@ impl Document {
         }
     }
 
-    /// Which way frames will be asked for: 1 forward, -1 backward, 0 not at all. They go round.
+    /// Sets the direction in which frames will be asked for: 1 forward, -1 backward, 0 not at all. They go round.
     pub fn play(&self, direction: i64) {
         if let Content::Moving { player, .. } = &self.content {
             player.play(direction);

@@ -61,7 +61,7 @@ impl Player {
     /// Waits for a frame.
     ///
     /// # Errors
-    /// Why there is none.
+    /// The reason why there is none.
     pub fn wait(&self, number: i64) -> Result<Arc<Frame>> {
         let mut state = self.shared.state();
         loop {
@@ -72,7 +72,7 @@ impl Player {
         }
     }
 
-    /// Which way frames are shown from now on: 1 forward, -1 backward, 0 not at all.
+    /// Sets the direction in which frames are shown from now on: 1 forward, -1 backward, 0 not at all.
     pub fn play(&self, direction: i64) {
         if self.shared.state().store.play(direction) {
             self.shared.work.notify_all();
@@ -138,7 +138,7 @@ fn work(mut source: Source, shared: &Shared) {
     }
 }
 
-/// Where frames go that were read.
+/// Sink of frames that were read.
 struct Wanted<'a>(&'a Shared);
 
 impl Sink for Wanted<'_> {

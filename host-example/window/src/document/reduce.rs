@@ -36,7 +36,7 @@ pub fn reduced(frame: &Frame, size: (u32, u32), [first, last]: Part) -> Frame {
     }
 }
 
-/// What pixels from `first` to `last`, of `after` in all, cover of `before`.
+/// Spans of `before` that pixels from `first` to `last`, of `after` in all, cover.
 fn spans(before: u32, after: u32, first: i32, last: i32) -> Vec<Span> {
     let step = f64::from(before) / f64::from(after.max(1));
     let most = before.saturating_sub(1) as usize;

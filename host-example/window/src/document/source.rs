@@ -1,4 +1,4 @@
-//! Where frames of a document come from: numbered files, or a video.
+//! Sources of a document's frames: numbered files, or a video.
 
 use std::ops::RangeInclusive;
 use std::path::{Path, PathBuf};
@@ -15,12 +15,12 @@ use isophote_pictures::space::Space;
 /// Frames before the one that is wanted that are decoded with it where a video plays backward.
 const CHUNK: i64 = 16;
 
-/// What is read of files.
+/// Options for reading files.
 #[derive(Clone, Debug, Default)]
 pub struct Reading {
-    /// What of EXR files; every guide where `wanted` has all.
+    /// Selection within EXR files; every guide where `wanted` has all.
     pub selection: Selection,
-    /// What numbers mean, where it is not the file that says so.
+    /// Space of the numbers, where it is not the file that says so.
     pub space: Option<Space>,
 }
 
@@ -33,13 +33,13 @@ pub enum Source {
     Video(PathBuf, Box<Clip>, Reading),
 }
 
-/// Where frames go that were read.
+/// Receiver of frames that were read.
 pub trait Sink {
-    /// Whether a frame is worth being made.
+    /// True where a frame is worth being made.
     fn wants(&self, number: i64) -> bool;
     /// Takes a frame, or why there is none.
     fn put(&self, number: i64, frame: Result<Frame>);
-    /// Whether none of these frames is what is to be read next.
+    /// True where none of these frames is what is to be read next.
     fn is_elsewhere(&self, frames: RangeInclusive<i64>) -> bool;
 }
 

@@ -10,7 +10,7 @@ use isophote_files::error::Result;
 const AHEAD: usize = 48;
 /// The same while nothing plays, on both sides.
 const AROUND: usize = 2;
-/// How much sooner a frame behind is given up than one as far ahead.
+/// Factor by which a frame behind is given up sooner than one as far ahead.
 const BEHIND: usize = 4;
 
 /// Frames that were read, and where the play stands.
@@ -19,7 +19,7 @@ pub struct Store {
     /// Most bytes of frames.
     most: u64,
     bytes: u64,
-    /// What became of frames, by number.
+    /// Results of reading frames, by number.
     read: BTreeMap<i64, Result<Arc<Frame>>>,
     /// Bytes of the last frame that was read, which the next will hardly exceed.
     usual: u64,
@@ -48,12 +48,12 @@ impl Store {
         self.numbers = numbers;
     }
 
-    /// Which way frames are shown from now on, and says whether that is news.
+    /// Sets the direction in which frames are shown from now on; true where that is news.
     pub fn play(&mut self, direction: i64) -> bool {
         std::mem::replace(&mut self.direction, direction.signum()) != direction.signum()
     }
 
-    /// Which way frames are shown.
+    /// Direction in which frames are shown.
     pub fn direction(&self) -> i64 {
         self.direction
     }
@@ -74,7 +74,7 @@ impl Store {
         self.read.iter().filter(|(_, frame)| frame.is_ok()).map(|(number, _)| *number).collect()
     }
 
-    /// Whether a frame is worth the room that it takes, which others have to give up.
+    /// True where a frame is worth the room that it takes, which others have to give up.
     pub fn wants(&self, number: i64) -> bool {
         let Some(distance) = self.distance(number).filter(|_| !self.read.contains_key(&number)) else {
             return false;
@@ -123,7 +123,7 @@ impl Store {
         order.into_iter().filter_map(|at| self.numbers.get(at).copied()).find(|number| self.wants(*number))
     }
 
-    /// How far away a frame is from the one that is shown, in the direction of play, which goes round.
+    /// Distance of a frame from the one that is shown, in the direction of play, which goes round.
     fn distance(&self, number: i64) -> Option<usize> {
         let at = self.numbers.binary_search(&number).ok()?;
         let count = self.numbers.len();

@@ -21,7 +21,7 @@ const MOST_BYTES: usize = 96 << 20;
 /// Most places that are remembered.
 const MOST_SLOTS: usize = 4000;
 
-/// What a preview is for. Each place shows one.
+/// Place that a preview is for. Each shows one.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 pub enum Place {
     /// The picture without a look, behind cards that have no preview yet.
@@ -41,7 +41,7 @@ pub enum Place {
 pub struct Previews {
     picture: Option<Arc<Picture>>,
     slots: HashMap<Place, Slot>,
-    /// What was asked for in this frame, the most urgent first.
+    /// Places that were asked for in this frame, the most urgent first.
     wanted: Vec<Place>,
     serial: u64,
     /// Counts frames.
@@ -51,7 +51,7 @@ pub struct Previews {
 struct Slot {
     order: Order,
     serial: u64,
-    /// Whether nothing is to be made.
+    /// True where nothing is to be made.
     is_done: bool,
     problem: Option<String>,
     made: Option<Made>,
@@ -61,9 +61,9 @@ struct Slot {
 
 struct Made {
     image: Arc<ColorImage>,
-    /// Whether it shows single pixels, and the texture.
+    /// The texture, and true where it shows single pixels.
     texture: Option<(bool, TextureHandle)>,
-    /// What it shows.
+    /// Order that it shows.
     order: Order,
     picture: Arc<Picture>,
 }
@@ -77,7 +77,7 @@ pub struct Preview {
     pub size: (u32, u32),
     /// The pixels of the picture that it shows.
     pub part: Part,
-    /// Whether it is of the picture and the look that are asked for.
+    /// True where it is of the picture and the look that are asked for.
     pub is_current: bool,
 }
 
@@ -115,8 +115,8 @@ impl Previews {
         self.slots.insert(place, slot);
     }
 
-    /// What can be drawn at a place, which may be of another picture or look than is asked for now. `crisp`: its pixels are to
-    /// be seen where it is magnified.
+    /// Preview to be drawn at a place, which may be of another picture or look than is asked for now. `crisp`: its
+    /// pixels are to be seen where it is magnified.
     pub fn get(&mut self, context: &Context, place: Place, crisp: bool) -> Option<Preview> {
         let picture = self.picture.as_ref()?;
         let slot = self.slots.get_mut(&place)?;
@@ -137,17 +137,17 @@ impl Previews {
         })
     }
 
-    /// Why there is no preview at a place.
+    /// Reason why there is no preview at a place.
     pub fn problem(&self, place: Place) -> Option<&str> {
         self.slots.get(&place)?.problem.as_deref()
     }
 
-    /// Whether something that is asked for is still to be made.
+    /// True while something that is asked for is still to be made.
     pub fn is_busy(&self) -> bool {
         self.picture.is_some() && self.slots.values().any(|slot| !slot.is_done && slot.used + 1 >= self.now)
     }
 
-    /// What is to be made of what was asked for since the last call.
+    /// Tasks for what was asked for since the last call.
     pub fn tasks(&mut self) -> Vec<Task> {
         let wanted = std::mem::take(&mut self.wanted);
         self.now += 1;

@@ -25,12 +25,12 @@ pub struct Picture {
     pub exposure: f32,
 }
 
-/// What the numbers of a result are.
+/// Meaning of the numbers of a result.
 #[derive(Clone, Copy, Debug)]
 pub struct Meaning {
     /// Their space.
     pub space: Space,
-    /// Whether colour is multiplied by alpha.
+    /// True where colour is multiplied by alpha.
     pub is_premultiplied: bool,
 }
 

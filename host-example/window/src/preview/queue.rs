@@ -23,13 +23,13 @@ const MOST_THREADS: usize = 8;
 pub struct Task {
     /// Its number, which no other has.
     pub serial: u64,
-    /// What it is of.
+    /// Picture that it is of.
     pub picture: Arc<Picture>,
-    /// What is to be made.
+    /// Order to be made.
     pub order: Order,
 }
 
-/// What became of a task.
+/// Result of a task.
 pub type Done = (u64, Result<ColorImage>);
 
 /// Makes previews beside the window. Dropping it waits for the one that is being made, which is given up.
@@ -48,11 +48,11 @@ struct Shared {
 
 #[derive(Debug, Default)]
 struct Tray {
-    /// What is to be made, the first at the end.
+    /// Tasks to be made, the first at the end.
     tasks: Vec<Task>,
-    /// What is being made.
+    /// Task that is being made.
     running: Option<u64>,
-    /// What was made and not collected.
+    /// Tasks that were made and not collected.
     made: HashSet<u64>,
     closed: bool,
 }
@@ -62,7 +62,7 @@ impl Shared {
         self.tray.lock().unwrap_or_else(PoisonError::into_inner)
     }
 
-    /// Whether a task is given up.
+    /// True where a task is given up.
     fn is_cancelled(&self, serial: u64) -> bool {
         let tray = self.tray();
         tray.closed || tray.running != Some(serial)
@@ -99,7 +99,7 @@ impl Queue {
         self.shared.changed.notify_one();
     }
 
-    /// What was made since the last call.
+    /// Results made since the last call.
     pub fn collect(&self) -> Vec<Done> {
         let done: Vec<Done> = self.answers.try_iter().collect();
         let mut tray = self.shared.tray();

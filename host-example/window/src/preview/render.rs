@@ -1,4 +1,4 @@
-//! What a look makes of the picture, computed on the processor by the library: at the size at which it is seen, and no more
+//! Look on the picture, computed on the processor by the library: at the size at which it is seen, and no more
 //! of it than is seen.
 
 use std::sync::Arc;
@@ -8,7 +8,7 @@ use egui::ColorImage;
 use super::picture::{self, Meaning, Picture};
 use crate::document::frame::Frame;
 use crate::document::reduce;
-use crate::look::Look;
+use crate::look::EditedLook;
 use isophote_files::error::{AtPlace, Error, Result};
 use isophote_files::limits;
 use isophote_finishing::apply::filter;
@@ -23,27 +23,27 @@ use isophote_pictures::space::Space;
 /// Bytes a pixel that filtering takes beside the picture, for nearly all looks.
 const WORKING: u64 = 300;
 
-/// How many times finer small previews are computed than they are seen: enough for fine hatching to be as grey as it is in the
-/// whole picture made small.
+/// Factor by which small previews are computed finer than they are seen: enough for fine hatching to be as grey as it
+/// is in the whole picture made small.
 pub const FINENESS: u32 = 3;
 
-/// What is to be made.
+/// A preview to be made.
 #[derive(Clone, Debug)]
 pub struct Order {
     /// The look.
-    pub look: Arc<Look>,
+    pub look: Arc<EditedLook>,
     /// Pixels across and down of the whole picture as it is seen, at most those of the frame.
     pub size: (u32, u32),
     /// The pixels of it that are seen.
     pub part: Part,
-    /// How many times finer it is computed than it is seen, so that thin lines are as pale as those of the whole picture
-    /// made small; no finer than the frame is.
+    /// Factor by which it is computed finer than it is seen, so that thin lines are as pale as those of the whole
+    /// picture made small; no finer than the frame is.
     pub fineness: u32,
 }
 
 impl Order {
     /// All of the picture.
-    pub fn whole(look: Arc<Look>, size: (u32, u32), fineness: u32) -> Self {
+    pub fn whole(look: Arc<EditedLook>, size: (u32, u32), fineness: u32) -> Self {
         Self { look, size, part: reduce::whole(size), fineness }
     }
 }
@@ -75,7 +75,7 @@ impl Renderer {
     /// The preview, or nothing where it was cancelled.
     ///
     /// # Errors
-    /// What the library has against the look, and [`Error::Failure`] when memory is short.
+    /// Errors of the library about the look, and [`Error::Failure`] when memory is short.
     pub fn render(
         &mut self,
         picture: &Picture,
@@ -106,7 +106,7 @@ impl Renderer {
         Ok(result.map(|result| shown(result.to_f32().as_chunks::<4>().0, result.width(), meaning)))
     }
 
-    /// What a style makes of a part of the picture at a size.
+    /// Part of the picture in a style, at a size.
     fn stylized(
         &mut self,
         picture: &Picture,
@@ -137,7 +137,7 @@ impl Renderer {
         }
     }
 
-    /// What `apply` asks for, of a picture of this size.
+    /// Request of `apply`, for a picture of this size.
     fn request(&self, picture: &Picture, size: (u32, u32), style: &Style) -> Result<IsophoteRequest> {
         let usual =
             style.request(&self.library, size).map_err(|e| e.at(&style.name, "choose another picture"))?;

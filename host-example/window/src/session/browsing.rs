@@ -7,18 +7,18 @@ use super::Session;
 use crate::browser::MOST_COMPARED;
 use crate::browser::entry::Content;
 use crate::browser::listing::Listing;
-use crate::browser::titling::{self, Titling, Words};
+use crate::browser::title_edit::{self, TitleEdit, Words};
 use crate::comparison::Comparison;
 use crate::document::frame::Frame;
-use crate::look::Look;
+use crate::look::EditedLook;
 use crate::preview::picture::Picture;
 use crate::saving::Saving;
 use crate::viewport::Compare;
 use isophote_files::error::Error;
-use isophote_finishing::stylize::title::Title;
+use isophote_finishing::stylize::preset::Title;
 
 impl Session {
-    /// Whether something else is shown instead of the picture.
+    /// True where something else is shown instead of the picture.
     pub fn is_covered(&self) -> bool {
         self.browser.is_open || self.comparison.is_some()
     }
@@ -74,7 +74,7 @@ impl Session {
     /// Shows the looks that are marked beside each other.
     pub fn compare_marked(&mut self) {
         let look = |id: &u64| self.browser.entry(*id).and_then(|entry| entry.look().cloned());
-        let panes: Vec<Arc<Look>> = self.browser.marked.iter().filter_map(look).collect();
+        let panes: Vec<Arc<EditedLook>> = self.browser.marked.iter().filter_map(look).collect();
         if panes.len() < 2 {
             return;
         }
@@ -111,10 +111,10 @@ impl Session {
         }
         let exposure = self.viewport.exposure.exp2();
         let known = self.previews.picture();
-        let picture = match &self.reel {
-            Some(reel) => {
-                let Some((frame, _)) = reel.frame(false) else { return };
-                Picture { frame: Arc::clone(frame), size: reel.size(), exposure }
+        let picture = match &self.playback {
+            Some(playback) => {
+                let Some((frame, _)) = playback.frame(false) else { return };
+                Picture { frame: Arc::clone(frame), size: playback.size(), exposure }
             }
             // That of a scene comes from the device.
             None => match known {
@@ -141,14 +141,14 @@ impl Session {
     pub fn ask_title(&mut self, id: u64) {
         let Some(entry) = self.browser.entry(id).filter(|entry| entry.has_title()) else { return };
         let words = Words::of(&entry.name, &entry.title);
-        self.browser.titling = Some(Titling { file: entry.source.clone(), words });
+        self.browser.title_edit = Some(TitleEdit { file: entry.source.clone(), words });
     }
 
     /// Writes the name and the tags that were typed.
     pub fn write_title(&mut self) {
-        let Some(Titling { file, words }) = self.browser.titling.take() else { return };
+        let Some(TitleEdit { file, words }) = self.browser.title_edit.take() else { return };
         let title = words.title(&file);
-        self.edit_file(&file, || titling::write(&file, &title), |session| session.retitle(&file, &title));
+        self.edit_file(&file, || title_edit::write(&file, &title), |session| session.retitle(&file, &title));
     }
 
     /// The window's own copies of a look whose file has a new title.

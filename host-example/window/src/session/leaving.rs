@@ -57,11 +57,11 @@ impl Session {
         }
     }
 
-    /// Whether a dialog of the window is open, which keys belong to then.
+    /// True where a dialog of the window is open, which keys belong to then.
     pub fn has_dialog(&self) -> bool {
         self.saving.is_some()
             || self.plan.is_some()
-            || self.browser.titling.is_some()
+            || self.browser.title_edit.is_some()
             || self.browser.deleting.is_some()
     }
 
@@ -75,7 +75,7 @@ impl Session {
         if self.shows_help {
             self.shows_help = false;
         } else if self.browser.deleting.take().is_some()
-            || self.browser.titling.take().is_some()
+            || self.browser.title_edit.take().is_some()
             || self.saving.take().is_some()
             || self.plan.take().is_some()
         {
@@ -88,7 +88,7 @@ impl Session {
     }
 }
 
-/// Whether two looks give the same pictures by the same words. Names and tags are written when they are typed.
+/// True where two looks give the same pictures by the same words. Names and tags are written when they are typed.
 fn says_the_same(a: &Preset, b: &Preset) -> bool {
     let sorted = |preset: &Preset| {
         let mut params = preset.params.clone();

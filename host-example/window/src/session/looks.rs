@@ -5,23 +5,23 @@ use std::sync::Arc;
 
 use super::Session;
 use crate::chain::Chain;
-use crate::look::{Knob, Look};
+use crate::look::{EditedLook, Parameter};
 use crate::value::Value;
 use isophote_files::error::Result;
-use isophote_finishing::stylize::lengths::Lengths;
+use isophote_finishing::stylize::preset::Lengths;
 use isophote_finishing::stylize::style::Setting;
 use isophote_loader::Library;
 
 impl Session {
     /// The look was saved.
-    pub fn saved(&mut self, look: Look) {
+    pub fn saved(&mut self, look: EditedLook) {
         let current = self.current;
         self.looks[current] = Arc::new(look);
         self.turn_to(current);
     }
 
     /// A file has what this look was opened as.
-    pub(super) fn keep(&mut self, look: &Look) {
+    pub(super) fn keep(&mut self, look: &EditedLook) {
         self.kept.insert(look.source.clone(), look.opened().clone());
     }
 
@@ -35,8 +35,8 @@ impl Session {
         let is_there = |name: &str| self.chain.as_ref().is_some_and(|chain| chain.has(name));
         self.selected = self.selected.take().filter(|name| is_there(name));
         self.watched = self.watched.take().filter(|watched| is_there(watched.node()));
-        match self.look().knobs(&self.library) {
-            Ok(knobs) => self.knobs = knobs,
+        match self.look().parameters(&self.library) {
+            Ok(parameters) => self.parameters = parameters,
             Err(error) => self.notes.complain(&error),
         }
         self.idle.clear();
@@ -58,14 +58,14 @@ impl Session {
     }
 
     /// Gives a parameter a value.
-    pub fn set(&mut self, knob: &Knob, value: &Value) {
-        self.edit(&knob.name, |look| look.set(knob, value));
+    pub fn set(&mut self, parameter: &Parameter, value: &Value) {
+        self.edit(&parameter.name, |look| look.set(parameter, value));
     }
 
     /// Gives a parameter its default.
-    pub fn reset(&mut self, knob: &Knob) {
+    pub fn reset(&mut self, parameter: &Parameter) {
         self.let_go();
-        self.edit(&knob.name, |look| look.reset(knob));
+        self.edit(&parameter.name, |look| look.reset(parameter));
         self.let_go();
     }
 
@@ -94,7 +94,7 @@ impl Session {
     }
 
     /// Shows a look that may be new here, as one step. A look that was opened as the same is replaced.
-    pub fn take(&mut self, look: Arc<Look>) {
+    pub fn take(&mut self, look: Arc<EditedLook>) {
         self.let_go();
         let before = self.state();
         let known = self.looks.iter().position(|known| known.source == look.source);
@@ -110,7 +110,7 @@ impl Session {
     }
 
     /// The files of the look that is shown may say something else now: this is what can be read of them.
-    pub fn reload(&mut self, source: &Path, read: Result<Look>) {
+    pub fn reload(&mut self, source: &Path, read: Result<EditedLook>) {
         if self.look().source != source {
             return;
         }
@@ -139,8 +139,8 @@ impl Session {
             if lengths.is_some() {
                 look.preset.lengths = lengths;
             }
-            let knobs = look.knobs(&self.library).unwrap_or_default();
-            settings.iter().for_each(|setting| look.take(&knobs, setting));
+            let parameters = look.parameters(&self.library).unwrap_or_default();
+            settings.iter().for_each(|setting| look.take(&parameters, setting));
             self.kept.insert(look.source.clone(), look.preset.clone());
         }
     }
@@ -152,7 +152,7 @@ impl Session {
         match known {
             Some(index) => self.turn_to(index),
             None => {
-                if let Ok(look) = Look::open(&self.library, last) {
+                if let Ok(look) = EditedLook::open(&self.library, last) {
                     self.looks.push(Arc::new(look));
                     self.turn_to(self.looks.len() - 1);
                 }

@@ -4,12 +4,12 @@ use std::path::Path;
 use std::sync::Arc;
 
 use super::{Session, State};
-use crate::look::Look;
+use crate::look::EditedLook;
 use crate::scenery::Lighting;
 use isophote_files::error::Result;
 
 impl Session {
-    /// What undo would bring back.
+    /// State that undo would bring back.
     pub(super) fn state(&self) -> State {
         State {
             current: self.current,
@@ -66,7 +66,7 @@ impl Session {
     }
 
     /// Changes the look; changes of the same thing are one step until [`Session::let_go`].
-    pub fn edit(&mut self, what: &str, change: impl FnOnce(&mut Look)) {
+    pub fn edit(&mut self, what: &str, change: impl FnOnce(&mut EditedLook)) {
         let before = self.state();
         let current = self.current;
         change(Arc::make_mut(&mut self.looks[current]));
@@ -110,7 +110,7 @@ impl Session {
         }
     }
 
-    /// Whether there are steps to take back, and to take again.
+    /// True where there are steps to take back, and to take again.
     pub fn can(&self) -> [bool; 2] {
         [self.edits.can_undo(), self.edits.can_redo()]
     }

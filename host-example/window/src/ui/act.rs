@@ -1,4 +1,4 @@
-//! What the controls of the browser ask for.
+//! Actions that the controls of the browser ask for.
 
 use std::path::PathBuf;
 

@@ -15,7 +15,7 @@ use crate::browser::filter::{Filter, tags};
 use crate::look::PLAIN;
 use crate::preview::Place;
 use crate::preview::render::{FINENESS, Order};
-use crate::session::{Session, Wish};
+use crate::session::{Request, Session};
 
 /// Least width of a card in points.
 const LEAST: f32 = 200.0;
@@ -27,7 +27,7 @@ const HEADING: f32 = 40.0;
 const MARGIN: f32 = 18.0;
 /// Points from one tag to the next, on average.
 const CHIP: f32 = 62.0;
-/// What is narrower has the controls on two lines.
+/// Width below which the controls stand on two lines.
 const NARROW: f32 = 720.0;
 /// Most bytes of previews that are made before they are seen.
 const AHEAD: usize = 48 << 20;
@@ -90,7 +90,7 @@ fn buttons(ui: &mut Ui, session: &mut Session) {
     }
     let hint = "Offer the looks of a folder and of those within it";
     if ui.button("Add a folder…").on_hover_text(hint).clicked() {
-        session.wishes.push(Wish::ChooseFolder);
+        session.requests.push(Request::ChooseFolder);
     }
     let marked = session.browser.marked.len();
     let text = if marked > 0 { format!("Compare {marked}") } else { "Compare".to_owned() };
@@ -132,7 +132,7 @@ fn chips(ui: &mut Ui, session: &mut Session) {
     });
 }
 
-/// What lies where in the grid, from its upper left corner.
+/// Item of the grid, at its upper left corner.
 enum Item {
     Heading(Group, usize),
     Card(Arc<Entry>),

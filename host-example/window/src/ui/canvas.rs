@@ -1,4 +1,4 @@
-//! What the pointer does on the picture, and what is drawn on it: the line of the wipe, names, what is being done.
+//! The pointer on the picture, and what is drawn there: the line of the wipe, names, what is being done.
 
 use egui::{
     Align2, Color32, CursorIcon, FontId, Id, PointerButton, Pos2, Rect, Sense, Stroke, Ui, pos2, vec2,
@@ -121,7 +121,7 @@ fn wipe(ui: &Ui, rect: Rect, session: &mut Session) {
     }
 }
 
-/// What each picture is, where there are two.
+/// Names of the pictures, where there are two.
 fn names(ui: &Ui, rect: Rect, session: &Session) {
     let name = |which: Which| match which {
         Which::Original => "Original".to_owned(),

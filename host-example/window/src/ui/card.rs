@@ -30,7 +30,7 @@ pub fn height(width: f32, session: &Session) -> f32 {
     ((width - 2.0 * PAD) * aspect.clamp(ASPECTS[0], ASPECTS[1])).round() + PAD + TEXT
 }
 
-/// Where the preview is on a card.
+/// Place of the preview on a card.
 fn place(card: Rect) -> Rect {
     Rect::from_min_max(card.min + vec2(PAD, PAD), pos2(card.right() - PAD, card.bottom() - TEXT))
 }
@@ -78,7 +78,7 @@ pub fn show(ui: &mut Ui, rect: Rect, session: &mut Session, entry: &Arc<Entry>) 
     }
 }
 
-/// What is told of a look where the pointer rests.
+/// Hint about a look where the pointer rests.
 fn hint(response: Response, entry: &Entry) -> Response {
     match (&entry.content, &entry.title.about) {
         (Content::Broken(problem), _) => response.on_hover_text(problem),
@@ -124,7 +124,7 @@ pub fn draw(ui: &Ui, texture: TextureId, rect: Rect, tint: Color32) {
     ui.painter().image(texture, rect, Rect::from_min_max(pos2(0.0, 0.0), pos2(1.0, 1.0)), tint);
 }
 
-/// Why there is no preview.
+/// Reason why there is no preview, in several lines.
 fn wrapped(ui: &mut Ui, place: Rect, problem: &str) {
     ui.painter().rect_filled(place, 3.0, theme::EMPTY);
     let mut inner =
@@ -191,7 +191,7 @@ fn mark(ui: &Ui, place: Rect, session: &Session, entry: &Entry, card: &Response)
     response.clicked()
 }
 
-/// What can be done with a look and its file.
+/// Actions on a look and its file.
 pub fn actions(ui: &mut Ui, session: &Session, entry: &Entry) -> Option<Act> {
     let mut act = None;
     let mut item = |ui: &mut Ui, text: &str, enabled: bool, wanted: &dyn Fn() -> Act| {

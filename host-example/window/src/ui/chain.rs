@@ -7,7 +7,7 @@ use crate::chain::Watched;
 use crate::session::Session;
 use isophote_files::error::Error;
 
-/// What a button of a row asks for.
+/// Action that a button of a row asks for.
 enum Act {
     Select,
     Shift(usize),

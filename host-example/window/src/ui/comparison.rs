@@ -7,7 +7,7 @@ use egui::{Align2, Color32, Id, Rect, Sense, Stroke, StrokeKind, Ui, pos2, vec2}
 use super::{canvas, card, theme};
 use crate::canvas::Area;
 use crate::comparison;
-use crate::look::Look;
+use crate::look::EditedLook;
 use crate::preview::picture::Picture;
 use crate::preview::render::Order;
 use crate::preview::{Place, Preview};
@@ -22,8 +22,8 @@ pub fn show(ui: &mut Ui, rect: Rect, session: &mut Session) {
     let looks = comparison.panes.clone();
     let scale = ui.pixels_per_point();
     ui.painter().rect_filled(rect, 0.0, theme::SURROUND);
-    let aspect = match (&session.reel, session.previews.picture()) {
-        (Some(reel), _) => reel.size().0 as f32 / reel.size().1.max(1) as f32,
+    let aspect = match (&session.playback, session.previews.picture()) {
+        (Some(playback), _) => playback.size().0 as f32 / playback.size().1.max(1) as f32,
         _ => rect.width() / rect.height().max(1.0),
     };
     let areas = comparison::areas(looks.len(), session.viewport.area, aspect);
@@ -49,7 +49,7 @@ fn pane(
     rect: Rect,
     session: &mut Session,
     index: usize,
-    look: &Arc<Look>,
+    look: &Arc<EditedLook>,
     by: [f32; 2],
 ) -> bool {
     let response = ui.interact(rect, Id::unique(("pane", index)), Sense::click_and_drag());
@@ -102,7 +102,7 @@ fn ask(
     rect: Rect,
     session: &mut Session,
     index: usize,
-    look: &Arc<Look>,
+    look: &Arc<EditedLook>,
     place: Area,
     picture: &Picture,
 ) {

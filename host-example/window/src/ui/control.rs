@@ -3,7 +3,7 @@
 use egui::{Align, Button, Color32, DragValue, Layout, Response, RichText, Sense, Slider, Ui, vec2};
 
 use super::theme;
-use crate::look::Knob;
+use crate::look::Parameter;
 use crate::session::Session;
 use crate::value::Value;
 use isophote_loader::catalogue::{Choice, ParamKind};
@@ -18,45 +18,49 @@ const RESET: f32 = 18.0;
 const ROW: f32 = 22.0;
 
 /// Shows a parameter of the present look.
-pub fn show(ui: &mut Ui, session: &mut Session, knob: &Knob) {
-    let differs = session.look().differs(knob);
-    let animated = session.look().is_animated(knob);
-    let is_idle = session.idle.contains(&knob.name);
+pub fn show(ui: &mut Ui, session: &mut Session, parameter: &Parameter) {
+    let differs = session.look().differs(parameter);
+    let animated = session.look().is_animated(parameter);
+    let is_idle = session.idle.contains(&parameter.name);
     let mut changed = None;
     let mut reset = false;
-    ui.push_id(&knob.name, |ui| {
+    ui.push_id(&parameter.name, |ui| {
         ui.allocate_ui_with_layout(
             vec2(ui.available_width(), ROW),
             Layout::left_to_right(Align::Center),
             |ui| {
                 ui.spacing_mut().item_spacing.x = 4.0;
                 dot(ui, differs);
-                let label = label(ui, knob, is_idle, animated);
+                let label = label(ui, parameter, is_idle, animated);
                 let width = ui.available_width() - RESET - 4.0;
-                let value = session.look().value(knob);
+                let value = session.look().value(parameter);
                 ui.add_enabled_ui(!is_idle, |ui| {
                     ui.allocate_ui_with_layout(
                         vec2(width, ROW),
                         Layout::left_to_right(Align::Center),
                         |ui| {
                             ui.set_min_width(width);
-                            changed = control(ui, knob, &value, &label);
+                            changed = control(ui, parameter, &value, &label);
                         },
                     );
                 });
                 if differs {
                     let button =
                         Button::new(RichText::new("⟲").size(12.0)).frame(false).min_size(vec2(RESET, ROW));
-                    let hint = format!("Set {} back to {}", knob.param.label, shown(knob, &knob.default));
+                    let hint = format!(
+                        "Set {} back to {}",
+                        parameter.param.label,
+                        shown(parameter, &parameter.default)
+                    );
                     reset = ui.add(button).on_hover_text(hint).clicked();
                 }
             },
         );
     });
     if reset {
-        session.reset(knob);
+        session.reset(parameter);
     } else if let Some(value) = changed {
-        session.set(knob, &value);
+        session.set(parameter, &value);
     }
 }
 
@@ -67,11 +71,11 @@ fn dot(ui: &mut Ui, differs: bool) {
     }
 }
 
-fn label(ui: &mut Ui, knob: &Knob, is_idle: bool, animated: bool) -> Response {
-    let text = RichText::new(knob.param.label);
+fn label(ui: &mut Ui, parameter: &Parameter, is_idle: bool, animated: bool) -> Response {
+    let text = RichText::new(parameter.param.label);
     let text = if is_idle { text.color(theme::FAINT.gamma_multiply(0.7)) } else { text };
     let (rect, _) = ui.allocate_exact_size(vec2(LABEL, ROW), Sense::hover());
-    let mut hint = knob.param.doc.to_owned();
+    let mut hint = parameter.param.doc.to_owned();
     if is_idle {
         hint += "\n\nIt has no effect with the other values as they are.";
     }
@@ -84,11 +88,11 @@ fn label(ui: &mut Ui, knob: &Knob, is_idle: bool, animated: bool) -> Response {
 }
 
 /// A value as people read it.
-fn shown(knob: &Knob, value: &Value) -> String {
-    match (value, &knob.param.kind) {
+fn shown(parameter: &Parameter, value: &Value) -> String {
+    match (value, &parameter.param.kind) {
         (Value::Choice(id), ParamKind::Choice { options, .. }) => option_label(options, id).to_owned(),
         (Value::Bool(on), _) => if *on { "on" } else { "off" }.to_owned(),
-        _ => format!("{}{}", value.text(), unit(knob)),
+        _ => format!("{}{}", value.text(), unit(parameter)),
     }
 }
 
@@ -96,8 +100,8 @@ fn option_label<'o>(options: &'o [Choice], id: &'o str) -> &'o str {
     options.iter().find(|option| option.id == id).map_or(id, |option| option.label)
 }
 
-fn unit(knob: &Knob) -> &'static str {
-    match knob.param.unit {
+fn unit(parameter: &Parameter) -> &'static str {
+    match parameter.param.unit {
         "px" => " px",
         "%" => " %",
         "deg" => "°",
@@ -106,15 +110,15 @@ fn unit(knob: &Knob) -> &'static str {
 }
 
 /// The control itself, and the value that it has been given, if any.
-fn control(ui: &mut Ui, knob: &Knob, value: &Value, label: &Response) -> Option<Value> {
-    match (value, &knob.param.kind) {
+fn control(ui: &mut Ui, parameter: &Parameter, value: &Value, label: &Response) -> Option<Value> {
+    match (value, &parameter.param.kind) {
         (Value::Float(now), ParamKind::Float { range, slider, .. }) => {
             let (mut value, mut typed) = (*now, *now);
             let rail = Slider::new(&mut value, slider[0]..=slider[1]).trailing_fill(true);
             let slid = rail_of(ui, rail, label);
             let speed = f64::from(slider[1] - slider[0]) / 240.0;
             let field = DragValue::new(&mut typed).range(range[0]..=range[1]).speed(speed).max_decimals(3);
-            let written = field_of(ui, field.suffix(unit(knob)), label);
+            let written = field_of(ui, field.suffix(unit(parameter)), label);
             chosen(slid, value, written, typed).map(Value::Float)
         }
         (Value::Int(now), ParamKind::Int { range, slider, .. }) => {
@@ -122,18 +126,18 @@ fn control(ui: &mut Ui, knob: &Knob, value: &Value, label: &Response) -> Option<
             let rail = Slider::new(&mut value, slider[0]..=slider[1]).trailing_fill(true);
             let slid = rail_of(ui, rail, label);
             let field = DragValue::new(&mut typed).range(range[0]..=range[1]).speed(0.1);
-            let written = field_of(ui, field.suffix(unit(knob)), label);
+            let written = field_of(ui, field.suffix(unit(parameter)), label);
             chosen(slid, value, written, typed).map(Value::Int)
         }
         (Value::Bool(now), _) => {
             let mut on = *now;
             let response = ui.checkbox(&mut on, "").labelled_by(label.id);
-            let name = knob.param.label;
+            let name = parameter.param.label;
             response.widget_info(|| egui::WidgetInfo::selected(egui::Role::CheckBox, true, *now, name));
             response.changed().then_some(Value::Bool(on))
         }
         (Value::Choice(now), ParamKind::Choice { options, .. }) => {
-            choice(ui, options, now, label, knob.param.label)
+            choice(ui, options, now, label, parameter.param.label)
         }
         (Value::Color(now), _) => color(ui, *now, label),
         _ => None,
@@ -150,7 +154,7 @@ fn field_of(ui: &mut Ui, field: DragValue<'_>, label: &Response) -> bool {
     ui.add_sized([VALUE, ROW - 2.0], field).labelled_by(label.id).changed()
 }
 
-/// What was slid, or typed.
+/// Value that was slid, or typed.
 fn chosen<N>(slid: bool, value: N, written: bool, typed: N) -> Option<N> {
     match (slid, written) {
         (true, _) => Some(value),

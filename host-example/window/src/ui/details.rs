@@ -1,4 +1,4 @@
-//! What is known of the selected look, at the side of the browser, and what can be done with it.
+//! Details of the selected look, at the side of the browser, and what can be done with it.
 
 use std::sync::Arc;
 
@@ -7,7 +7,7 @@ use egui::{Color32, Label, RichText, ScrollArea, Sense, Ui, vec2};
 use super::act::perform;
 use super::{card, theme};
 use crate::browser::entry::Content;
-use crate::look::Look;
+use crate::look::EditedLook;
 use crate::preview::Place;
 use crate::preview::render::{FINENESS, Order};
 use crate::session::Session;
@@ -52,7 +52,7 @@ pub fn show(ui: &mut Ui, session: &mut Session) {
 }
 
 /// The preview, as wide as the panel.
-fn large(ui: &mut Ui, session: &mut Session, look: Option<&Arc<Look>>) {
+fn large(ui: &mut Ui, session: &mut Session, look: Option<&Arc<EditedLook>>) {
     let (Some(look), Some(picture)) = (look, session.previews.picture()) else { return };
     let width = ui.available_width();
     let scale = ui.pixels_per_point();

@@ -3,8 +3,8 @@
 use egui::{Align2, Button, Context, Grid, RichText, TextEdit, Ui};
 
 use super::theme;
-use crate::browser::titling::Words;
-use crate::session::{Session, Wish};
+use crate::browser::title_edit::Words;
+use crate::session::{Request, Session};
 
 /// Width of text fields in points.
 const FIELD: f32 = 340.0;
@@ -12,7 +12,7 @@ const FIELD: f32 = 340.0;
 /// Shows those that are open.
 pub fn show(context: &Context, session: &mut Session) {
     saving(context, session);
-    titling(context, session);
+    title_edit(context, session);
     deleting(context, session);
 }
 
@@ -82,7 +82,7 @@ fn saving(context: &Context, session: &mut Session) {
         session.saving = Some(saving);
     }
     if chooses {
-        session.wishes.push(Wish::ChooseLookFile);
+        session.requests.push(Request::ChooseLookFile);
     }
     if done {
         session.finish_saving();
@@ -90,21 +90,21 @@ fn saving(context: &Context, session: &mut Session) {
     }
 }
 
-fn titling(context: &Context, session: &mut Session) {
-    let Some(mut titling) = session.browser.titling.take() else { return };
+fn title_edit(context: &Context, session: &mut Session) {
+    let Some(mut title_edit) = session.browser.title_edit.take() else { return };
     let (mut open, mut closes, mut done) = (true, false, false);
     window(context, "Name and tags", &mut open, |ui| {
-        Grid::new("titling").num_columns(2).spacing([18.0, 8.0]).show(ui, |ui| {
-            fields(ui, &mut titling.words);
+        Grid::new("title_edit").num_columns(2).spacing([18.0, 8.0]).show(ui, |ui| {
+            fields(ui, &mut title_edit.words);
         });
-        file(ui, &titling.file);
+        file(ui, &title_edit.file);
         ui.horizontal(|ui| {
             done = ui.add(Button::new("Save").fill(theme::CHOSEN)).clicked();
             closes = ui.button("Cancel").clicked();
         });
     });
     if open && !closes {
-        session.browser.titling = Some(titling);
+        session.browser.title_edit = Some(title_edit);
     }
     if done {
         session.write_title();
@@ -133,7 +133,7 @@ fn deleting(context: &Context, session: &mut Session) {
     }
 }
 
-/// Where a file is.
+/// Path of a file.
 fn file(ui: &mut Ui, path: &std::path::Path) {
     ui.add_space(6.0);
     ui.add(egui::Label::new(RichText::new(path.display().to_string()).small().color(theme::FAINT)).wrap());

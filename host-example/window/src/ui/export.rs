@@ -1,16 +1,16 @@
-//! What is to be exported, asked for in a window of its own.
+//! Dialog of exports, in a window of its own.
 
 use egui::{Align2, Button, ComboBox, DragValue, Grid, RichText, TextEdit, Ui};
 
 use super::theme;
 use crate::plan::{Plan, What};
-use crate::session::{Session, Wish};
+use crate::session::{Request, Session};
 
 /// Shows the window while something is to be exported.
 pub fn show(context: &egui::Context, session: &mut Session) {
     let Some(mut plan) = session.plan.take() else { return };
     let mut open = true;
-    let mut wish = None;
+    let mut request = None;
     egui::Window::new("Export")
         .open(&mut open)
         .collapsible(false)
@@ -20,21 +20,21 @@ pub fn show(context: &egui::Context, session: &mut Session) {
             ui.set_width(460.0);
             Grid::new("export").num_columns(2).spacing([18.0, 8.0]).show(ui, |ui| {
                 kind(ui, &mut plan);
-                amount(ui, &mut plan, session.reel.as_ref().map(|reel| reel.number()));
+                amount(ui, &mut plan, session.playback.as_ref().map(|playback| playback.number()));
                 if place(ui, &mut plan) {
-                    wish = Some(Wish::ChooseOutput);
+                    request = Some(Request::ChooseOutput);
                 }
             });
             ui.add_space(10.0);
-            wish = end(ui, &plan, session.exported.is_some()).or(wish.take());
+            request = end(ui, &plan, session.exported.is_some()).or(request.take());
         });
     if open {
         session.plan = Some(plan);
     }
-    session.wishes.extend(wish);
+    session.requests.extend(request);
 }
 
-/// What is made, and of which format.
+/// Kind of the export, and its format.
 fn kind(ui: &mut Ui, plan: &mut Plan) {
     if plan.choices().len() > 1 {
         ui.label("What");
@@ -63,7 +63,7 @@ fn kind(ui: &mut Ui, plan: &mut Plan) {
     ui.end_row();
 }
 
-/// What people call a format.
+/// Name of a format for people.
 fn format(extension: &str) -> String {
     match extension {
         "jpg" => "JPEG".into(),
@@ -73,7 +73,7 @@ fn format(extension: &str) -> String {
     }
 }
 
-/// How much is made: size and frames.
+/// Amount that is made: size and frames.
 fn amount(ui: &mut Ui, plan: &mut Plan, now: Option<i64>) {
     if let [What::Picture, ..] = plan.choices()
         && plan.counts[0] > 0
@@ -118,7 +118,7 @@ fn amount(ui: &mut Ui, plan: &mut Plan, now: Option<i64>) {
     }
 }
 
-/// Where it goes; says whether that is to be chosen in a dialog.
+/// Place that it goes to; says whether that is to be chosen in a dialog.
 fn place(ui: &mut Ui, plan: &mut Plan) -> bool {
     let label = ui.label("File");
     let clicked = ui.horizontal(|ui| {
@@ -129,8 +129,8 @@ fn place(ui: &mut Ui, plan: &mut Plan) -> bool {
     clicked.inner
 }
 
-/// What there is to say about it, and the buttons.
-fn end(ui: &mut Ui, plan: &Plan, is_busy: bool) -> Option<Wish> {
+/// Remarks on it, and the buttons.
+fn end(ui: &mut Ui, plan: &Plan, is_busy: bool) -> Option<Request> {
     let problem = plan.problem().or(is_busy.then_some("Another export is running."));
     if let Some(problem) = problem {
         ui.label(RichText::new(problem).color(theme::BAD));
@@ -141,5 +141,5 @@ fn end(ui: &mut Ui, plan: &Plan, is_busy: bool) -> Option<Wish> {
     }
     ui.add_space(4.0);
     let start = ui.add_enabled(problem.is_none(), Button::new("Start the export"));
-    start.clicked().then_some(Wish::Export)
+    start.clicked().then_some(Request::Export)
 }

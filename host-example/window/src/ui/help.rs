@@ -5,7 +5,7 @@ use egui::{Align2, Grid, RichText, ScrollArea, Ui};
 use super::{keys, theme};
 use crate::session::Session;
 
-/// What surrounds the list from top to bottom, in points.
+/// Margin of the list from top to bottom, in points.
 const MARGIN: f32 = 110.0;
 
 /// Shows the help while it is wanted.

@@ -1,4 +1,4 @@
-//! What single keys do. The help of the program and of the window say so too.
+//! Keys and what they do. The help of the program and of the window say so too.
 
 use winit::keyboard::{Key, NamedKey};
 
@@ -53,8 +53,8 @@ pub fn press(session: &mut Session, key: &Key) {
         // Before anything is open it goes from control to control.
         Key::Named(NamedKey::Tab) if session.has_picture() => session.choose_next(),
         Key::Named(key @ (NamedKey::ArrowLeft | NamedKey::ArrowRight)) => {
-            if let Some(reel) = &mut session.reel {
-                reel.step(if key == NamedKey::ArrowLeft { -1 } else { 1 });
+            if let Some(playback) = &mut session.playback {
+                playback.step(if key == NamedKey::ArrowLeft { -1 } else { 1 });
             }
         }
         Key::Named(NamedKey::F1) | Key::Character("?") => session.shows_help = !session.shows_help,
@@ -80,7 +80,7 @@ pub fn press(session: &mut Session, key: &Key) {
     }
 }
 
-/// What a key does where looks are shown instead of the picture; says whether it does anything there.
+/// Handles a key where looks are shown instead of the picture; says whether it does anything there.
 fn cover(session: &mut Session, key: &Key) -> bool {
     if session.shows_help {
         return false;

@@ -1,15 +1,15 @@
-//! What of an EXR file is shown: its layer, its view, and the guides that were found in it.
+//! Parts of an EXR file that are shown: its layer, its view, and the guides that were found in it.
 
 use egui::{ComboBox, RichText, Ui};
 
 use super::theme;
-use crate::session::{Session, Wish};
+use crate::session::{Request, Session};
 use isophote_pictures::exr::{Guide, Layer};
 
-/// Whether there is anything to choose or to tell.
+/// True where there is anything to choose or to tell.
 pub fn has_any(session: &Session) -> bool {
-    session.reel.as_ref().is_some_and(|reel| {
-        let offers = reel.document.offers();
+    session.playback.as_ref().is_some_and(|playback| {
+        let offers = playback.document.offers();
         offers.layers.len() > 1
             || !views(&offers.layers, &offers.layer).is_empty()
             || !offers.guides.is_empty()
@@ -18,10 +18,10 @@ pub fn has_any(session: &Session) -> bool {
 
 /// Shows the controls.
 pub fn show(ui: &mut Ui, session: &mut Session) {
-    let Some(reel) = &session.reel else { return };
-    let offers = reel.document.offers();
-    let selection = reel.document.selection();
-    let mut wish = None;
+    let Some(playback) = &session.playback else { return };
+    let offers = playback.document.offers();
+    let selection = playback.document.selection();
+    let mut request = None;
     if offers.layers.len() > 1 {
         row(ui, "Layer", "layer", name(&offers.layer), |ui| {
             for layer in &offers.layers {
@@ -29,7 +29,7 @@ pub fn show(ui: &mut Ui, session: &mut Session) {
                 let text = format!("{}{mark}", name(&layer.name));
                 if ui.selectable_label(layer.name == offers.layer, text).clicked() {
                     let view = selection.view.clone().filter(|view| layer.views.contains(view));
-                    wish = Some(Wish::ChooseLayer(layer.clone(), view));
+                    request = Some(Request::ChooseLayer(layer.clone(), view));
                 }
             }
         });
@@ -41,7 +41,7 @@ pub fn show(ui: &mut Ui, session: &mut Session) {
         row(ui, "View", "view", offers.view.as_deref().unwrap_or("The first"), |ui| {
             for view in views {
                 if ui.selectable_label(offers.view.as_ref() == Some(view), view).clicked() {
-                    wish = Some(Wish::ChooseLayer(layer.clone(), Some(view.clone())));
+                    request = Some(Request::ChooseLayer(layer.clone(), Some(view.clone())));
                 }
             }
         });
@@ -55,7 +55,7 @@ pub fn show(ui: &mut Ui, session: &mut Session) {
         .response
         .on_hover_text("Looks follow it. It was found by its name");
     }
-    session.wishes.extend(wish);
+    session.requests.extend(request);
 }
 
 /// The views of a layer, if there are several.
@@ -74,12 +74,12 @@ fn row(ui: &mut Ui, label: &str, id: &str, shown: &str, list: impl FnOnce(&mut U
     });
 }
 
-/// What people call a layer.
+/// Name of a layer for people.
 fn name(layer: &str) -> &str {
     if layer.is_empty() { "The main layer" } else { layer }
 }
 
-/// What people call a guide.
+/// Name of a guide for people.
 fn title(guide: Guide) -> &'static str {
     match guide {
         Guide::Normal => "Normals",
@@ -88,5 +88,6 @@ fn title(guide: Guide) -> &'static str {
         Guide::Motion => "Motion",
         Guide::MotionForward => "Motion forward",
         Guide::RestPosition => "Rest positions",
+        Guide::Flow => "Flow map",
     }
 }

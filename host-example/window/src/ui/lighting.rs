@@ -3,7 +3,7 @@
 use egui::{Button, RichText, Slider, Ui};
 
 use super::theme;
-use crate::session::{Session, Wish};
+use crate::session::{Request, Session};
 use isophote_render::background::Background;
 use isophote_scene::camera::Direction;
 
@@ -117,7 +117,7 @@ fn background(ui: &mut Ui, session: &mut Session) {
                 }
             }
             if ui.button("A picture of the surroundings…").clicked() {
-                session.wishes.push(Wish::ChooseSurroundings);
+                session.requests.push(Request::ChooseSurroundings);
             }
         });
         shown.response.labelled_by(label.id);

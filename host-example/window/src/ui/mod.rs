@@ -1,5 +1,5 @@
 //! The controls of the window: what surrounds the picture and what is drawn on it. They read and change the session and ask
-//! for the rest by wishes; nothing here knows a device.
+//! for the rest by requests; nothing here knows a device.
 
 mod act;
 mod browser;

@@ -1,4 +1,4 @@
-//! What there is to say, in bars above the lower border of the picture.
+//! Messages of the window, in bars above the lower border of the picture.
 
 use egui::{Align2, Button, Frame, Id, Margin, Rect, RichText, vec2};
 

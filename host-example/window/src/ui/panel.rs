@@ -3,7 +3,7 @@
 use egui::{CollapsingHeader, RichText, ScrollArea, Ui};
 
 use super::{chain, control, layers, lighting, theme};
-use crate::look::Knob;
+use crate::look::Parameter;
 use crate::session::Session;
 
 /// Headings that are open at first.
@@ -15,16 +15,16 @@ pub fn show(ui: &mut Ui, session: &mut Session) {
     ui.add_space(6.0);
     ScrollArea::vertical().auto_shrink([false, false]).show(ui, |ui| {
         ui.set_width(ui.available_width() - 10.0);
-        let knobs = session.knobs.clone();
+        let parameters = session.parameters.clone();
         if session.look().is_plain() {
             ui.label(
                 RichText::new("The picture as it is. Choose a look above, or press Tab.").color(theme::FAINT),
             );
         }
         chain::show(ui, session);
-        let shown = selected(session, &knobs);
-        for (heading, id, knobs) in sections(&shown) {
-            section(ui, session, &heading, id, &knobs);
+        let shown = selected(session, &parameters);
+        for (heading, id, parameters) in sections(&shown) {
+            section(ui, session, &heading, id, &parameters);
         }
         if session.scenery.is_some() {
             CollapsingHeader::new("Scene and light").default_open(false).show_unindented(ui, |ui| {
@@ -65,7 +65,7 @@ fn chooser(ui: &mut Ui, session: &mut Session) {
         if ui.button("Looks").on_hover_text("All looks, as they make this picture (l)").clicked() {
             session.toggle_browser();
         }
-        let changed = session.knobs.iter().any(|knob| session.look().differs(knob));
+        let changed = session.parameters.iter().any(|parameter| session.look().differs(parameter));
         let reset = ui.add_enabled(changed, egui::Button::new("Reset all"));
         if reset.on_hover_text("Set everything back to the style's defaults (r)").clicked() {
             session.reset_all();
@@ -74,45 +74,45 @@ fn chooser(ui: &mut Ui, session: &mut Session) {
 }
 
 /// Parameters of the node that is selected, or of all.
-fn selected(session: &Session, knobs: &[Knob]) -> Vec<Knob> {
-    let Some(node) = &session.selected else { return knobs.to_vec() };
-    let own = |knob: &&Knob| knob.name.rsplit_once('.').is_none_or(|(of, _)| of == node);
-    knobs.iter().filter(own).cloned().collect()
+fn selected(session: &Session, parameters: &[Parameter]) -> Vec<Parameter> {
+    let Some(node) = &session.selected else { return parameters.to_vec() };
+    let own = |parameter: &&Parameter| parameter.name.rsplit_once('.').is_none_or(|(of, _)| of == node);
+    parameters.iter().filter(own).cloned().collect()
 }
 
 /// Parameters by their headings, in the order of the declarations; nodes of a graph one after the other.
-fn sections(knobs: &[Knob]) -> Vec<(String, String, Vec<Knob>)> {
-    let several = knobs.iter().any(|knob| knob.node != knobs[0].node);
-    let mut sections: Vec<(String, String, Vec<Knob>)> = Vec::new();
-    for knob in knobs {
-        let group = knob.param.group;
-        let id = format!("{} {group}", knob.node);
+fn sections(parameters: &[Parameter]) -> Vec<(String, String, Vec<Parameter>)> {
+    let several = parameters.iter().any(|parameter| parameter.node != parameters[0].node);
+    let mut sections: Vec<(String, String, Vec<Parameter>)> = Vec::new();
+    for parameter in parameters {
+        let group = parameter.param.group;
+        let id = format!("{} {group}", parameter.node);
         match sections.iter_mut().find(|(_, known, _)| *known == id) {
-            Some((.., list)) => list.push(knob.clone()),
+            Some((.., list)) => list.push(parameter.clone()),
             None => {
                 let heading = match (several, group) {
                     (false, "") => "Look".to_owned(),
                     (false, group) => theme::capital(group),
-                    (true, "") => knob.of.to_owned(),
-                    (true, group) => format!("{}: {group}", knob.of),
+                    (true, "") => parameter.of.to_owned(),
+                    (true, group) => format!("{}: {group}", parameter.of),
                 };
-                sections.push((heading, id, vec![knob.clone()]));
+                sections.push((heading, id, vec![parameter.clone()]));
             }
         }
     }
     sections
 }
 
-fn section(ui: &mut Ui, session: &mut Session, heading: &str, id: String, knobs: &[Knob]) {
-    let differing = knobs.iter().filter(|knob| session.look().differs(knob)).count();
+fn section(ui: &mut Ui, session: &mut Session, heading: &str, id: String, parameters: &[Parameter]) {
+    let differing = parameters.iter().filter(|parameter| session.look().differs(parameter)).count();
     let mut text = RichText::new(heading).strong();
     if differing > 0 {
         text = text.color(theme::ACCENT);
     }
-    let open = knobs.first().is_some_and(|knob| OPEN.contains(&knob.param.group));
+    let open = parameters.first().is_some_and(|parameter| OPEN.contains(&parameter.param.group));
     CollapsingHeader::new(text).id_salt(id).default_open(open).show_unindented(ui, |ui| {
-        for knob in knobs {
-            control::show(ui, session, knob);
+        for parameter in parameters {
+            control::show(ui, session, parameter);
         }
         ui.add_space(8.0);
     });

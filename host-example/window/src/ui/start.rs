@@ -1,10 +1,10 @@
-//! What is shown while nothing is open: where to begin.
+//! Start screen, while nothing is open.
 
 use egui::{Align2, Button, FontId, Id, Rect, RichText, Sense, Stroke, StrokeKind, Ui, vec2};
 
 use super::{card, theme};
 use crate::samples::SAMPLES;
-use crate::session::{Session, Wish};
+use crate::session::{Request, Session};
 
 /// Width of everything in points, and where there is room for larger pictures, which is in windows of this height.
 const WIDTHS: [f32; 2] = [420.0, 560.0];
@@ -38,10 +38,10 @@ pub fn show(ui: &mut Ui, session: &mut Session, has_room: bool) {
             };
             let demo = large("Open the demo scene").fill(ui.visuals().selection.bg_fill);
             if ui.add_enabled(session.busy.is_none(), demo).clicked() {
-                session.wishes.push(Wish::OpenDemo);
+                session.requests.push(Request::OpenDemo);
             }
             if ui.add(large("Open a file…")).on_hover_text("Ctrl+O").clicked() {
-                session.wishes.push(Wish::ChooseFile);
+                session.requests.push(Request::ChooseFile);
             }
             ui.add_space(4.0);
             let hint = session
@@ -67,7 +67,7 @@ fn samples(ui: &mut Ui, session: &mut Session, width: f32) {
         for index in 0..SAMPLES.len() {
             ui.add_enabled_ui(session.busy.is_none(), |ui| {
                 if sample(ui, session, index, width) {
-                    session.wishes.push(Wish::OpenSample(index));
+                    session.requests.push(Request::OpenSample(index));
                 }
             });
         }
@@ -107,7 +107,7 @@ fn recent(ui: &mut Ui, session: &mut Session, rows: usize) {
         let folder = path.parent().map(|folder| folder.display().to_string()).unwrap_or_default();
         ui.horizontal(|ui| {
             if ui.link(RichText::new(name).color(theme::TEXT)).clicked() {
-                session.wishes.push(Wish::Open(path.clone()));
+                session.requests.push(Request::Open(path.clone()));
             }
             ui.add(egui::Label::new(RichText::new(folder).small().color(theme::FAINT)).truncate());
         });

@@ -3,7 +3,7 @@
 use egui::{Button, DragValue, Label, RichText, Slider, Ui};
 
 use super::theme;
-use crate::session::{Session, Wish};
+use crate::session::{Request, Session};
 
 /// Shows the bar.
 pub fn show(ui: &mut Ui, session: &mut Session) {
@@ -12,7 +12,7 @@ pub fn show(ui: &mut Ui, session: &mut Session) {
         if let Some(share) = session.exported {
             ui.add(egui::ProgressBar::new(share).desired_width(160.0).text("Exporting"));
             if ui.button("Cancel").clicked() {
-                session.wishes.push(Wish::CancelExport);
+                session.requests.push(Request::CancelExport);
             }
         }
         if session.has_picture() {
@@ -56,37 +56,38 @@ fn timeline(ui: &mut Ui, session: &mut Session) {
 
 /// Time of sequences and videos, by their frames.
 fn frames(ui: &mut Ui, session: &mut Session) {
-    let Some(reel) = &mut session.reel else { return };
-    let Some(frames) = reel.frames() else {
-        if let Some(pattern) = reel.document.sequence() {
+    let Some(playback) = &mut session.playback else { return };
+    let Some(frames) = playback.frames() else {
+        if let Some(pattern) = playback.document.sequence() {
             let name = pattern.file_name().unwrap_or_default().to_string_lossy().into_owned();
             if ui.button(format!("Open all of {name}")).clicked() {
-                session.wishes.push(Wish::Open(pattern));
+                session.requests.push(Request::Open(pattern));
             }
         }
         return;
     };
-    let text = if reel.playing { "⏸" } else { "▶" };
+    let text = if playback.playing { "⏸" } else { "▶" };
     if ui.add(Button::new(text)).on_hover_text("Play and pause (Space)").clicked() {
-        reel.toggle_playing();
+        playback.toggle_playing();
     }
     for (text, hint, by) in [("⏴", "The frame before (←)", -1), ("⏵", "The next frame (→)", 1)] {
         if ui.add(Button::new(text)).on_hover_text(hint).clicked() {
-            reel.step(by);
+            playback.step(by);
         }
     }
-    let mut number = reel.number();
+    let mut number = playback.number();
     ui.spacing_mut().slider_width = 220.0;
     let rail = Slider::new(&mut number, frames.first()..=frames.last()).show_value(false);
     let rail = ui.add(rail).on_hover_text("Frame");
     rail.widget_info(|| egui::WidgetInfo::slider(true, number as f64, "Frame"));
     if rail.changed() {
-        reel.seek(number);
+        playback.seek(number);
     }
     let last = frames.last();
     ui.label(RichText::new(format!("{number} of {last}")).monospace().color(theme::FAINT));
     let label = ui.label(RichText::new("at").color(theme::FAINT));
-    let rate = DragValue::new(&mut reel.rate).range(1.0..=240.0).speed(0.2).max_decimals(2).suffix(" fps");
+    let rate =
+        DragValue::new(&mut playback.rate).range(1.0..=240.0).speed(0.2).max_decimals(2).suffix(" fps");
     ui.add(rate).labelled_by(label.id).on_hover_text("Frames per second");
     ui.add_space(10.0);
 }
@@ -116,7 +117,7 @@ fn magnification(ui: &mut Ui, session: &mut Session) {
     }
 }
 
-/// How large the picture is shown.
+/// Size at which the picture is shown.
 fn size(ui: &mut Ui, session: &mut Session) {
     let scale = session.viewport.scale(session.nominal_size());
     if ui

@@ -1,8 +1,8 @@
-//! How the controls look: dark, neutral and quiet, so that colours are judged by the picture.
+//! Theme of the controls: dark, neutral and quiet, so that colours are judged by the picture.
 
 use egui::{Color32, CornerRadius, FontFamily, FontId, Margin, Stroke, TextStyle, Visuals, vec2};
 
-/// What is switched on or chosen.
+/// Colour of what is switched on or chosen.
 pub const ACCENT: Color32 = Color32::from_rgb(112, 152, 196);
 /// Text that matters less.
 pub const FAINT: Color32 = Color32::from_gray(138);
@@ -10,19 +10,19 @@ pub const FAINT: Color32 = Color32::from_gray(138);
 pub const TEXT: Color32 = Color32::from_gray(206);
 /// Text that names things.
 pub const BRIGHT: Color32 = Color32::from_gray(232);
-/// What went wrong.
+/// Colour of what went wrong.
 pub const BAD: Color32 = Color32::from_rgb(226, 132, 110);
 /// Behind text that lies on the picture.
 pub const VEIL: Color32 = Color32::from_rgba_premultiplied(14, 14, 14, 190);
 /// Panels.
 pub const PANEL: Color32 = Color32::from_gray(34);
-/// What surrounds pictures.
+/// Colour that surrounds pictures.
 pub const SURROUND: Color32 = Color32::from_gray(27);
 /// Cards.
 pub const CARD: Color32 = Color32::from_gray(38);
 /// Cards under the pointer, and the selected one.
 pub const CARD_ABOVE: Color32 = Color32::from_gray(50);
-/// Where there is no picture yet.
+/// Colour of the place where there is no picture yet.
 pub const EMPTY: Color32 = Color32::from_gray(22);
 /// Behind the text of a button that goes on with something.
 pub const CHOSEN: Color32 = Color32::from_rgb(62, 88, 116);

@@ -3,7 +3,7 @@
 use egui::{Button, RichText, Ui};
 
 use super::theme;
-use crate::session::{Session, Wish};
+use crate::session::{Request, Session};
 use crate::viewport::{Compare, Overlay};
 
 /// Points of the bar, beside the menu, up to which the name is left out.
@@ -44,10 +44,10 @@ pub fn show(ui: &mut Ui, session: &mut Session) {
 fn file_menu(ui: &mut Ui, session: &mut Session) {
     ui.menu_button("File", |ui| {
         ui.set_min_width(240.0);
-        item(ui, session, "Open…", "Ctrl+O", Wish::ChooseFile, true);
-        item(ui, session, "Open the demo scene", "", Wish::OpenDemo, true);
+        item(ui, session, "Open…", "Ctrl+O", Request::ChooseFile, true);
+        item(ui, session, "Open the demo scene", "", Request::OpenDemo, true);
         ui.separator();
-        item(ui, session, "Open a look…", "", Wish::ChooseLook, true);
+        item(ui, session, "Open a look…", "", Request::ChooseLook, true);
         let has_look = !session.look().is_plain();
         for (text, keys, elsewhere) in
             [("Save the look", "Ctrl+S", false), ("Save the look as…", "Ctrl+Shift+S", true)]
@@ -59,7 +59,7 @@ fn file_menu(ui: &mut Ui, session: &mut Session) {
         }
         ui.separator();
         let can_export = session.file.is_some() && (has_look || session.scenery.is_some());
-        item(ui, session, "Copy the command line", "", Wish::CopyCommand, session.file.is_some());
+        item(ui, session, "Copy the command line", "", Request::CopyCommand, session.file.is_some());
         if ui.add_enabled(can_export, Button::new("Export…").shortcut_text("Ctrl+E")).clicked() {
             session.plan_export();
             ui.close();
@@ -72,7 +72,7 @@ fn file_menu(ui: &mut Ui, session: &mut Session) {
         for path in recent {
             let name = path.file_name().unwrap_or_default().to_string_lossy();
             if ui.button(name).on_hover_text(path.display().to_string()).clicked() {
-                session.wishes.push(Wish::Open(path));
+                session.requests.push(Request::Open(path));
                 ui.close();
             }
         }
@@ -86,9 +86,9 @@ fn file_menu(ui: &mut Ui, session: &mut Session) {
     });
 }
 
-fn item(ui: &mut Ui, session: &mut Session, text: &str, keys: &str, wish: Wish, enabled: bool) {
+fn item(ui: &mut Ui, session: &mut Session, text: &str, keys: &str, request: Request, enabled: bool) {
     if ui.add_enabled(enabled, Button::new(text).shortcut_text(keys)).clicked() {
-        session.wishes.push(wish);
+        session.requests.push(request);
         ui.close();
     }
 }
@@ -108,7 +108,7 @@ fn looks(ui: &mut Ui, session: &mut Session) {
     ui.add_space(10.0);
 }
 
-/// How pictures are compared, and with what.
+/// The way in which pictures are compared, and with what.
 fn compare(ui: &mut Ui, session: &mut Session) {
     ui.spacing_mut().item_spacing.x = 3.0;
     for (compare, text, hint) in [
@@ -180,7 +180,7 @@ fn right(ui: &mut Ui, session: &mut Session) {
         }
         let copy = ui.add_enabled(session.file.is_some(), Button::new("Copy command"));
         if copy.on_hover_text("The command line that gives this picture").clicked() {
-            session.wishes.push(Wish::CopyCommand);
+            session.requests.push(Request::CopyCommand);
         }
         let has_look = !session.look().is_plain();
         if ui.add_enabled(has_look, Button::new("Save look")).on_hover_text("Ctrl+S").clicked() {

@@ -1,9 +1,9 @@
-//! What a caller hears of a run and says to it.
+//! Messages between a caller and a run: what it hears of it and says to it.
 
 use crate::error::{Error, Result};
 use std::time::Duration;
 
-/// How the caller watches and stops a run.
+/// Means by which the caller watches and stops a run.
 #[derive(Clone, Copy, Default)]
 pub struct Control<'a> {
     /// Asked often, from any thread; true stops the run.
@@ -23,7 +23,7 @@ impl Control<'_> {
     }
 }
 
-/// What one pass took.
+/// Time that one pass took.
 #[derive(Clone, Debug)]
 pub struct PassTime {
     /// The kernel's name.

@@ -63,7 +63,7 @@ impl<'a> Images<'a> {
         self.filled[id.index()]
     }
 
-    /// What is computed of an image, for a pass to read.
+    /// View of what is computed of an image, for a pass to read.
     pub fn view(&self, plan: &Plan, id: ImageId) -> View<'_> {
         let full = plan.level_size(plan.desc(id).level);
         match &self.owned[id.index()] {

@@ -1,4 +1,4 @@
-//! How the CPU executor goes through a plan: all passes over a strip of rows before any goes on to the
+//! Order in which the CPU executor goes through a plan: all passes over a strip of rows before any goes on to the
 //! next, so that what one pass writes is still in the cache when the next reads it.
 //!
 //! Every pass keeps a frontier, the row up to which its outputs are computed; it runs ahead of the

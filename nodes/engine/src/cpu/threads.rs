@@ -9,7 +9,7 @@ const THREAD: usize = 8 << 20;
 /// Something that runs independent jobs: the engine's own pool, the caller's thread, or the host's
 /// threads.
 pub trait Threads: Sync {
-    /// How many jobs can make progress at once; at least 1.
+    /// Number of jobs that can make progress at once; at least 1.
     fn count(&self) -> usize;
     /// Runs `job(0)`, ..., `job(jobs - 1)`, each once, in any order, and returns when all are done.
     fn run(&self, jobs: usize, job: &(dyn Fn(usize) + Sync));

@@ -17,7 +17,7 @@ const ADAPTER_VARIABLE: &str = "ISOPHOTE_ADAPTER";
 /// get it end the process.
 const DRIVER: u64 = 1 << 30;
 
-/// How to open a device.
+/// Options for opening a device.
 #[derive(Clone, Debug, Default)]
 pub struct Options {
     /// `gpu` for hardware only, `software` for a driver on the CPU, anything else for a part of the
@@ -26,7 +26,7 @@ pub struct Options {
     pub adapter: Option<String>,
     /// Ask for timestamps, where the adapter has them ([`Device::has_timestamps`]).
     pub timestamps: bool,
-    /// Whether kernels hold windows of neighbours in workgroup memory. `None` takes what is faster:
+    /// Use of windows of neighbours in workgroup memory. `None` takes what is faster:
     /// yes on hardware; no on drivers that compute on the CPU, where textures are in its caches and
     /// workgroup memory is read lane by lane. The taps and their order are the same.
     pub shared_windows: Option<bool>,
@@ -66,7 +66,7 @@ pub(super) fn count(counter: &AtomicU64) {
     counter.fetch_add(1, Ordering::Relaxed);
 }
 
-/// What the device's callbacks reported.
+/// State that the device's callbacks reported.
 #[derive(Debug, Default)]
 struct State {
     lost: Mutex<Option<String>>,
@@ -244,7 +244,7 @@ impl Device {
         }
     }
 
-    /// Whether the device still works, and nothing went wrong on it since the last call.
+    /// Checks that the device still works, and that nothing went wrong on it since the last call.
     ///
     /// # Errors
     /// [`Error::Device`] with the first error that was not yet reported, or when the device is lost;

@@ -259,7 +259,7 @@ impl Prepared {
         self.write_uniforms(program)
     }
 
-    /// Whether [`Prepared::repack`] accepts `program`.
+    /// True where [`Prepared::repack`] accepts `program`.
     pub fn fits(&self, program: &Program) -> bool {
         let texture_fits = |(slot, texture): (&Slot, &crate::program::Texture)| {
             let (width, height) = (texture.window.width(), texture.window.height());
@@ -353,7 +353,7 @@ impl Prepared {
         Ok(())
     }
 
-    /// What each dispatch of the last submission took; waits for it. Empty when nothing is recorded.
+    /// Times of the dispatches of the last submission; waits for them. Empty when nothing is recorded.
     ///
     /// # Errors
     /// [`Error::Device`] when the device fails meanwhile.

@@ -17,8 +17,8 @@ use std::collections::VecDeque;
 /// The smallest tile side worth computing; below it the halo would be nearly everything.
 const LEAST_TILE: u32 = 32;
 
-/// How many times the work of the whole picture tiles may be, where they are made smaller only to be less work each: what lies
-/// around them is computed anew for each.
+/// Factor on the work of the whole picture that tiles may be, where they are made smaller only to be less work each:
+/// what lies around them is computed anew for each.
 const MOST_WORK: f64 = 2.0;
 
 /// Tiles that are on their way at once: one that the device computes, and one that goes there or comes back.
@@ -41,7 +41,7 @@ impl Executor {
     /// Computes `region` (level 0) of every output of `plan` from images in memory; the counterpart
     /// of [`CpuExecutor::run`](crate::cpu::CpuExecutor::run), with the same rules for its inputs.
     ///
-    /// What exceeds the limits of the device, or those of [`Executor::set_limits`], is computed in
+    /// Result of a run. What exceeds the limits of the device, or those of [`Executor::set_limits`], is computed in
     /// tiles. Cancelling and progress take effect between tiles. Everything made for a run stays for
     /// the next one of the same shape, which then only uploads, submits once a tile and reads back.
     ///
@@ -171,7 +171,7 @@ impl Executor {
         Ok(Some(tiles))
     }
 
-    /// Whether the limits allow a program for `region`, of so many in flight at once.
+    /// True where the limits allow a program for `region`, of so many in flight at once.
     fn allows(&self, plan: &Plan, program: &Program, region: Rect, in_flight: u64) -> bool {
         let fits_side = |t: &Texture| t.window.width() <= self.max_side && t.window.height() <= self.max_side;
         let textures: u64 = program.textures.iter().map(Texture::bytes).sum();
@@ -185,7 +185,7 @@ impl Executor {
             && readback <= largest
     }
 
-    /// Whether no dispatch is more work than one should be.
+    /// True where no dispatch is more work than one should be.
     fn is_little(&self, plan: &Plan, program: &Program) -> bool {
         program.operations(plan).all(|operations| operations <= self.work)
     }

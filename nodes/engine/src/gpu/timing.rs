@@ -7,7 +7,7 @@ use std::time::Duration;
 
 const BYTES: u64 = wgpu::QUERY_SIZE as u64;
 
-/// How long a thread that took a callback may be held up before it calls it.
+/// Longest time that a thread which took a callback may be held up before it calls it.
 const LATEST: Duration = Duration::from_secs(10);
 
 /// Two timestamps a dispatch, and the way back to the CPU.
@@ -60,7 +60,7 @@ impl Timer {
         Ok(Self { device: Arc::clone(device), queries, resolved, readable, dispatches })
     }
 
-    /// Where the `index`th dispatch writes its timestamps.
+    /// Place to which the `index`th dispatch writes its timestamps.
     pub fn writes(&self, index: usize) -> wgpu::ComputePassTimestampWrites<'_> {
         let first = index as u32 * 2;
         wgpu::ComputePassTimestampWrites {

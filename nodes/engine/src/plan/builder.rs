@@ -1,4 +1,4 @@
-//! How plans are recorded, and edited by recording them again.
+//! Recorder of plans, which are edited by recording them again.
 
 use super::parts::{Class, ImageDesc, ImageId, Kept, Lifetimes, Pass, Plan, Port, Support};
 use crate::error::{Error, Result};
@@ -30,7 +30,7 @@ impl Plan {
     /// is after an error.
     ///
     /// # Errors
-    /// What `describe` returns.
+    /// The errors of `describe`.
     pub fn edit<E>(
         &mut self,
         describe: impl FnOnce(&mut PlanBuilder) -> std::result::Result<(), E>,

@@ -1,5 +1,5 @@
-//! What stages of different frames have in common: a stage on the inputs of one frame is the same image in every plan
-//! that describes it, whichever frame that plan is for.
+//! Keys of stages that different frames have in common: a stage on the inputs of one frame is the same image in every
+//! plan that describes it, whichever frame that plan is for.
 
 use super::parts::{Kept, Plan};
 use std::hash::{DefaultHasher, Hash, Hasher};

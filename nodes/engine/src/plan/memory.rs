@@ -1,4 +1,4 @@
-//! How much memory a run takes, and how it is bounded.
+//! Memory that a run takes, and its bounds.
 
 use super::parts::{ImageId, Plan, Support};
 use crate::image::Rect;

@@ -1,4 +1,4 @@
-//! What a plan is made of.
+//! Parts that a plan is made of.
 
 use crate::kernel::Kernel;
 use std::collections::HashSet;
@@ -14,7 +14,7 @@ impl ImageId {
     }
 }
 
-/// How precisely an image must be kept.
+/// Precision in which an image must be kept.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 pub enum Class {
     /// Tensors, distances, orientations: always 32-bit float.
@@ -34,7 +34,7 @@ pub struct ImageDesc {
     pub level: i8,
 }
 
-/// How far around an output pixel a pass reads its inputs.
+/// Distance around an output pixel within which a pass reads its inputs.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 pub enum Support {
     /// At most so many pixels of the input's own level, in x and in y.
@@ -46,7 +46,7 @@ pub enum Support {
 /// One pass over an image.
 #[derive(Clone, Debug)]
 pub struct Pass {
-    /// What to run.
+    /// Kernel to run.
     pub kernel: &'static Kernel,
     /// Images read.
     pub inputs: Vec<ImageId>,
@@ -54,12 +54,12 @@ pub struct Pass {
     pub outputs: Vec<ImageId>,
     /// The kernel's uniform block.
     pub params: Vec<u8>,
-    /// How far the kernel reads each input.
+    /// Distance within which the kernel reads each input.
     pub supports: Vec<Support>,
 }
 
 impl Pass {
-    /// How far the kernel reads the input that it reads farthest.
+    /// Distance within which the kernel reads the input that it reads farthest.
     pub fn support(&self) -> Support {
         self.supports.iter().copied().fold(Support::Pixels(0), Support::farther)
     }
@@ -80,7 +80,7 @@ impl Support {
 pub struct Port {
     /// The caller's name for it: "color", or "color@-1" for that of the frame before.
     pub name: String,
-    /// Which frame it belongs to, counted from the one that is computed.
+    /// Frame that it belongs to, counted from the one that is computed.
     pub frame: i32,
     /// The virtual image.
     pub image: ImageId,
@@ -101,7 +101,7 @@ impl Port {
 /// A stage of a plan that frames have in common: what the frame at hand computes of it, later ones carry.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Kept {
-    /// Which stage, in the order of description; the same in all frames.
+    /// Number of the stage, in the order of description; the same in all frames.
     pub stage: u32,
     /// The frame that it belongs to, counted from the one that is computed.
     pub frame: i32,
@@ -148,7 +148,7 @@ pub struct Plan {
     pub(super) outputs: Vec<Port>,
     pub(super) kept: Vec<Kept>,
     pub(super) lifetimes: Lifetimes,
-    /// Which pass each call of the builder led to; replayed by edits.
+    /// Pass that each call of the builder led to; replayed by edits.
     pub(super) calls: Vec<u32>,
     /// The edit in which each pass was last written.
     pub(super) stamps: Vec<u64>,

@@ -1,4 +1,4 @@
-//! Which part of every image a part of the result needs.
+//! Regions of every image that a part of the result needs.
 
 use super::parts::{Pass, Plan, Support};
 use crate::error::{Error, Result};
@@ -59,7 +59,7 @@ impl Plan {
         }
     }
 
-    /// How far outside a region the inputs are read, in pixels of level 0, or `Global`. Holds for
+    /// Distance outside a region within which the inputs are read, in pixels of level 0, or `Global`. Holds for
     /// every region; with pyramids a region aligned to them may need a little less.
     pub fn support(&self) -> Support {
         // A region far from every border shows the full halo.

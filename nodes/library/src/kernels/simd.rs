@@ -1,7 +1,7 @@
-//! How pixels, rows, lines and tiles are read and written fast by the CPU twins. None of this has a
+//! Fast ways in which the CPU twins read and write pixels, rows, lines and tiles. None of this has a
 //! counterpart in a shader.
 //!
-//! Which one a kernel wants follows from what it reads for a pixel:
+//! The one that a kernel wants follows from what it reads for a pixel:
 //!
 //! * the pixel alone, or single others: [`pixels`];
 //! * its eight neighbours: [`neighbours`];

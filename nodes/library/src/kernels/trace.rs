@@ -159,14 +159,14 @@ impl<S: Simd> Field<S> for FieldCopy<'_> {
     }
 }
 
-/// What [`along_lines`] follows lines through.
+/// Images that [`along_lines`] follows lines through.
 #[derive(Clone, Copy, Debug)]
 pub struct Inputs<'a> {
-    /// What is looked at along the lines, two or four channels; colours count by their alpha.
+    /// Image that is looked at along the lines, two or four channels; colours count by their alpha.
     pub source: View<'a>,
     /// (E - G, F).
     pub field: View<'a>,
-    /// How lines are stepped.
+    /// Integrator by which lines are stepped.
     pub integrator: Integrator,
     /// Takes the tensors of the nearest pixels instead of interpolating.
     pub nearest: bool,

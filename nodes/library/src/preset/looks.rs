@@ -19,7 +19,7 @@ pub struct Look {
     pub json: &'static str,
 }
 
-/// Makes looks of the ids in `looks/order.rs`.
+/// Makes looks of the ids in `looks/order.txt`.
 macro_rules! looks {
     ($($id:ident)+) => {
         &[$(Look {
@@ -30,7 +30,7 @@ macro_rules! looks {
 }
 
 /// All looks in the order of lists, those of one style together.
-pub const LOOKS: &[Look] = include!("../../looks/order.rs");
+pub const LOOKS: &[Look] = include!("../../looks/order.txt");
 
 impl Look {
     /// Its name in the place of a style.
@@ -81,7 +81,7 @@ mod tests {
         let entries = std::fs::read_dir(folder).expect("the folder is there");
         let mut files: Vec<String> =
             entries.map(|e| e.expect("an entry").file_name().to_string_lossy().into_owned()).collect();
-        files.retain(|file| file != "order.rs");
+        files.retain(|file| file != "order.txt");
         files.sort();
         let mut known: Vec<String> = LOOKS.iter().map(|look| format!("{}.json", look.id)).collect();
         known.sort();

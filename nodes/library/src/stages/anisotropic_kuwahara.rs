@@ -62,11 +62,11 @@ pub(crate) struct Painting {
     pub p_s: f32,
     /// Factor on it per scale.
     pub p_d: f32,
-    /// What counts as no variation.
+    /// Variance that counts as no variation.
     pub tau_v: f32,
-    /// What bends the orientation at the finest level.
+    /// Flow that bends the orientation at the finest level.
     pub flow: Option<Flow>,
-    /// Whether coarser scales stay in the range of finer ones.
+    /// True where coarser scales stay in the range of finer ones.
     pub limited: bool,
     /// Guides whose edges, with those of strong contrast, coarser scales are not painted across; none: they are.
     pub guarded: Option<Guides>,

@@ -25,7 +25,7 @@ choice! {
 pub(crate) struct Passes {
     /// The window.
     pub kernel: Kernel,
-    /// What the passes are asked for.
+    /// Options of the passes.
     pub options: Options,
 }
 

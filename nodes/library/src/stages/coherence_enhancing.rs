@@ -56,7 +56,7 @@ pub(crate) const SIGMA_A: Param = Param::float("sigma_a", "Edge smoothing", 1.5,
     .doc("Standard deviation of the last smoothing along the edges, against the jagged steps of the shocks; 0 for none.");
 
 choice! {
-    /// How stream lines are stepped.
+    /// Method by which stream lines are stepped.
     enum Stepping {
         /// In steps of one pixel (§ 6.3).
         Even ("even", "Even"),
@@ -66,7 +66,7 @@ choice! {
 }
 
 choice! {
-    /// What shortens the stream lines.
+    /// Measure that shortens the stream lines.
     enum Adaption {
         /// An uncertain orientation (6.3.1).
         Anisotropy ("anisotropy", "By anisotropy"),
@@ -76,7 +76,7 @@ choice! {
 }
 
 choice! {
-    /// What sharpens.
+    /// Filter that sharpens.
     pub(crate) enum Shock {
         /// The local filter (6.4.3).
         GradientDirected ("gradient_directed", "Gradient-directed"),
@@ -85,7 +85,7 @@ choice! {
     }
 }
 
-/// How a picture is filtered; lengths in pixels of the picture that is rendered.
+/// Options by which a picture is filtered; lengths in pixels of the picture that is rendered.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Filter {
     /// Rounds of smoothing and sharpening.
@@ -96,7 +96,7 @@ pub(crate) struct Filter {
     pub relax_threshold: f32,
     /// The smoothing.
     pub smoothing: Lic,
-    /// What sharpens.
+    /// Filter that sharpens.
     pub shock: Shock,
     /// The gradient-directed shock filter.
     pub directed: Directed,
@@ -104,7 +104,7 @@ pub(crate) struct Filter {
     pub sigma_a: f32,
     /// The orientation in all rounds, instead of that of each round's picture.
     pub given: Option<ImageId>,
-    /// What bends the orientation.
+    /// Flow that bends the orientation.
     pub flow: Option<Flow>,
 }
 

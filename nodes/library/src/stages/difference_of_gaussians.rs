@@ -45,7 +45,7 @@ pub(crate) const THRESHOLD: Param = Param::choice("threshold", "Threshold", Thre
     .doc("Curve from response to edge image: none, binary (4.6), tanh (4.8) or a smooth step of like slope.");
 
 choice! {
-    /// Which parameters count.
+    /// Form of the parameters that count.
     enum Form {
         /// `tau`, `epsilon` and `phi` (4.7, 4.8).
         Tau ("tau", "Tau"),

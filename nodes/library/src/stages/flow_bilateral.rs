@@ -32,7 +32,7 @@ pub(crate) const PLACEMENT: Param =
     );
 
 choice! {
-    /// How stream lines are stepped.
+    /// Method by which stream lines are stepped.
     pub(crate) enum Stepping {
         /// Euler's method (2.177).
         Euler ("euler", "Euler"),

@@ -46,7 +46,7 @@ choice! {
     }
 }
 
-/// How lines are drawn along the flow; lengths in pixels of the picture that is rendered.
+/// Options of lines along the flow; lengths in pixels of the picture that is rendered.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct FlowDog {
     pub sigma_e: f32,
@@ -57,7 +57,7 @@ pub(crate) struct FlowDog {
     pub stepping: Stepping,
     pub kernel: Kernel,
     pub guide_weight: f32,
-    /// How much the picture's own edges count, 0..=1.
+    /// Weight of the picture's own edges, 0..=1.
     pub texture: f32,
     /// Widths of creases and of outlines against those of the picture's own lines.
     pub widths: [f32; 2],
@@ -92,7 +92,7 @@ impl FlowDog {
         })
     }
 
-    /// What the separable filter has found before lines are smoothed along themselves and decided: the response of its
+    /// Response of the separable filter before lines are smoothed along themselves and decided: that of its
     /// last iteration, (u alpha, alpha).
     pub(crate) fn response(
         &self,

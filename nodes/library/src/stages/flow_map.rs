@@ -19,7 +19,7 @@ pub(crate) const INVERT_Y: Param = Param::bool("invert_y", "Invert y", false)
 pub(crate) struct Flow(pub ImageId);
 
 impl Flow {
-    /// What is connected to the port `flow` of a node, with the defaults of this one.
+    /// Map that is connected to the port `flow` of a node, with the defaults of this one.
     pub(crate) fn of(scope: &mut Scope<'_>) -> Option<Self> {
         let softness = SOFTNESS.default_float() * scope.scale();
         let map = scope.input("flow")?;

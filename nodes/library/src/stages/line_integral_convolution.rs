@@ -20,7 +20,7 @@ pub(crate) const STEP: Param = Param::float("step", "Step", 1.0, [0.25, 4.0])
     .pixels()
     .doc("Step size h of the integration.");
 
-/// What other nodes convolve with unless they need something else: the defaults of the parameters, of
+/// Options by which other nodes convolve unless they need something else: the defaults of the parameters, of
 /// second order, which long lines need (§ 6.3).
 pub fn options() -> Options {
     Options {

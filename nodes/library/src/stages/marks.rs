@@ -79,7 +79,7 @@ pub(crate) fn hatching(
     }))
 }
 
-/// Whether marks move with things.
+/// True where marks move with things.
 fn belong_to_things(scope: &Scope<'_>) -> bool {
     scope.input(REST_POSITION.id).is_some() || (scope.renewal().is_some() && scope.input("motion").is_some())
 }

@@ -24,7 +24,7 @@ crate::declare::choice::choice! {
     }
 }
 
-/// What a quality stands for.
+/// Effort that a quality stands for.
 struct Effort {
     /// Level of the pyramid at which the search ends.
     finest: i8,

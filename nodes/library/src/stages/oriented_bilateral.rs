@@ -24,7 +24,7 @@ pub(crate) const ANISOTROPY: Param = Param::float("anisotropy", "Elongation", 0.
      A, across it divided by the same, A being the anisotropy. 0 for off.",
 );
 
-/// Where range weights are applied; the flow-based filter has the same choice.
+/// Places where range weights are applied; the flow-based filter has the same choice.
 pub(crate) const SAMPLING: Param =
     Param::choice("sampling", "Sampling", Sampling::Linear.selected()).uniform().doc(
         "Linear compares interpolated colours and gives smooth borders; manual compares both pixels before \

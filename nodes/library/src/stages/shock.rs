@@ -68,7 +68,7 @@ impl Directed {
     }
 }
 
-/// What a second derivative is taken of.
+/// Picture that a second derivative is taken of.
 fn smoothed(plan: &mut PlanBuilder, color: ImageId, sigma_i: f32) -> ImageId {
     if sigma_i > 0.0 { gaussian_blur::pass_colour(plan, color, sigma_i) } else { color }
 }

@@ -15,12 +15,12 @@ use crate::kernels::time::{
 };
 use isophote_engine::{Class, ImageId};
 
-/// How colours of frames are compared.
+/// Measure by which colours of frames are compared.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Agreement {
     /// Standard deviation of the Gaussian over differences of colour.
     pub sigma: f32,
-    /// What a difference of alpha of 1 counts as.
+    /// Difference of colour that a difference of alpha of 1 counts as.
     pub alpha: f32,
 }
 
@@ -42,17 +42,17 @@ pub(crate) const COLOUR_AGREEMENT: f32 = 8.0;
 /// Standard deviation of the smoothing of pictures before they are compared, pixels: noise must not look like change.
 const SMOOTHING: f32 = 1.5;
 
-/// What [`steadied`] gives.
+/// Result of [`steadied`].
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Steadied<const N: usize> {
     /// The stages, in the order in which they are described.
     pub stages: [ImageId; N],
-    /// How much of them is of other frames; none where the frame is by itself.
+    /// Share of other frames in them; none where the frame is by itself.
     pub shares: Option<Shares>,
 }
 
-/// What `describe` finds on the frame that is described, steadied by what it finds on its neighbours as the parameters
-/// `steadiness` and `window` say.
+/// Images that `describe` finds on the frame that is described, steadied by what it finds on its neighbours as the
+/// parameters `steadiness` and `window` say.
 ///
 /// The first image is a picture, by which frames are compared as `by` says; the others are colours of
 /// any kind, structure tensors (fields of four channels), or values times coverage and coverage (two channels).
@@ -145,7 +145,7 @@ fn gain(steadiness: f32, offset: i32) -> f32 {
     steadiness.powf((offset * offset) as f32 / 8.0)
 }
 
-/// Where the points of the frame that is described are in another; none where no motion leads there.
+/// Way of the points of the frame that is described to another; none where no motion leads there.
 fn way_to(scope: &mut Scope<'_>, offset: i32) -> Option<Way> {
     let (port, towards) = if offset < 0 { ("motion", -1) } else { ("motion_forward", 1) };
     let longest = scope.max_motion;
@@ -157,7 +157,7 @@ fn way_to(scope: &mut Scope<'_>, offset: i32) -> Option<Way> {
     Some(Way { motion, reach: (longest * offset.abs() as f32).ceil() as u32 })
 }
 
-/// How far what is known beside colour agrees between the frame that is described and another; none where nothing is.
+/// Agreement of what is known beside colour between the frame that is described and another; none where nothing is.
 fn agreement(scope: &mut Scope<'_>, offset: i32, way: Way) -> Option<ImageId> {
     let mut weights = None;
     for (port, guide) in [("depth", Guide::Depth), ("object_id", Guide::ObjectId)] {

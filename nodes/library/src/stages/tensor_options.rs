@@ -1,4 +1,4 @@
-//! How a structure tensor is made: the parameters and their values, and the guide images that count in it.
+//! Options of a structure tensor: the parameters and their values, and the guide images that count in it.
 
 use crate::declare::choice::choice;
 use crate::declare::spec::{Param, Scope};
@@ -23,7 +23,7 @@ choice! {
 }
 
 choice! {
-    /// What the gradient is taken of.
+    /// Picture that the gradient is taken of.
     pub enum Space {
         /// Gamma-encoded RGB.
         Rgb ("rgb", "RGB"),
@@ -74,14 +74,14 @@ pub(crate) const GUIDE_WEIGHT: Param = Param::float("guide_weight", "Guide weigh
     .slider(0.0, 4.0)
     .doc("Factor on the tensors of normals, depth and object numbers.");
 
-/// How a tensor is made; lengths in pixels of the picture that is rendered.
+/// Options of a tensor; lengths in pixels of the picture that is rendered.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct TensorOptions {
     /// Derivative operator.
     pub derivative: Derivative,
     /// Standard deviation of the smoothing.
     pub rho: f32,
-    /// What the gradient is taken of.
+    /// Picture that the gradient is taken of.
     pub space: Space,
     /// Divide by the gradient's magnitude (2.133).
     pub normalize: bool,

@@ -18,7 +18,7 @@ pub(crate) const DARKS: Param = Param::float("darks", "Darks", 0.0, [-1.0, 1.0])
     .group(LOOK)
     .doc("Raises (above 0) or lowers the dark tones.");
 
-/// Whether `lights` and `darks` leave the tones as they are.
+/// True where `lights` and `darks` leave the tones as they are.
 pub(crate) fn is_neutral(scope: &Scope<'_>) -> bool {
     scope.float("darks") == DARKS.default_float() && scope.float("lights") == LIGHTS.default_float()
 }

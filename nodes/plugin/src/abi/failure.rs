@@ -1,20 +1,20 @@
-//! What a call comes to: every error of the library as a status with a message.
+//! Failure of a call: every error of the library as a status with a message.
 
 use isophote::engine;
 use isophote_abi::*;
 use std::any::Any;
 use std::fmt::Write as _;
 
-/// Why a call failed: the status and the line that a person reads.
+/// Failure of a call: the status and the line that a person reads.
 #[derive(Debug)]
 pub struct Failure {
-    /// What the call returns.
+    /// Status that the call returns.
     pub status: IsophoteStatus,
-    /// What, where, and what to do about it.
+    /// Message that says what, where, and what to do about it.
     pub message: String,
 }
 
-/// What the inside of a call comes to.
+/// Result of the inside of a call.
 pub type Outcome<T> = Result<T, Failure>;
 
 impl Failure {

@@ -43,7 +43,7 @@ handles!(
     IsophoteVulkanEffect
 );
 
-/// What hosts hold handles of.
+/// Object that hosts hold handles of.
 pub trait Object: Send + Sync + Sized + 'static {
     /// Its handles.
     type Handle: Handle;

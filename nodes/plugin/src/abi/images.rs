@@ -117,7 +117,7 @@ impl Checked {
         Err(Failure::geometry(format!("{what} holds {}; {} is needed", shown(&self.window), shown(needed))))
     }
 
-    /// Where the pixels `window.x0..` of row `y` begin.
+    /// Address at which the pixels `window.x0..` of row `y` begin.
     fn at(&self, window: &Rect, y: i32) -> *mut u8 {
         let column = (window.x0 - self.window.x0) as usize * self.channels * self.sample.size();
         let row = (y - self.window.y0) as isize;

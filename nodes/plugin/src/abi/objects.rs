@@ -14,7 +14,7 @@ use std::sync::{Arc, Mutex, MutexGuard};
 pub struct GraphObject {
     graph: Mutex<Graph>,
     message: Mutex<String>,
-    /// What the last call of `process` left for the next; taken out while one runs.
+    /// Warm state that the last call of `process` left for the next; taken out while one runs.
     warm: Mutex<Option<Warm>>,
 }
 
@@ -47,11 +47,11 @@ impl GraphObject {
         self.lock().clone()
     }
 
-    /// What an earlier call left, for `request` of the graph as it is now. Give it back with
+    /// Warm state that an earlier call left, for `request` of the graph as it is now. Give it back with
     /// [`GraphObject::keep`].
     ///
     /// # Errors
-    /// What planning fails with.
+    /// The errors of planning.
     pub fn warm(&self, request: &Request) -> Outcome<Warm> {
         let mut warm = lock(&self.warm).take().unwrap_or_default();
         warm.plan_for(&self.snapshot(), request)?;

@@ -41,7 +41,7 @@ impl PlanObject {
     /// The plan of `region`.
     ///
     /// # Errors
-    /// What planning and lowering fail with.
+    /// The errors of planning and lowering.
     pub fn new(graph: Graph, request: Request, region: Rect) -> Outcome<Self> {
         let lowered = Lowered::new(graph, request, region)?;
         let shown = Shown::new(lowered.program());
@@ -65,7 +65,7 @@ impl State {
     }
 }
 
-/// What a change is in the C interface.
+/// Number of a change in the C interface.
 pub fn change_number(change: Change) -> IsophoteChange {
     match change {
         Change::Uniforms => ISOPHOTE_CHANGE_UNIFORMS,
@@ -79,7 +79,7 @@ pub fn change_number(change: Change) -> IsophoteChange {
 struct Shown {
     textures: Vec<IsophoteTexture>,
     passes: Vec<IsophotePass>,
-    /// What the texts point to.
+    /// Strings that the texts point to.
     _names: BTreeMap<String, CString>,
 }
 

@@ -213,7 +213,7 @@ impl Job<'_> {
         })
     }
 
-    /// Whether colour has light where coverage is 0 or little, which the plan does not know of.
+    /// True where colour has light where coverage is 0 or little, which the plan does not know of.
     fn has_light(&self, images: &[(&str, Image)]) -> bool {
         self.request.premultiplied
             && !self.request.emission

@@ -1,4 +1,4 @@
-//! What a host asks for: the picture, its spaces, and the region of it.
+//! Request of a host: the picture, its spaces, and the region of it.
 
 use super::args;
 use super::failure::{Failure, Outcome};

@@ -13,15 +13,15 @@ use isophote_abi::*;
 use std::ffi::{CString, c_void};
 use std::sync::Arc;
 
-/// What is run, and how.
+/// Run of a plan, and its options.
 pub struct Run<'a> {
     /// The passes.
     pub plan: &'a Plan,
-    /// How precisely devices compute.
+    /// Precision in which devices compute.
     pub precision: Precision,
     /// The part of the picture.
     pub region: Rect,
-    /// Where the CPU computes.
+    /// Threads on which the CPU computes.
     pub threads: &'a CallThreads,
     /// The host's callbacks.
     pub control: &'a IsophoteControl,

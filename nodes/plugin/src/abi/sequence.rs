@@ -40,7 +40,7 @@ pub static API: IsophoteSequenceApi = IsophoteSequenceApi {
     plan_create,
 };
 
-/// What is kept of a host's sequence.
+/// State that is kept of a host's sequence.
 #[derive(Debug)]
 pub struct SequenceObject {
     state: Mutex<State>,
@@ -173,7 +173,7 @@ unsafe extern "C" fn process(
     })
 }
 
-/// What a host fills in.
+/// Empty image for a host to fill in.
 const NO_IMAGE: IsophoteImage = IsophoteImage {
     data: std::ptr::null(),
     row_stride: 0,

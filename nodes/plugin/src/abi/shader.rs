@@ -187,7 +187,7 @@ fn renumber(bindings: &mut [Bound], language: IsophoteLanguage) {
     }
 }
 
-/// What reads outside an array or buffer: the nearest element. Kernels clamp texels themselves.
+/// Policy for reads outside an array or buffer: they give the nearest element. Kernels clamp texels themselves.
 const BOUNDS: BoundsCheckPolicies = BoundsCheckPolicies {
     index: BoundsCheckPolicy::Restrict,
     buffer: BoundsCheckPolicy::Restrict,

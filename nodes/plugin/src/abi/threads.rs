@@ -41,7 +41,7 @@ pub fn pool(threads: usize) -> Arc<Pool> {
     pool
 }
 
-/// How many threads a number stands for, of which 0 means one per core.
+/// Number of threads that a number stands for, of which 0 means one per core.
 fn wanted(threads: usize) -> usize {
     match threads {
         0 => std::thread::available_parallelism().map_or(1, usize::from),
@@ -66,7 +66,7 @@ pub enum CallThreads {
 }
 
 impl CallThreads {
-    /// What `control` asks for.
+    /// Threads that `control` asks for.
     ///
     /// # Errors
     /// Out of range for too many threads.

@@ -47,7 +47,7 @@ pub static API: IsophoteVulkanApi = IsophoteVulkanApi {
 /// Most semaphores of a submission.
 const MOST_SEMAPHORES: u32 = 64;
 
-/// What an effect holds; nothing once its device's object was destroyed.
+/// Effect behind a handle; nothing once its device's object was destroyed.
 type Held = Mutex<Option<Effect>>;
 
 /// A Vulkan device of a host's.

@@ -1,4 +1,4 @@
-//! What one call on a graph leaves for the next.
+//! Warm state that one call on a graph leaves for the next.
 
 use super::failure::{Failure, Outcome};
 use isophote::engine::cpu::CpuExecutor;
@@ -21,7 +21,7 @@ impl Warm {
     /// Brings the plan up to date, or makes it anew for another request.
     ///
     /// # Errors
-    /// What planning fails with; there is no plan then.
+    /// The errors of planning; there is no plan then.
     pub fn plan_for(&mut self, graph: &Graph, request: &Request) -> Outcome<()> {
         self.planned = match self.planned.take().filter(|planned| planned.request() == request) {
             Some(mut planned) => {

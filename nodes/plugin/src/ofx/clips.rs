@@ -11,7 +11,7 @@ use std::sync::LazyLock;
 pub const SOURCE: &CStr = c"Source";
 /// The result.
 pub const OUTPUT: &CStr = c"Output";
-/// Where the effect shows.
+/// Name of the clip that says where the effect shows.
 pub const MASK: &CStr = c"Mask";
 /// Vectors to the frame before.
 pub const MOTION: &CStr = c"Motion";

@@ -1,4 +1,4 @@
-//! What an instance says of itself: whether it may be rendered in tiles, and which controls have an effect at the
+//! Properties that an instance sets: whether it may be rendered in tiles, and which controls have an effect at the
 //! moment. Both depend on its values, so that they are said when it is created and when values change.
 
 use super::clips::{MASK, SOURCE, is_connected};
@@ -111,12 +111,12 @@ fn refresh(effect: &Effect, host: &Host, instance: Handle, time: f64, tiles: boo
     Ok(settings)
 }
 
-/// What there is around a picture for its controls to have an effect on.
+/// Surroundings of a picture that its controls need to have an effect.
 #[derive(Clone, Copy)]
 struct Surroundings {
     guides: Guides,
     frames: Frames,
-    /// Whether motion is read from clips.
+    /// True where motion is read from clips.
     reads_vectors: bool,
 }
 
@@ -135,7 +135,7 @@ impl Surroundings {
     }
 }
 
-/// Whether a tile needs only the pixels around it, whatever values animated controls take.
+/// True where a tile needs only the pixels around it, whatever values animated controls take.
 fn is_local_at_all_times(
     effect: &Effect,
     host: &Host,
@@ -171,7 +171,7 @@ fn others(settings: &Settings, node: usize, param: &'static Param) -> impl Itera
     })
 }
 
-/// Whether two plans compute the same, as far as it is needed.
+/// True where two plans compute the same, as far as it is needed.
 fn are_same(a: &Plan, b: &Plan) -> bool {
     let same = |((a, a_images), (b, b_images)): (&Work, &Work)| {
         std::ptr::eq(a.kernel, b.kernel)
@@ -187,7 +187,7 @@ fn are_same(a: &Plan, b: &Plan) -> bool {
 /// A pass, with its inputs and its outputs as they are counted.
 type Work<'p> = (&'p Pass, Vec<usize>);
 
-/// What of a plan is needed, its images counted without the others.
+/// Part of a plan that is needed, its images counted without the others.
 struct Needed<'p> {
     /// Inputs, then outputs.
     ports: Vec<(&'p str, usize)>,
@@ -214,7 +214,7 @@ impl<'p> Needed<'p> {
     }
 }
 
-/// Whether the source has, or may have, an alpha of its own.
+/// True where the source has, or may have, an alpha of its own.
 fn has_alpha(host: &Host, instance: Handle) -> bool {
     let Some(source) = Clip::of(host, instance, SOURCE).filter(|clip| !clip.is_open()) else { return true };
     let says = |property, value: &CStr| source.properties.string(property, 0).as_deref() == Some(value);

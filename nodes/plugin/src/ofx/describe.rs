@@ -12,7 +12,7 @@ use std::ptr::null_mut;
 
 const COMPONENTS: [&CStr; 3] = [kOfxImageComponentRGBA, kOfxImageComponentRGB, kOfxImageComponentAlpha];
 
-/// What does not depend on a context.
+/// Describes what does not depend on a context.
 ///
 /// # Errors
 /// Failed, without a descriptor.
@@ -123,7 +123,7 @@ struct Described {
     components: &'static [&'static CStr],
     mask: bool,
     optional: bool,
-    /// Whether it is read at neighbouring frames.
+    /// True where it is read at neighbouring frames.
     temporal: bool,
 }
 

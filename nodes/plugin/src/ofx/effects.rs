@@ -20,7 +20,7 @@ use std::sync::LazyLock;
 /// Before the id of every effect: the reverse name of the project.
 const PREFIX: &str = "org.isophote.";
 
-/// What the controls of an effect's own are called.
+/// Names of the controls of an effect's own.
 pub const WORKING_SPACE: &CStr = c"working_space";
 pub const PROCESS_ALPHA: &str = "process_alpha";
 pub const MASK_APPLY: &str = "mask_apply";
@@ -29,7 +29,7 @@ pub const LINES_OUTPUT: &str = "lines_output";
 pub const MOTION_FROM: &str = "motion_from";
 pub const MOTION_CONVENTION: &str = "motion_convention";
 
-/// How the nodes of an effect are connected.
+/// Connection of the nodes of an effect.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Form {
     /// One node from colour to colour.
@@ -52,32 +52,32 @@ pub const SPACES: [(&CStr, ColourSpace); 4] = [
     (c"ACEScg", ColourSpace::AcesCg),
 ];
 
-/// What an effect of lines can show.
+/// Results that an effect of lines can show.
 pub const LINE_OUTPUTS: [&CStr; 2] = [c"Lines only", c"Lines over source"];
 
-/// What a control decides.
+/// Choice that a control decides.
 #[derive(Clone, Copy, Debug)]
 pub enum Target {
     /// A parameter of the node at this position.
     Param(usize, &'static Param),
     /// Lines alone, or over the picture.
     LinesOutput,
-    /// What the pixels' numbers mean.
+    /// Meaning of the pixels' numbers.
     WorkingSpace,
-    /// Whether alpha is filtered too, instead of being the source's.
+    /// Filtering of alpha too, instead of taking the source's.
     ProcessAlpha,
     /// Height of pictures at which lengths are meant.
     ReferenceHeight,
-    /// Whether a connected mask counts. For hosts that call every clip connected.
+    /// Use of a connected mask. For hosts that call every clip connected.
     MaskApply,
-    /// Where motion between frames comes from.
+    /// Source of motion between frames.
     MotionFrom,
-    /// What the vectors of a connected clip mean.
+    /// Meaning of the vectors of a connected clip.
     MotionConvention,
 }
 
 impl Target {
-    /// Whether it decides nothing where there is no clip but the source.
+    /// True where it decides nothing where there is no clip but the source.
     pub fn is_of_clips(&self) -> bool {
         matches!(self, Self::MaskApply | Self::MotionFrom | Self::MotionConvention)
     }
@@ -94,7 +94,7 @@ pub struct Control {
     pub hint: CString,
     /// Position in [`Effect::groups`], when it stands under a heading.
     pub group: Option<usize>,
-    /// What it decides.
+    /// Choice that it decides.
     pub target: Target,
     /// Labels of a choice's options.
     pub options: Vec<CString>,
@@ -107,7 +107,7 @@ pub struct Group {
     pub name: CString,
     /// For people.
     pub label: CString,
-    /// Whether its controls show at first.
+    /// True where its controls show at first.
     pub open: bool,
 }
 
@@ -125,20 +125,20 @@ pub struct Effect {
     pub controls: Vec<Control>,
     /// Guides that it takes as clips.
     pub guides: Vec<GraphInput>,
-    /// Whether it can look at neighbouring frames.
+    /// True where it can look at neighbouring frames.
     pub temporal: bool,
-    /// Whether a tile needs only the pixels around it, at the default values: in hosts of one frame, and in others.
+    /// True where a tile needs only the pixels around it, at the default values: in hosts of one frame, and in others.
     local: [bool; 2],
 }
 
 /// Side of a picture that is larger than a tile, in pixels.
 const LARGE: u32 = 8192;
 
-/// Whether a tile needs only the pixels around it. A pyramid up to one pixel reaches as far as its picture does,
+/// True where a tile needs only the pixels around it. A pyramid up to one pixel reaches as far as its picture does,
 /// which is far enough to be everything.
 ///
 /// # Errors
-/// What planning fails with.
+/// The errors of planning.
 pub fn is_local(graph: &Graph, guides: Guides, frames: Frames) -> isophote::Result<bool> {
     let planned = Planned::new(graph, Request { guides, frames, ..Request::new(LARGE, LARGE) })?;
     Ok(matches!(planned.plan().support(), Support::Pixels(halo) if halo < LARGE / 2))
@@ -204,8 +204,8 @@ impl Effect {
         Some(effect)
     }
 
-    /// Whether a tile needs only the pixels around it, at the default values, in a host that gives neighbouring frames
-    /// or in one that does not.
+    /// True where a tile needs only the pixels around it, at the default values, in a host that gives neighbouring
+    /// frames or in one that does not.
     pub fn is_local(&self, temporal: bool) -> bool {
         self.local[usize::from(temporal)]
     }
@@ -312,7 +312,7 @@ impl Effect {
     }
 }
 
-/// Whether a node has a port for an input of the graph.
+/// True where a node has a port for an input of the graph.
 fn reads(node: &NodeSpec, input: GraphInput) -> bool {
     node.ports().any(|port| port.id == input.id() && port.kind == input.kind())
 }

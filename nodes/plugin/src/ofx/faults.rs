@@ -19,7 +19,7 @@ pub fn at(effect: &Effect, action: &CStr) {
     let _ = (effect, action);
 }
 
-/// What a render of the effect whose identifier is in `ISOPHOTE_OFX_FAILURE` fails with.
+/// Error that a render of the effect whose identifier is in `ISOPHOTE_OFX_FAILURE` fails with.
 pub fn failure(effect: &Effect) -> Option<Error> {
     #[cfg(debug_assertions)]
     if std::env::var("ISOPHOTE_OFX_FAILURE").is_ok_and(|id| id.as_bytes() == effect.identifier.to_bytes()) {

@@ -1,4 +1,4 @@
-//! Where things are: OpenFX counts canonical units and pixels upwards from the bottom, the engine counts
+//! Places and regions: OpenFX counts canonical units and pixels upwards from the bottom, the engine counts
 //! rows of the picture downwards from the top.
 
 use super::host::Host;
@@ -26,14 +26,14 @@ pub struct Frame {
     pub reference_height: u32,
 }
 
-/// What is less than this share of a pixel is rounding.
+/// Share of a pixel below which differences are rounding.
 const ROUNDING: f64 = 1e-3;
 /// Pixels are square up to this factor between their sides: proxies have whole numbers of rows and columns.
 const SQUARE: f64 = 1.01;
 /// A side of a region that lies farther out (canonical) has no bound. Hosts write infinities, the greatest
 /// float, the greatest integer or a million.
 const ENDLESS: f64 = 500_000.0;
-/// Where the picture ends on a side without a bound (canonical): farther out than hosts render, near enough for
+/// Place where the picture ends on a side without a bound (canonical): farther out than hosts render, near enough for
 /// positions in floats to be exact to a hundredth of a pixel.
 const REACH: f64 = 16_384.0;
 
@@ -106,8 +106,8 @@ impl Frame {
         if (1.0..=f64::from(MAX_SIDE)).contains(&height) { height as u32 } else { 0 }
     }
 
-    /// Where its left top corner stands in the project, in canonical units downwards from the project's; marks are anchored
-    /// to that. Without a project's size rows are counted from the picture's own top.
+    /// Position of its left top corner in the project, in canonical units downwards from the project's; marks are
+    /// anchored to that. Without a project's size rows are counted from the picture's own top.
     pub fn origin(&self) -> [f64; 2] {
         let [x, _, _, y] = self.canonical(self.picture);
         let origin = [x, self.top.map_or(0.0, |top| top - y)];
@@ -115,7 +115,7 @@ impl Frame {
         origin.map(|o| if o.abs() < ENDLESS { o } else { 0.0 })
     }
 
-    /// Whether its pixels are square, as far as anyone can see.
+    /// True where its pixels are square, as far as anyone can see.
     pub fn is_square(&self) -> bool {
         is_square(self.ratio)
     }
@@ -177,7 +177,7 @@ fn is_smaller_whole(picture: &Bounds, bounds: &Bounds) -> bool {
     (0..4).all(|i| (f64::from(picture[i]) * share - f64::from(bounds[i])).abs() <= 1.0)
 }
 
-/// Whether a region has a side without a bound.
+/// True where a region has a side without a bound.
 pub fn is_endless(region: &OfxRectD) -> bool {
     let OfxRectD { x1, y1, x2, y2 } = *region;
     [x1, y1, x2, y2].iter().any(|side| side.abs() > ENDLESS)

@@ -12,9 +12,9 @@ use std::ptr::{null, null_mut};
 use std::sync::atomic::{AtomicPtr, Ordering};
 use std::sync::{Mutex, OnceLock};
 
-/// Why an action failed, as the host gets it.
+/// Status of a failed action, as the host gets it.
 pub type Failure = OfxStatus;
-/// What an action comes to.
+/// Result of an action.
 pub type Outcome<T = OfxStatus> = Result<T, Failure>;
 
 /// The host's functions, copied, and what is known of it.
@@ -24,23 +24,23 @@ pub struct Host {
     pub properties: OfxPropertySuiteV1,
     pub parameters: OfxParameterSuiteV1,
     pub threads: Option<OfxMultiThreadSuiteV1>,
-    /// What suites are asked of, and the function for it.
+    /// Address that suites are asked of, and the function for it.
     origin: AtomicPtr<c_void>,
     fetch: FetchSuite,
     /// Fetched when there is a message to show: not every host takes the question well.
     messages: OnceLock<Option<OfxMessageSuiteV2>>,
-    /// What instances show, by their addresses.
+    /// Messages that instances show, by their addresses.
     showing: Mutex<BTreeMap<usize, Shown>>,
     /// Addresses of the instances that have been given their notice.
     noticed: Mutex<BTreeSet<usize>>,
     pub quirks: Quirks,
-    /// Whether images may hold only a part of the picture.
+    /// True where images may hold only a part of the picture.
     pub tiles: bool,
-    /// Whether clips give the images of any time.
+    /// True where clips give the images of any time.
     pub temporal: bool,
-    /// Whether nobody looks at controls.
+    /// True where nobody looks at controls.
     pub background: bool,
-    /// Whether half floats may be offered.
+    /// True where half floats may be offered.
     pub half: bool,
 }
 
@@ -209,7 +209,7 @@ impl Host {
     }
 }
 
-/// What kind of message an instance shows.
+/// Kind of message that an instance shows.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 enum Shown {
     /// That it did not render.

@@ -10,10 +10,10 @@ use isophote_abi::*;
 use std::ffi::CStr;
 use std::ptr::null_mut;
 
-/// What is less than this share of a frame is rounding.
+/// Share of a frame below which differences are rounding.
 const ROUNDING: f64 = 1e-3;
 
-/// How colour stands to alpha in an image.
+/// Relation of colour to alpha in an image.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Alpha {
     Premultiplied,
@@ -40,12 +40,12 @@ impl<'h> Clip<'h> {
         (status == kOfxStatOK && !handle.is_null()).then(|| Self { host, handle, properties: host.set(set) })
     }
 
-    /// Whether it says that nothing is connected.
+    /// True where it says that nothing is connected.
     pub fn is_open(&self) -> bool {
         self.properties.int(kOfxImageClipPropConnected, 0) == Some(0)
     }
 
-    /// Whether it has a frame at a time: unless it says that it has not.
+    /// True where it has a frame at a time: unless it says that it has not.
     pub fn has_frame(&self, time: f64) -> bool {
         let range = self.properties.doubles::<2>(kOfxImageEffectPropFrameRange);
         // Hosts have been seen to leave the numbers as they found them.
@@ -121,9 +121,9 @@ pub struct Fetched<'h> {
     sample: IsophoteSample,
     /// Samples a pixel: 1, 3 or 4.
     pub channels: u32,
-    /// What it holds, in the host's pixels.
+    /// Bounds of its pixels, in the host's pixels.
     pub bounds: Bounds,
-    /// How colour stands to alpha.
+    /// Relation of colour to alpha.
     pub alpha: Alpha,
     /// Width over height of its pixels, where it says so.
     pub aspect: Option<f64>,
@@ -265,7 +265,7 @@ impl<'h> Fetched<'h> {
         Ok(image)
     }
 
-    /// Whether it holds what an input needs.
+    /// True where it holds what an input needs.
     pub fn suits(&self, input: GraphInput) -> bool {
         let is_float = matches!(self.sample, ISOPHOTE_SAMPLE_F16 | ISOPHOTE_SAMPLE_F32);
         match input {
@@ -318,7 +318,7 @@ impl<'h> Fetched<'h> {
     }
 }
 
-/// What lies outside the pixels that an image holds.
+/// Values outside the pixels that an image holds.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Beyond {
     /// The nearest that it holds.

@@ -1,4 +1,4 @@
-//! What a plan reads: the picture and its guides, of the frame that is rendered and of those around it.
+//! Inputs of a plan: the picture and its guides, of the frame that is rendered and of those around it.
 //!
 //! The images of other frames are fetched when they are read and given back at once. None is kept from one render to the
 //! next: hosts do not tell effects when the pictures of other frames change.
@@ -40,7 +40,7 @@ impl Field {
 /// Images by the names of a plan's inputs.
 pub type Named = Vec<(String, Image)>;
 
-/// What came of reading.
+/// Result of reading.
 pub enum Gathered {
     /// Everything.
     All(Named),
@@ -57,9 +57,9 @@ pub struct Inputs<'h> {
     pub field: Option<Field>,
     pub source: Fetched<'h>,
     pub guides: Vec<(GraphInput, Fetched<'h>)>,
-    /// What the vectors of clips mean.
+    /// Meaning of the vectors of clips.
     pub convention: Convention,
-    /// Whether nothing is to change, not even an alpha that is 1 by declaration.
+    /// True where nothing is to change, not even an alpha that is 1 by declaration.
     pub identity: bool,
 }
 
@@ -100,12 +100,12 @@ impl<'h> Inputs<'h> {
         })
     }
 
-    /// Whether colour is not multiplied by alpha.
+    /// True where colour is not multiplied by alpha.
     pub fn is_straight(&self) -> bool {
         self.source.alpha == Alpha::Unpremultiplied
     }
 
-    /// What the plan reads to compute `band`, in the plan's pixels.
+    /// Images that the plan reads to compute `band`, in the plan's pixels.
     pub fn gather(&self, prepared: &Prepared, band: Rect, threads: &dyn Threads) -> Result<Gathered, Stop> {
         let windows = prepared.windows(band);
         let mut images = Vec::new();
@@ -226,7 +226,7 @@ impl<'h> Inputs<'h> {
         })
     }
 
-    /// What lies outside the image of another frame, by its region: nothing, where it does not cover this one's.
+    /// Values outside the image of another frame, by its region: nothing, where it does not cover this one's.
     fn beyond(&self, defined: Option<OfxRectD>) -> Beyond {
         let ([x0, y0, x1, y1], held) = (self.frame.picture, defined.and_then(|r| self.frame.pixels(&r)));
         match held {
@@ -301,7 +301,7 @@ impl<'h> Inputs<'h> {
     }
 }
 
-/// What was read of an image; none where the image is not fit for it, which leaves no memory out.
+/// Image that was read; none where it is not fit for the input, which leaves no memory out.
 fn present(read: Outcome<Image>) -> Result<Option<Image>, Stop> {
     match read {
         Err(status) if status != kOfxStatErrMemory => Ok(None),

@@ -1,4 +1,4 @@
-//! What hosts ask of an instance before they render: regions, clip preferences, identity.
+//! Actions by which hosts ask an instance before they render: regions, clip preferences, identity.
 
 use super::clips::{MASK, OUTPUT, SOURCE, is_connected};
 use super::effects::Effect;
@@ -54,7 +54,7 @@ pub fn defined(
     Ok(project.map(|project| bounded(&region, &project)))
 }
 
-/// Where the project ends at the right and at the top (canonical); it begins at 0.
+/// Right and top end of the project (canonical); it begins at 0.
 pub fn extent(host: &Host, instance: Handle) -> Option<[f64; 2]> {
     host.effect(instance).doubles::<2>(kOfxImageEffectPropProjectExtent)
 }
@@ -84,7 +84,7 @@ pub fn region_of_definition(
     Ok(if answered { kOfxStatOK } else { kOfxStatReplyDefault })
 }
 
-/// What a region needs of each clip: as much around it as the plan's passes read.
+/// Regions that a region needs of each clip: as much around it as the plan's passes read.
 ///
 /// # Errors
 /// Failed, when the graph cannot be planned.
@@ -151,7 +151,7 @@ impl Interest<'_> {
         *all = all.union(&rect);
     }
 
-    /// Whether the host has taken any of them.
+    /// True where the host has taken any of them.
     fn answered(&self) -> bool {
         let mut answered = false;
         for (clip, rect) in &self.rects {
@@ -199,7 +199,7 @@ pub fn output_colourspace(host: &Host, out_args: Handle) -> Outcome {
     Ok(if answered { kOfxStatOK } else { kOfxStatReplyDefault })
 }
 
-/// Whether the result is the source as it is.
+/// True where the result is the source as it is.
 ///
 /// # Errors
 /// Failed, when the host has no parameters.

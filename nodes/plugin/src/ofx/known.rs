@@ -1,5 +1,5 @@
-//! What is known of a frame beside its picture: guides, the frames around it, and motion between them; with the graph
-//! for that.
+//! Data that is known of a frame beside its picture: guides, the frames around it, and motion between them; with the
+//! graph for that.
 
 use super::clips::{MOTION, MOTION_FORWARD, SOURCE, guide_clip, is_connected};
 use super::effects::{Effect, is_local};
@@ -14,7 +14,7 @@ use isophote::request::Guides;
 use isophote_abi::openfx::*;
 use isophote_motion::Way;
 
-/// What is known of a frame.
+/// Data that is known of a frame.
 #[derive(Clone, Debug)]
 pub struct Known {
     /// The effect's graph, with optical flow where motion is estimated.
@@ -26,7 +26,7 @@ pub struct Known {
 }
 
 impl Known {
-    /// What there is for a graph whose guides with an image are `has`. Motion and neighbours count where they are read,
+    /// Data for a graph whose guides with an image are `has`. Motion and neighbours count where they are read,
     /// in hosts that give them.
     ///
     /// # Errors
@@ -51,8 +51,8 @@ impl Known {
         Ok(known)
     }
 
-    /// What is known by the clips that are connected, of the frame at a time. Two of them for hosts that call every clip
-    /// connected: with vectors and without.
+    /// Data that is known by the clips that are connected, of the frame at a time. Two of them for hosts that call
+    /// every clip connected: with vectors and without.
     ///
     /// # Errors
     /// As [`Known::of`].
@@ -71,8 +71,8 @@ impl Known {
         all.into_iter().map(of).collect()
     }
 
-    /// Whether a tile needs only the pixels around it, by the clips that are connected; at all times, since hosts ask
-    /// once for all.
+    /// True where a tile needs only the pixels around it, by the clips that are connected; at all times, since hosts
+    /// ask once for all.
     ///
     /// # Errors
     /// Failed, when no graph comes of it or it cannot be planned.
@@ -109,7 +109,7 @@ impl Known {
         self.limit(|offset| offset.signum() != missing.signum() || offset.abs() < missing.abs());
     }
 
-    /// Whether a tile needs only the pixels around it.
+    /// True where a tile needs only the pixels around it.
     ///
     /// # Errors
     /// Failed, when the graph cannot be planned.

@@ -1,10 +1,10 @@
-//! Where motion between frames comes from: clips of vectors, or the pictures themselves.
+//! Source of motion between frames: clips of vectors, or the pictures themselves.
 
 use isophote::graph::GraphInput;
 use isophote::{Graph, NodeId};
 use std::ffi::CStr;
 
-/// What a user may choose, in the order of [`MOTION_OPTIONS`].
+/// Choices of a user, in the order of [`MOTION_OPTIONS`].
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub enum MotionFrom {
     /// From clips where there are any, else by optical flow.
@@ -25,7 +25,7 @@ impl MotionFrom {
         [Self::ClipsOrFlow, Self::Clips, Self::Flow].get(index).copied()
     }
 
-    /// Whether motion is estimated; `has_clip` says whether vectors are there.
+    /// True where motion is estimated; `has_clip` says whether vectors are there.
     pub fn is_estimated(self, has_clip: bool) -> bool {
         match self {
             Self::ClipsOrFlow => !has_clip,

@@ -19,7 +19,7 @@ const SIDE: u32 = 64;
 /// First and last frame of a clip, counted from the one that is rendered.
 type Ranges = BTreeMap<&'static CStr, [i32; 2]>;
 
-/// What a frame needs of the frames around it. Frames that a clip says it has not are not asked for.
+/// Frames around a frame that it needs. Frames that a clip says it has not are not asked for.
 ///
 /// # Errors
 /// Failed, when the host has no parameters or the graph cannot be planned.

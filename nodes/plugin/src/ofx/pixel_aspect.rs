@@ -20,7 +20,7 @@ use std::sync::{Mutex, PoisonError};
 
 /// Square pixels in one of the host's along one axis, at most: beyond that the finer axis loses detail instead.
 const MOST: f64 = 8.0;
-/// What is less of a pixel is rounding.
+/// Share of a pixel below which differences are rounding.
 const ROUNDING: f64 = 1e-6;
 /// A pixel that lies outside the picture for all but this share is left out.
 const SLIVER: f64 = 0.01;
@@ -38,7 +38,7 @@ struct Axis {
     share: f64,
 }
 
-/// What one pixel contributes to a new one: factors on its value, and on slope and curvature within it.
+/// Contribution of one pixel to a new one: factors on its value, and on slope and curvature within it.
 #[derive(Clone, Copy, Debug)]
 struct Tap {
     at: i32,
@@ -57,12 +57,12 @@ impl Axis {
         Self { from: self.to, to: self.from, share: 1.0 / self.share }
     }
 
-    /// Whether both are the same pixels.
+    /// True where both are the same pixels.
     fn is_same(&self) -> bool {
         self.share == 1.0
     }
 
-    /// Where a new pixel begins and ends.
+    /// Beginning and end of a new pixel.
     fn span(&self, at: i32) -> [f64; 2] {
         [at, at + 1].map(|edge| (f64::from(edge) * self.share).min(f64::from(self.from)))
     }
@@ -88,7 +88,7 @@ impl Axis {
         [(self.under(first)[0] - 1).max(0), (self.under(end - 1)[1] + 2).min(self.from)]
     }
 
-    /// What `at` is made from.
+    /// Taps that `at` is made from.
     fn taps(&self, at: i32) -> impl Iterator<Item = Tap> {
         let ([begin, end], [first, last]) = (self.span(at), self.under(at));
         let inside = move |cell: i32, edge: f64| (edge - f64::from(cell)).clamp(0.0, 1.0) - 0.5;
@@ -171,7 +171,7 @@ impl SquarePixels {
     }
 }
 
-/// How new pixels come from old ones.
+/// The way in which new pixels come from old ones.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 enum By {
     /// As means.

@@ -10,7 +10,7 @@ use isophote::{ColourSpace, Planned, Request};
 /// The plan for a frame, over square pixels.
 #[derive(Debug)]
 pub struct Prepared {
-    /// What is run.
+    /// Plan that is run.
     pub planned: Planned,
     /// Its pixels, where they are others than the host's. Colour is multiplied by alpha in them.
     pub square: Option<SquarePixels>,

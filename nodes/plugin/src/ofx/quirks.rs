@@ -1,19 +1,19 @@
-//! What differs between hosts, by the name that a host gives itself. Whatever follows from a property
+//! Differences between hosts, by the name that a host gives itself. Whatever follows from a property
 //! or an image is not here: it is looked at where it is used.
 
 use isophote::ColourSpace;
 use std::ffi::CStr;
 
-/// How a host differs.
+/// Differences of a host from others.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Quirks {
-    /// What its pixels mean unless the user says otherwise.
+    /// Space of its pixels unless the user says otherwise.
     pub space: ColourSpace,
-    /// Whether messages may be shown from a thread that renders.
+    /// True where messages may be shown from a thread that renders.
     pub messages: bool,
-    /// Whether its multi-thread suite is sound.
+    /// True where its multi-thread suite is sound.
     pub threads: bool,
-    /// Whether a clip without a picture can call itself connected, so that a mask must be asked for.
+    /// True where a clip without a picture can call itself connected, so that a mask must be asked for.
     pub all_connected: bool,
 }
 

@@ -257,7 +257,7 @@ impl Plans {
         Prepared::new(known, settings.space, &inputs.frame, !inputs.is_straight())
     }
 
-    /// What a band is computed from. Frames are known up to the first that lacks an image.
+    /// Images that a band is computed from. Frames are known up to the first that lacks an image.
     fn gather(&mut self, job: &Job<'_>, band: Rect, threads: &dyn Threads) -> Result<Named, Stop> {
         loop {
             match job.inputs.gather(&self.prepared, band, threads)? {

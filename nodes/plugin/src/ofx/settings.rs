@@ -11,28 +11,28 @@ use isophote_motion::Convention;
 use std::ffi::{CStr, c_int};
 use std::ptr::null_mut;
 
-/// What an instance is set to.
+/// Settings of an instance.
 #[derive(Debug)]
 pub struct Settings {
     /// The effect's graph with its values.
     pub graph: Graph,
     /// Its nodes, in the order of the effect's.
     pub ids: Vec<NodeId>,
-    /// What the pixels mean.
+    /// Space of the pixels.
     pub space: ColourSpace,
-    /// Whether the user says so, whatever the host does.
+    /// True where the user says so, whatever the host does.
     pub as_is: bool,
     /// Height of pictures at which lengths are meant; 0: any.
     pub reference_height: u32,
-    /// Whether alpha is filtered too.
+    /// True where alpha is filtered too.
     pub process_alpha: bool,
-    /// Whether a mask counts.
+    /// True where a mask counts.
     pub mask_apply: bool,
-    /// Where motion between frames comes from.
+    /// Source of motion between frames.
     pub motion_from: MotionFrom,
-    /// What the vectors of clips mean.
+    /// Meaning of the vectors of clips.
     pub convention: Convention,
-    /// What must be 0 for the values to leave the picture as it is: the least of the numbers that do so at
+    /// Numbers that must be 0 for the values to leave the picture as it is: the least of those that do so at
     /// 0. The first is a plain number, the second a length in pixels of the full-size picture.
     least: [f32; 2],
 }
@@ -106,7 +106,7 @@ impl Settings {
         })
     }
 
-    /// What the pixels are by the host's name of their colour space, which counts more than what they
+    /// Space of the pixels by the host's name of their colour space, which counts more than what they
     /// were said to be.
     pub fn space_of(&self, name: &CStr) -> ColourSpace {
         match name.to_bytes() {
@@ -120,7 +120,7 @@ impl Settings {
         }
     }
 
-    /// Whether the values leave a picture that is rendered at `scale` as it is.
+    /// True where the values leave a picture that is rendered at `scale` as it is.
     pub fn is_identity(&self, scale: f32) -> bool {
         self.least[0] == 0.0 || self.least[1] * scale < LEAST_LENGTH
     }

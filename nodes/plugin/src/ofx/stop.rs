@@ -1,10 +1,10 @@
-//! Why a frame was not finished.
+//! Reasons why a frame was not finished.
 
 use isophote::Error;
 use isophote::engine::Error as EngineError;
 use isophote_abi::openfx::OfxStatus;
 
-/// Why a frame was not finished.
+/// Reason why a frame was not finished.
 pub enum Stop {
     /// The user no longer wants it.
     Aborted,

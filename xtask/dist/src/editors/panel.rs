@@ -1,4 +1,4 @@
-//! What a panel shows: an effect with its controls, as the plugin derives them from the catalogue.
+//! Content of a panel: an effect with its controls, as the plugin derives them from the catalogue.
 
 use crate::error::{Error, Result};
 use serde_json::{Value, json};
@@ -11,7 +11,7 @@ pub struct Panel {
     pub id: String,
     /// Its name.
     pub label: String,
-    /// What it does, in a sentence.
+    /// Description of the effect, in a sentence.
     pub about: String,
     /// Controls, those of one heading together.
     pub controls: Vec<Control>,
@@ -24,15 +24,15 @@ pub struct Control {
     pub name: String,
     /// For people.
     pub label: String,
-    /// What it does.
+    /// Description of the control.
     pub doc: String,
     /// The heading that it stands under.
     pub group: String,
-    /// What is set by it.
+    /// Kind of value that is set by it.
     pub kind: Kind,
 }
 
-/// What a control sets.
+/// Kind of value that a control sets.
 #[derive(Clone, Debug)]
 pub enum Kind {
     /// A number between the ends of a slider.
@@ -107,7 +107,7 @@ fn reads_colour_alone(node: &Value) -> Option<bool> {
     Some(inputs.iter().any(is_colour) && inputs.iter().all(|p| is_colour(p) || p["optional"] == json!(true)))
 }
 
-/// What effects of lines have beside their parameters.
+/// Control that effects of lines have beside their parameters.
 fn lines_output() -> Control {
     let options = ["Lines only", "Lines over source"].map(str::to_owned);
     Control {
@@ -119,7 +119,7 @@ fn lines_output() -> Control {
     }
 }
 
-/// What is about other frames has no use in MLT, which gives effects one at a time.
+/// Parameters about other frames have no use in MLT, which gives effects one at a time.
 const OF_OTHER_FRAMES: [&str; 3] = ["steadiness", "window", "renewal"];
 
 /// The controls of nodes, each with what stands before its names.

@@ -6,7 +6,7 @@ use std::fmt::Write as _;
 /// Rows are so high, in the form's pixels.
 const ROW: usize = 34;
 
-/// What the filter is.
+/// Description of the filter.
 pub fn meta(panel: &Panel) -> String {
     format!(
         "import QtQuick\nimport org.shotcut.qml\n\nMetadata {{\n    type: Metadata.Filter\n    objectName: {}\n    \
@@ -71,7 +71,7 @@ fn headings(panel: &Panel) -> usize {
     count
 }
 
-/// How the form takes a value over from the filter.
+/// Code by which the form takes a value over from the filter.
 fn taken(control: &Control) -> String {
     let (id, name) = (id(control), quoted(&control.name));
     match control.kind {

@@ -59,7 +59,7 @@ impl Texture {
         }
     }
 
-    /// Whether its file is a JPEG; the others are PNG.
+    /// True where its file is a JPEG; the others are PNG.
     pub fn is_jpeg(self) -> bool {
         self.file_name().ends_with(".jpg")
     }

@@ -9,7 +9,7 @@ use std::f32::consts::TAU;
 /// One unit of a running key pattern, six cells wide and five high.
 const KEY: [&[u8; 6]; 5] = [b"#####.", b"#...#.", b"#.###.", b"#.....", b"######"];
 
-/// Whether the key pattern is dark at a point; `point.x` counts units, `point.y` goes from 0 (top)
+/// True where the key pattern is dark at a point; `point.x` counts units, `point.y` goes from 0 (top)
 /// to 1.
 fn key(point: Vec2) -> bool {
     let column = (point.x.rem_euclid(1.0) * 6.0) as usize;
@@ -38,7 +38,7 @@ pub fn mosaic() -> Vec<(Texture, Picture)> {
     vec![(Texture::Mosaic, picture)]
 }
 
-/// Whether the carpet is black at a texture coordinate.
+/// True where the carpet is black at a texture coordinate.
 fn carpet(uv: Vec2) -> bool {
     let edge = uv.min(1.0 - uv).min_element();
     let along = if uv.x.min(1.0 - uv.x) < uv.y.min(1.0 - uv.y) { uv.y } else { uv.x };

@@ -66,7 +66,7 @@ pub fn sky() -> Vec<(Texture, Picture)> {
     vec![(Texture::Sky, picture)]
 }
 
-/// Where the horizon lies in the picture of the sky, from its top.
+/// Height of the horizon in the picture of the sky, from its top.
 pub const SKY_HORIZON: f32 = 0.94;
 
 /// One leaf of a card, in pixels.

@@ -22,7 +22,7 @@ impl Manifest {
     /// Reads the JSON of a manifest.
     ///
     /// # Errors
-    /// What is wrong with it.
+    /// The problem with it.
     pub fn parse(json: &str) -> Result<Self, String> {
         let texts: BTreeMap<String, String> =
             serde_json::from_str(json).map_err(|e| format!("is no JSON of names with ids: {e}"))?;
@@ -47,7 +47,7 @@ impl Manifest {
         self.0.iter().filter(|(name, _)| pattern.matches(name)).map(|(_, id)| *id)
     }
 
-    /// What to write instead of a name that is not there.
+    /// Advice what to write instead of a name that is not there.
     pub fn advice(&self, wanted: &str) -> String {
         if self.0.is_empty() {
             return "it lists no names; write the whole name of a thing in the picture".into();
@@ -85,7 +85,7 @@ fn listed<'a>(names: impl Iterator<Item = &'a str> + Clone, most: usize) -> Stri
 /// The file of a manifest that a picture in `folder` names.
 ///
 /// # Errors
-/// What is wrong with the name, which may lead nowhere but into the folder and those in it, with slashes between them.
+/// The problem with the name, which may lead nowhere but into the folder and those in it, with slashes between them.
 pub fn sidecar(folder: &Path, name: &str) -> Result<PathBuf, String> {
     let path = Path::new(name);
     let is_inside = path.components().all(|part| matches!(part, Component::Normal(_) | Component::CurDir));

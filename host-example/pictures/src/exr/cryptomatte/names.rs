@@ -5,13 +5,13 @@
 
 use std::str::FromStr;
 
-/// How the choice begins.
+/// Beginning of the choice.
 const WORD: &str = "cryptomatte";
-/// How to write it.
+/// Form in which it is written.
 const FIX: &str =
     "write cryptomatte:NAME,NAME or cryptomatte[LAYER]:NAME,NAME, where * stands for any letters";
 
-/// Which things of which Cryptomatte.
+/// Choice of things in a Cryptomatte.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct MatteChoice {
     /// The Cryptomatte; the one of objects without.
@@ -132,7 +132,7 @@ impl Pattern {
         self.parts.iter().map(letter).collect()
     }
 
-    /// Whether it stands for a name.
+    /// True where it stands for a name.
     pub fn matches(&self, name: &str) -> bool {
         let mut parts = self.parts.as_slice();
         let mut rest = name.chars();

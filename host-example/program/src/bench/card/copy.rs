@@ -1,4 +1,4 @@
-//! How fast a card copies its own memory: what passes that are limited by memory are set against.
+//! Speed at which a card copies its own memory: what passes that are limited by memory are set against.
 
 use std::time::Instant;
 

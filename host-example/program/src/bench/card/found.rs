@@ -1,4 +1,4 @@
-//! What was found out about a card.
+//! Findings about a card.
 
 use serde::Serialize;
 
@@ -28,7 +28,7 @@ pub struct Card {
     pub copied: f64,
     /// Nodes beside the CPU.
     pub twins: Vec<Twin>,
-    /// What compiling takes.
+    /// Times that compiling takes.
     pub compiled: Vec<Compiled>,
     /// Nodes by size and precision.
     #[serde(skip)]
@@ -37,18 +37,19 @@ pub struct Card {
     pub loops: Vec<Loop>,
     /// Sequences of frames.
     pub sequences: Vec<Sequence>,
-    /// What could not be measured, and why.
+    /// Problems that kept something from being measured.
     pub problems: Vec<String>,
 }
 
-/// What compiling all shaders of a node takes, in the driver's compiler included; drivers may remember shaders from run to run.
+/// Time that compiling all shaders of a node takes, in the driver's compiler included; drivers may remember shaders
+/// from run to run.
 #[derive(Debug, Serialize)]
 pub struct Compiled {
     /// The node.
     pub node: String,
     /// The precision on the card.
     pub precision: &'static str,
-    /// What it takes.
+    /// Time that it takes.
     pub seconds: f64,
 }
 
@@ -61,11 +62,11 @@ pub struct Loop {
     pub precision: &'static str,
     /// Size of the pictures in pixels.
     pub size: (u32, u32),
-    /// How many frames.
+    /// Number of frames.
     pub frames: usize,
     /// The median of a frame.
     pub median_seconds: f64,
-    /// What 99 of 100 frames do not exceed.
+    /// Time that 99 of 100 frames do not exceed.
     pub most_seconds: f64,
 }
 
@@ -78,6 +79,6 @@ pub struct Sequence {
     pub precision: &'static str,
     /// Size of the pictures in pixels.
     pub size: (u32, u32),
-    /// What was measured.
+    /// Throughput that was measured.
     pub measured: Throughput,
 }

@@ -16,10 +16,10 @@ use isophote_files::error::{AtPlace, Error, Result};
 use isophote_files::files::Existing;
 use isophote_files::output;
 use isophote_finishing::apply::backend::Backend;
-use isophote_finishing::apply::filter::{Filter, Look, Planner};
+use isophote_finishing::apply::filter::{Filter, MaskedStyle, Planner};
 use isophote_finishing::apply::memory;
-use isophote_finishing::stylize::lengths::Lengths;
 use isophote_finishing::stylize::precision::Precision;
+use isophote_finishing::stylize::preset::Lengths;
 use isophote_finishing::stylize::style::Style;
 use isophote_loader::Library;
 use isophote_render::gpu::Gpu;
@@ -31,9 +31,9 @@ const MEASURED: [Precision; 2] = [Precision::Exact, Precision::Fast];
 /// Size of the pictures that twins are compared on, at most.
 const TWINS: (u32, u32) = (320, 200);
 
-/// What is measured.
+/// Options of the measurement.
 pub struct Options<'a> {
-    /// Where the reports go.
+    /// Folder that the reports go to.
     pub folder: &'a Path,
     /// Treatment of reports that are there.
     pub existing: Existing,
@@ -182,7 +182,7 @@ impl Card {
             let mut style = Style::load(library, STYLE, &[])?;
             style.lengths = Lengths::Pixels;
             precision.apply(&style)?;
-            Ok::<_, Error>(vec![Look::whole(style)])
+            Ok::<_, Error>(vec![MaskedStyle::whole(style)])
         };
         let what = format!("a sequence of {}", described(STYLE, precision, size));
         let measured = self.step(&what, || {

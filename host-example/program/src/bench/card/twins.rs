@@ -1,4 +1,4 @@
-//! Whether a card computes what the CPU does: each node on both, in all precisions, on a picture that the program makes.
+//! Comparison of a card with the CPU: each node on both, in all precisions, on a picture that the program makes.
 
 use serde::Serialize;
 
@@ -32,7 +32,7 @@ pub struct Twin {
     pub share: f64,
     /// The share that may be.
     pub allowed: f64,
-    /// Whether no more are, and all are numbers.
+    /// True where no more are, and all are numbers.
     pub agrees: bool,
 }
 

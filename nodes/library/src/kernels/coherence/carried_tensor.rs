@@ -61,11 +61,11 @@ fn run(pass: &CpuPass<'_>, band: &mut Band<'_>) {
     }
 }
 
-/// LineBuffer of one strip on their way through the pass.
+/// Rows of one strip on their way through the pass.
 #[derive(Default)]
 struct Strip {
     colors: LineBuffer,
-    /// Whether the rows in `colors` are opaque.
+    /// True for rows in `colors` that are opaque.
     opaque: [bool; 3],
     /// The next row that `colors` takes in.
     next: i32,
@@ -94,7 +94,7 @@ fn tensors<S: Simd>(simd: S, pass: &CpuPass<'_>, params: &Params, r: usize, band
         strip.columns.resize(8 * wide, 0.0);
         strip.tensors.resize(3 * wide, 0.0);
         strip.ring.resize((2 * r + 1) * 3 * narrow, 0.0);
-        // LineBuffer beyond the picture are its last ones.
+        // Rows beyond the picture are its last ones.
         let row = |y: i32| y.clamp(0, height - 1);
         strip.next = row(window.y0 - reach) - 1;
         for y in window.y0 - reach..window.y1 + reach {

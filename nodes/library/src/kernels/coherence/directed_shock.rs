@@ -37,12 +37,12 @@ crate::kernel!(directed_shock {
 /// Narrower Gaussians than this see no neighbour.
 const LEAST_SIGMA: f32 = 0.2;
 
-/// What the filter is asked for.
+/// Options of the filter.
 #[derive(Clone, Copy, Debug)]
 pub struct Options {
     /// Standard deviation of the second derivative, pixels.
     pub sigma: f32,
-    /// How far pixels are looked for, pixels of the full-size picture.
+    /// Distance within which pixels are looked for, pixels of the full-size picture.
     pub radius: f32,
     /// The size that is rendered over the full size.
     pub scale: f32,

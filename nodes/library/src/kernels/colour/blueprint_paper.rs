@@ -21,7 +21,7 @@ crate::kernel!(blueprint_paper {
     },
 });
 
-/// What a sheet looks like; lengths in pixels of the picture that is rendered.
+/// Appearance of a sheet; lengths in pixels of the picture that is rendered.
 #[derive(Clone, Copy, Debug)]
 pub struct Sheet {
     /// RGB and opacity of the lines.
@@ -34,11 +34,11 @@ pub struct Sheet {
     pub scale: f32,
     /// Strength of the paper's texture, 0..=1.
     pub texture: f32,
-    /// How much of the picture's tones shows, 0..=1.
+    /// Share of the picture's tones that shows, 0..=1.
     pub fill: f32,
     /// Opaque also where the picture is not.
     pub cover: bool,
-    /// Where the picture stands in the canonical one, pixels.
+    /// Position of the picture in the canonical one, pixels.
     pub origin: [f32; 2],
 }
 
@@ -98,7 +98,7 @@ fn sheet<S: Simd>(simd: S, pass: &CpuPass<'_>, params: &Params, band: &mut Band<
     );
 }
 
-/// What lies on the paper, by share.
+/// Shares of what lies on the paper.
 #[derive(Clone, Copy)]
 struct Drawn<S: Simd> {
     shade: f32x8<S>,
@@ -119,7 +119,7 @@ impl<S: Simd> Drawn<S> {
     }
 }
 
-/// How much of the pixels at (x, y) is covered by lines `width` wide, `spacing` apart.
+/// Share of the pixels at (x, y) that is covered by lines `width` wide, `spacing` apart.
 #[inline(always)]
 fn ruled<S: Simd>(x: f32x8<S>, y: f32x8<S>, spacing: f32, width: f32) -> f32x8<S> {
     ruled_along(x, spacing, width).at_least(ruled_along(y, spacing, width))

@@ -21,34 +21,34 @@ crate::kernel!(ink_sheet {
     },
 });
 
-/// What is laid on the paper, and how.
+/// Sheet of paper, and how the drawing is laid on it.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Sheet {
     /// RGB and opacity of the ink.
     pub line: [f32; 4],
     /// RGB of the paper; its alpha is not used.
     pub paper: [f32; 4],
-    /// How deep the paper's grain is, 0..=2.
+    /// Depth of the paper's grain, 0..=2.
     pub grain: f32,
     /// Size of the grains, pixels of the full-size picture.
     pub grain_size: f32,
     /// Rendered size over full size.
     pub scale: f32,
-    /// How much of the picture's own colours shows, 0..=1.
+    /// Share of the picture's own colours that shows, 0..=1.
     pub colour: f32,
     /// Strength of the paper's texture, 0..=1.
     pub texture: f32,
-    /// How much of the grain follows the strokes instead of the paper, 0..=1.
+    /// Share of the grain that follows the strokes instead of the paper, 0..=1.
     pub follow: f32,
-    /// How far what is drawn solidly, too, breaks on the grain, 0..=1.
+    /// Degree to which solid ink, too, breaks on the grain, 0..=1.
     pub dryness: f32,
     /// Opaque also where the picture is not.
     pub cover: bool,
-    /// Where the picture stands in the canonical one, pixels.
+    /// Position of the picture in the canonical one, pixels.
     pub origin: [f32; 2],
 }
 
-/// What is drawn.
+/// Drawing on the sheet.
 #[derive(Clone, Copy, Debug)]
 pub struct Drawing {
     /// Black lines on white.
@@ -143,7 +143,7 @@ fn even<S: Simd>(v: f32x8<S>) -> f32x8<S> {
     ((v - 0.5) * 1.7 + 0.5).within(0.0, 1.0)
 }
 
-/// How much ink of density `d` catches where the height is `h`, for a grain of depth `depth`: as much on the
+/// Ink of density `d` that catches where the height is `h`, for a grain of depth `depth`: as much on the
 /// average, more in the one place and less in the other; none is none and solid is solid.
 #[inline(always)]
 fn catches<S: Simd>(d: f32x8<S>, h: f32x8<S>, depth: f32x8<S>) -> f32x8<S> {

@@ -1,7 +1,7 @@
 //! Lightness L (0..100) and coverage of a colour, as (L alpha, alpha): what the line filters work on
 //! (§ 4.6). Both are linear, so that smoothing and interpolation weight by coverage of themselves.
 //!
-//! Where the working colour comes from the host unchanged, the host's own is read: the working colour
+//! If the working colour comes from the host unchanged, the host's own is read: the working colour
 //! need not exist then, and linear light is not encoded to be decoded again.
 //!
 //! Cost: four powers per pixel; one for a host's linear light, none when the source is Lab already.

@@ -1,6 +1,6 @@
 //! Blend of two pictures, by coverage and by a mask: the port `mask` of every colour node.
 //!
-//! Where the mask is 0 the first picture passes to the bit, and where it is 1 and the amount too, the second.
+//! A mask of 0 lets the first picture pass to the bit, and one of 1, where the amount is 1 too, the second.
 //!
 //! Cost: ten multiply-adds and a division per pixel.
 

@@ -16,14 +16,14 @@ crate::kernel!(paint_relief {
     tolerance: Tolerance { absolute: 1e-3, relative: 1e-5, outliers: 0.0, reason: "a dozen roundings of L" },
 });
 
-/// What the paint looks like.
+/// Appearance of the paint.
 #[derive(Clone, Copy, Debug)]
 pub struct Relief {
     /// Units of L, on white, per unit of height.
     pub bristle: f32,
     /// Units of L, on white, per unit of height per pixel.
     pub shine: f32,
-    /// Where the light comes from, degrees counter-clockwise from the right.
+    /// Direction that the light comes from, degrees counter-clockwise from the right.
     pub angle: f32,
 }
 

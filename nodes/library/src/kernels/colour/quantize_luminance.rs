@@ -24,7 +24,7 @@ crate::kernel!(quantize_luminance {
     },
 });
 
-/// How steep the steps are, per unit of L.
+/// Steepness of the steps, per unit of L.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Steepness {
     /// The same everywhere.
@@ -45,7 +45,7 @@ pub fn pass(plan: &mut PlanBuilder, lab: ImageId, bins: i32, steepness: Steepnes
     pass_where(plan, lab, bins, steepness, None)
 }
 
-/// Where the steps of [`pass_where`] are.
+/// Places of the steps of [`pass_where`].
 #[derive(Clone, Copy, Debug)]
 pub struct Steps {
     /// The mean gradient of L around each pixel, in the first two of four channels, units of L per pixel; one level up.

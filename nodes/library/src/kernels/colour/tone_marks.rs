@@ -28,7 +28,7 @@ crate::kernel!(tone_marks {
     },
 });
 
-/// How tones become marks.
+/// Rules by which tones become marks.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Tones {
     /// Lightness from which on nothing is dark, units of L.
@@ -37,9 +37,9 @@ pub struct Tones {
     pub solid: f32,
     /// By how much middle tones are lighter than in proportion, 0..1.
     pub ease: f32,
-    /// How much of the tones is rubbed in everywhere, 0..=1; the rest is hatched where it is not light.
+    /// Share of the tones that is rubbed in everywhere, 0..=1; the rest is hatched where it is not light.
     pub rubbed: f32,
-    /// How much of the hatching follows the form where that is significant, 0..=1.
+    /// Share of the hatching that follows the form where that is significant, 0..=1.
     pub form: f32,
     /// Distance of hatches, pixels of the full-size picture.
     pub spacing: f32,
@@ -53,7 +53,7 @@ pub struct Tones {
     pub given_deviation: f32,
     /// Rendered size over full size.
     pub scale: f32,
-    /// Where the picture stands in the canonical one, pixels.
+    /// Position of the picture in the canonical one, pixels.
     pub origin: [f32; 2],
 }
 
@@ -64,15 +64,15 @@ pub const HATCHING: [[f32; 2]; 2] = [[0.8, -0.6], [0.96, 0.28]];
 pub const SMOOTH_FROM: f32 = 69.0;
 const FADE: f32 = 9.0;
 
-/// How soft the edges of strokes are, in values of 0..=1 at which they lie.
+/// Softness of the edges of strokes, in values of 0..=1 at which they lie.
 const SOFTNESS: f32 = 0.25;
 
-/// What tones are drawn after and with.
+/// Images that tones are drawn after and with.
 #[derive(Clone, Copy, Debug)]
 pub struct Inputs {
     /// (L alpha, alpha).
     pub tones: ImageId,
-    /// What strokes follow.
+    /// Tensor that strokes follow.
     pub tensor: ImageId,
     /// Noise, averaged along the stream lines of the tensor, in the first channel.
     pub strokes: ImageId,
@@ -126,7 +126,7 @@ fn run(pass: &CpuPass<'_>, band: &mut Band<'_>) {
     }));
 }
 
-/// Whether there is ink on the paper, for marks that cover the share `d` of it.
+/// Mask of the ink on the paper, for marks that cover the share `d` of it.
 #[inline(always)]
 fn drawn<S: Simd>(simd: S, pass: &CpuPass<'_>, params: &Params, block: &Block, d: f32x8<S>) -> f32x8<S> {
     let one = f32x8::splat(simd, 1.0);
@@ -167,8 +167,8 @@ fn rise<S: Simd>(t: f32x8<S>) -> f32x8<S> {
     t * t * (t * -2.0 + 3.0)
 }
 
-/// How much of a pixel a band covers, `r` from whose middle it lies and whose half width is `s`, in pixels of the full-size
-/// picture.
+/// Share of a pixel that a band covers, `r` from whose middle it lies and whose half width is `s`, in pixels of the
+/// full-size picture.
 #[inline(always)]
 fn covered<S: Simd>(r: f32x8<S>, s: f32x8<S>, params: &Params) -> f32x8<S> {
     let size = 1.0 / params.inverse_scale.min(0.5 * params.spacing);

@@ -22,12 +22,12 @@ crate::kernel!(watercolor_wash {
     },
 });
 
-/// How paint lies on paper.
+/// Appearance of paint on paper.
 #[derive(Clone, Copy, Debug)]
 pub struct Wash {
     /// Rendered size over full size.
     pub scale: f32,
-    /// How much pigment there is: 1 leaves the colours alone, 0 only paper.
+    /// Amount of pigment: 1 leaves the colours alone, 0 only paper.
     pub pigment: f32,
     /// Density gained per unit of luma by which the blurred picture is lighter.
     pub edges: f32,
@@ -37,7 +37,7 @@ pub struct Wash {
     pub grain: f32,
     /// Size of the grain in pixels of the full-size picture.
     pub grain_size: f32,
-    /// Where the picture stands in the canonical one, pixels.
+    /// Position of the picture in the canonical one, pixels.
     pub origin: [f32; 2],
 }
 

@@ -25,7 +25,7 @@ crate::kernel!(dog_columns {
     },
 });
 
-/// What a difference of Gaussians is asked for.
+/// Options of a difference of Gaussians.
 #[derive(Clone, Copy, Debug)]
 pub struct Options {
     /// Standard deviation of the narrower Gaussian, pixels.

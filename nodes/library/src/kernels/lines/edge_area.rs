@@ -23,12 +23,12 @@ crate::kernel!(edge_area {
 
 /// Side of the area where all frames count, pixels: wide enough that lines fade from pixel to pixel.
 const WIDTH: f32 = 2.0;
-/// How much a response is sharpened there, which gives lines back what averages take from their darkness.
+/// Amount by which a response is sharpened there, which gives lines back what averages take from their darkness.
 const SHARPENING: f32 = 1.0;
 /// Motion from which on lines count as moving, pixels per frame.
 const MOVING: f32 = 0.25;
 
-/// How much frames count.
+/// Shares by which frames count.
 #[derive(Clone, Copy, Debug)]
 pub struct Shares {
     /// Shares and sums of weights ([`carried_share`](crate::kernels::time::carried_share)).

@@ -1,4 +1,4 @@
-//! Which pixels may be edges (§ 4.1, 4.2.1): local maxima of the gradient's magnitude along the gradient
+//! Pixels that may be edges (§ 4.1, 4.2.1): local maxima of the gradient's magnitude along the gradient
 //! (Canny), or zero crossings of the Laplacian (Marr and Hildreth); 0 is none, 1 a weak and 2 a strong
 //! candidate. Or, without any thinning, the thresholded magnitude as an edge image.
 //!
@@ -36,10 +36,10 @@ crate::declare::choice::choice! {
 /// Values nearer to each other than this ratio count as equal: decided by rounding, lines would be ragged.
 const TIE: f32 = 1.0005;
 
-/// What edges are asked for; heights in units of L.
+/// Options of edges; heights in units of L.
 #[derive(Clone, Copy, Debug)]
 pub struct Options {
-    /// What makes an edge.
+    /// Method by which edges are found.
     pub method: Method,
     /// Height from which on an edge may continue a stronger one.
     pub low: f32,

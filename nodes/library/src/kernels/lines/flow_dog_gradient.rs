@@ -31,7 +31,7 @@ crate::kernel!(flow_dog_gradient {
 /// Cut-off, in standard deviations of the wider Gaussian; `precision` of Listing 4.1.
 const PRECISION: f32 = 3.0;
 
-/// What a difference of Gaussians is asked for.
+/// Options of a difference of Gaussians.
 #[derive(Clone, Copy, Debug)]
 pub struct Options {
     /// Standard deviation of the narrower Gaussian, pixels.
@@ -60,7 +60,7 @@ pub fn pass(plan: &mut PlanBuilder, lightness: ImageId, field: ImageId, options:
     plan.pass(&KERNEL, &[lightness, field], &params, Class::Colour, support)
 }
 
-/// How far the first pass reaches, in pixels.
+/// Reach of the first pass, in pixels.
 pub fn halfwidth(sigma: f32, k: f32) -> f32 {
     (PRECISION * k * sigma).min(1024.0)
 }

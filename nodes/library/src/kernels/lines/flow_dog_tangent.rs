@@ -32,12 +32,12 @@ crate::kernel!(flow_dog_tangent {
     },
 });
 
-/// What the smoothing along lines is asked for.
+/// Options of the smoothing along lines.
 #[derive(Clone, Copy, Debug)]
 pub struct Options {
     /// Standard deviation along the lines, pixels.
     pub sigma: f32,
-    /// How lines are stepped.
+    /// Integrator by which lines are stepped.
     pub integrator: Integrator,
     /// The threshold.
     pub xdog: Xdog,

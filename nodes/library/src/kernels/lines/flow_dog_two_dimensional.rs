@@ -34,7 +34,7 @@ crate::kernel!(flow_dog_two_dimensional {
     },
 });
 
-/// How the stream line is traced.
+/// Method by which the stream line is traced.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Stepping {
     /// In steps of one pixel.
@@ -44,7 +44,7 @@ pub enum Stepping {
 }
 
 impl Stepping {
-    /// What the shader calls it.
+    /// Number by which the shader knows it.
     const fn number(self) -> u32 {
         match self {
             Self::Along(integrator) => integrator as u32,
@@ -53,7 +53,7 @@ impl Stepping {
     }
 }
 
-/// What the filter is asked for; lengths in pixels.
+/// Options of the filter; lengths in pixels.
 #[derive(Clone, Copy, Debug)]
 pub struct Options {
     /// Standard deviation of the narrower Gaussian across lines.
@@ -62,7 +62,7 @@ pub struct Options {
     pub k: f32,
     /// Standard deviation along lines.
     pub sigma_m: f32,
-    /// How lines are stepped.
+    /// Method by which lines are stepped.
     pub stepping: Stepping,
     /// Weights and threshold.
     pub xdog: Xdog,
@@ -106,7 +106,7 @@ fn run(pass: &CpuPass<'_>, band: &mut Band<'_>) {
     }));
 }
 
-/// What all blocks of a band share.
+/// Values that all blocks of a band share.
 struct Filter<'a> {
     lightness: &'a View<'a>,
     field: FieldView<'a>,

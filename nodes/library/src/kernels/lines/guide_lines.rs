@@ -49,7 +49,7 @@ const NARROWEST: f32 = 0.4;
 /// Cut-off in standard deviations of the wider Gaussian.
 const PRECISION: f32 = 2.0;
 
-/// How guides draw lines.
+/// Options of lines that guides draw.
 #[derive(Clone, Copy, Debug)]
 pub struct Options {
     /// Standard deviation of the narrower Gaussian across lines of creases and of outlines, pixels; 0 draws none of them.
@@ -114,7 +114,7 @@ fn breaks<S: Simd>(simd: S, pass: &CpuPass<'_>, params: &Params, band: &mut Band
     );
 }
 
-/// What breaks of any guide that are stronger near eight pixels than around them take off the response.
+/// Amount that breaks of any guide take off the response where they are stronger near eight pixels than around them.
 #[inline(always)]
 fn strength<S: Simd>(
     simd: S,
@@ -243,8 +243,8 @@ fn ramp<S: Simd>(t: f32x8<S>) -> f32x8<S> {
     t * t * (t * -2.0 + 3.0)
 }
 
-/// How far two directions differ, 0 for equal and 1 for perpendicular ones, and 1 where one is missing and the other not.
-/// Below 10 degrees a pixel it is relief of the surface, from 31 degrees on an edge.
+/// Difference of two directions, 0 for equal and 1 for perpendicular ones, and 1 where one is missing and the other
+/// not. Below 10 degrees a pixel it is relief of the surface, from 31 degrees on an edge.
 #[inline(always)]
 fn normal_break<S: Simd>(a: [f32x8<S>; 3], b: [f32x8<S>; 3]) -> [f32x8<S>; 2] {
     let (zero, one) = (f32x8::splat(a[0].simd, 0.0), f32x8::splat(a[0].simd, 1.0));
@@ -270,7 +270,7 @@ fn relative_nearness<S: Simd>(z0: f32x8<S>, z: f32x8<S>) -> f32x8<S> {
     z0.simd_gt(0.0).select(near, there.select(one + 1.0, one))
 }
 
-/// How far depth at the middle one of three pixels is from a plane through its neighbours; both pixels
+/// Distance of the depth at the middle one of three pixels from a plane through its neighbours; both pixels
 /// at a jump are.
 #[inline(always)]
 fn depth_bend<S: Simd>(before: f32x8<S>, z0: f32x8<S>, after: f32x8<S>) -> f32x8<S> {

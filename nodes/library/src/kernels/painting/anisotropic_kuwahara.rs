@@ -35,7 +35,7 @@ crate::kernel!(anisotropic_kuwahara {
     },
 });
 
-/// What the filter is asked for.
+/// Options of the filter.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Options {
     /// Radius r, pixels.
@@ -171,7 +171,7 @@ struct Ellipses<S: Simd> {
     shift: f32x8<S>,
     /// 1 / a, and (a c - b^2) / a^2.
     width: [f32x8<S>; 2],
-    /// LineBuffer below the centre that hold a pixel of any.
+    /// Rows below the centre that hold a pixel of any.
     rows: i32,
 }
 
@@ -214,7 +214,7 @@ impl<S: Simd> Ellipses<S> {
     }
 }
 
-/// What eight pixels gathered: per pair of opposite sectors the sums of both together and of their
+/// Sums that eight pixels gathered: per pair of opposite sectors those of both together and of their
 /// difference, and the weights of each of the two.
 struct Gathered<S: Simd> {
     both: [[f32x8<S>; 5]; 4],
@@ -322,7 +322,7 @@ struct Row<S: Simd> {
     turned: [f32x8<S>; 2],
     turned_step: [f32x8<S>; 2],
     zeta: f32x8<S>,
-    /// What makes a squared distance of the sum of two polynomials: a factor and a summand.
+    /// Factor and summand that make a squared distance of the sum of two polynomials.
     shrink: f32,
     middle: f32x8<S>,
 }

@@ -159,7 +159,7 @@ struct Ellipse {
     b: f32,
     /// a c - b^2.
     area: f32,
-    /// LineBuffer below the centre that hold a pixel.
+    /// Rows below the centre that hold a pixel.
     rows: i32,
 }
 
@@ -186,7 +186,7 @@ impl Ellipse {
         [first, (-b * dy / a + half + 1e-3).floor() as i32]
     }
 
-    /// Where a pixel lies in the disc.
+    /// Position of a pixel in the disc.
     #[inline(always)]
     fn in_disc(&self, i: i32, j: i32) -> [f32; 2] {
         let (dx, dy) = (i as f32, j as f32);

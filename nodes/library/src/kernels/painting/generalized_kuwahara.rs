@@ -41,7 +41,7 @@ crate::kernel!(generalized_kuwahara {
 /// Blocks whose squares exceed this are transformed in double precision.
 const BRIGHT: f32 = 8.0;
 
-/// What the filter is asked for.
+/// Options of the filter.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Options {
     /// Radius r, pixels.

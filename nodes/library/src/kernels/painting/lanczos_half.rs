@@ -1,8 +1,8 @@
 //! One level of a colour pyramid up, ceil(n / 2) pixels on a side, by Lanczos resampling of three lobes
 //! (§ 5.5.1).
 //!
-//! Where asked for, values stay within those under the main lobe: the side lobes draw dark rings around highlights.
-//! Where coverage is partial their negative weights could outweigh the rest, and the mean of the four
+//! If asked for, values stay within those under the main lobe: the side lobes draw dark rings around highlights.
+//! If coverage is partial, their negative weights could outweigh the rest, and the mean of the four
 //! pixels below takes over. Rows are resampled first, each once.
 //!
 //! Cost: 36 multiply-adds and 60 operations on four channels per pixel of the coarser level. The shader takes

@@ -21,7 +21,7 @@ crate::kernel!(propagate_colour {
     },
 });
 
-/// How much of a level is kept.
+/// Options that say how much of a level is kept.
 #[derive(Clone, Copy, Debug)]
 pub struct Options {
     /// p_s p_d^k at this level.

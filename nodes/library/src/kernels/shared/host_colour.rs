@@ -23,7 +23,7 @@ pub fn plain<S: Simd>(pixels: [f32x8<S>; 4], premultiplied: u32) -> [f32x8<S>; 4
     unpremultiply([r, g, b, a])
 }
 
-/// What premultiplied colours have beyond alpha / (1 - alpha)^4: straight colours of 1 where coverage is 0, of 16 where
+/// Light of premultiplied colours beyond alpha / (1 - alpha)^4: straight colours of 1 where coverage is 0, of 16 where
 /// it is a half, and any where it is full are within it.
 ///
 /// The bound is wide enough for highlights along the edges of what is covered, and narrow enough that no glow
@@ -53,7 +53,7 @@ fn finite<S: Simd>(v: f32x8<S>) -> f32x8<S> {
     v.is_nan().select(f32x8::splat(v.simd, 0.0), v.at_most(largest).at_least(-largest))
 }
 
-/// Whether a premultiplied picture, four values a pixel, has light beyond its coverage ([`beyond_coverage`]).
+/// True where a premultiplied picture, four values a pixel, has light beyond its coverage ([`beyond_coverage`]).
 pub fn has_light(rgba: &[f32]) -> bool {
     dispatch!(Level::new(), simd => any_light(simd, rgba))
 }

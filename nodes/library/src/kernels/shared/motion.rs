@@ -15,13 +15,13 @@ pub const UNKNOWN: f32 = 1e9;
 /// Larger components are unknown ones.
 pub const KNOWN: f32 = 1e8;
 
-/// Where motions are known.
+/// Mask of motions that are known.
 #[inline(always)]
 pub fn is_known<S: Simd>([x, _]: [f32x8<S>; 2]) -> mask32x8<S> {
     x.abs().simd_lt(KNOWN)
 }
 
-/// Where positions lie inside a picture of `size` pixels.
+/// Mask of positions that lie inside a picture of `size` pixels.
 #[inline(always)]
 pub fn is_inside<S: Simd>(x: f32x8<S>, y: f32x8<S>, [width, height]: [i32; 2]) -> mask32x8<S> {
     // Distances to the borders, so that one comparison is enough.
@@ -229,7 +229,7 @@ fn taps2<S: Simd>(
 
 /// Eight positions that lie beside each other like the pixels of a row, away from the picture's edges.
 struct Run {
-    /// Where the first tap of the first position begins in the data.
+    /// Index at which the first tap of the first position begins in the data.
     at: usize,
     /// The shares of the next column and row.
     fx: f32,
@@ -259,14 +259,14 @@ impl Run {
     }
 }
 
-/// Whether eight pixels are neighbours in a row, in their order.
+/// True where eight pixels are neighbours in a row, in their order.
 #[inline(always)]
 fn are_neighbours<S: Simd>(simd: S, columns: i32x8<S>, rows: i32x8<S>) -> bool {
     let first = i32x8::from_slice(simd, &[0, 1, 2, 3, 4, 5, 6, 7]) + columns[0];
     ((columns - first) | (rows - rows[0])).simd_eq(0).all_true()
 }
 
-/// Whether all columns and rows lie between bounds, both included.
+/// True where all columns and rows lie between bounds, both included.
 #[inline(always)]
 fn all_between<S: Simd>([x, y]: [i32x8<S>; 2], [left, top]: [i32; 2], [right, bottom]: [i32; 2]) -> bool {
     // Small pictures have no such.

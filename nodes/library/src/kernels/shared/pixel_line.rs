@@ -23,7 +23,7 @@ const CORNER: f32 = 1e-4;
 /// Eight lines, each traced in one direction.
 #[derive(Clone, Copy)]
 pub struct PixelLine<S: Simd> {
-    /// Where the lines have come to, absolute: on the boundary of the pixel, or at its centre.
+    /// Positions that the lines have come to, absolute: on the boundary of the pixel, or at its centre.
     position: [f32x8<S>; 2],
     /// Corners nearest to the origin of the pixels that the lines run through next: whole numbers.
     pixel: [f32x8<S>; 2],

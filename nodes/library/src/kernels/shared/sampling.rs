@@ -169,7 +169,7 @@ struct LinearTaps {
     fy: [f32; 8],
 }
 
-/// What one axis of an image says about positions on it.
+/// Extent of one axis of an image, for positions on it.
 struct Axis {
     full: i32,
     start: i32,

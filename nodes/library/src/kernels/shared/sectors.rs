@@ -33,7 +33,7 @@ impl Polynomial {
 /// Discs below this radius hold their centre alone.
 pub const MIN_RADIUS: f32 = 0.25;
 
-/// What eight pixels found in one of their sectors.
+/// Statistics that eight pixels found in one of their sectors.
 #[derive(Clone, Copy, Debug)]
 pub struct Sector<S: Simd> {
     mean: [f32x8<S>; 3],
@@ -70,7 +70,7 @@ impl<S: Simd> Sector<S> {
     }
 }
 
-/// How sectors are weighed against each other.
+/// Response by which sectors are weighed against each other.
 #[derive(Clone, Copy, Debug)]
 pub struct Response {
     /// tau_s of (5.15).

@@ -30,14 +30,14 @@ crate::declare::choice::numbered! {
 }
 
 impl Integrator {
-    /// Whether a step depends on the field where it starts; the tangent at a line's beginning is known.
+    /// True where a step depends on the field where it starts; the tangent at a line's beginning is known.
     #[inline(always)]
     fn reads_start(self, begins: bool) -> bool {
         !begins && self != Self::TwoStep
     }
 }
 
-/// What [`few_steps`] may stretch the steps of lines by where somebody asks for it.
+/// Factor by which [`few_steps`] may stretch the steps of lines where somebody asks for it.
 pub const STRETCH: f32 = 2.5;
 
 /// Lines of no more steps to a side keep theirs.
@@ -150,9 +150,9 @@ impl<S: Simd> Field<S> for FieldView<'_> {
 /// Eight lines, each traced in one direction.
 #[derive(Clone, Copy)]
 pub struct Stream<S: Simd> {
-    /// Where the lines have come to, absolute.
+    /// Columns that the lines have come to, absolute.
     pub x: f32x8<S>,
-    /// Where the lines have come to, absolute.
+    /// Rows that the lines have come to, absolute.
     pub y: f32x8<S>,
     /// Unit vectors of the last step; the next one takes the sign that turns less.
     pub direction: [f32x8<S>; 2],

@@ -48,7 +48,7 @@ pub struct LineTaps {
 pub struct Lines<S: Simd> {
     /// Index of the first centre.
     start: i32,
-    /// What one pixel along the axis and one on the other add to it.
+    /// Step that one pixel along the axis adds to it; the next is that of one on the other.
     major: i32,
     minor: i32,
     /// Pixels on the other axis per pixel on this one, -1..=1.

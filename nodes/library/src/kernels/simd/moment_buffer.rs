@@ -10,7 +10,7 @@ use isophote_engine::{Band, View, memory};
 /// Channels of a row: a r, a g, a b, a (r^2 + g^2 + b^2), a.
 pub const CHANNELS: usize = 5;
 
-/// LineBuffer of a strip of columns, clamped to the picture's edge.
+/// Rows of a strip of columns, clamped to the picture's edge.
 #[derive(Debug, Default)]
 pub struct MomentBuffer {
     first: i32,
@@ -36,7 +36,7 @@ impl MomentBuffer {
         self.opaque.resize(self.count as usize, true);
     }
 
-    /// Where column `x` lies in a row.
+    /// Index of column `x` in a row.
     #[inline(always)]
     pub fn column(&self, x: i32) -> usize {
         (x - self.first) as usize

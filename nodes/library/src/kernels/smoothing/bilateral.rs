@@ -29,7 +29,7 @@ crate::kernel!(bilateral {
     },
 });
 
-/// Which neighbours a pass looks at.
+/// Neighbours that a pass looks at.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Window {
     /// All within the radius.
@@ -40,14 +40,14 @@ pub enum Window {
     Column,
 }
 
-/// What a pass is asked for.
+/// Options of a pass.
 #[derive(Clone, Copy, Debug)]
 pub struct Options {
     /// Standard deviation of the domain weight, pixels.
     pub sigma_d: f32,
     /// Standard deviation of the range weight, in the unit of the colour.
     pub sigma_r: f32,
-    /// Where the window ends, in standard deviations.
+    /// End of the window, in standard deviations.
     pub cutoff: f32,
 }
 

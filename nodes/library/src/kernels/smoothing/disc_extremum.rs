@@ -19,7 +19,7 @@ crate::kernel!(disc_extremum {
     tolerance: Tolerance { absolute: 0.0, relative: 0.0, outliers: 0.0, reason: "comparisons are exact" },
 });
 
-/// Which end of the range of values.
+/// End of the range of values.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Extremum {
     /// Dilation.
@@ -53,7 +53,7 @@ fn run(pass: &CpuPass<'_>, band: &mut Band<'_>) {
 struct Chord {
     /// Pixels on each side of the middle.
     half: usize,
-    /// Where these rows lie.
+    /// Places of these rows.
     rows: Vec<i32>,
 }
 

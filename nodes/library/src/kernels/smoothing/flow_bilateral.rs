@@ -50,18 +50,18 @@ crate::declare::choice::choice! {
     }
 }
 
-/// What a pass is asked for.
+/// Options of a pass.
 #[derive(Clone, Copy, Debug)]
 pub struct Options {
     /// Standard deviation along the line, pixels.
     pub sigma_d: f32,
     /// Standard deviation of the range, in the unit of the colour.
     pub sigma_r: f32,
-    /// How lines are stepped.
+    /// Integrator by which lines are stepped.
     pub integrator: Integrator,
-    /// Where range weights are applied.
+    /// Places where range weights are applied.
     pub sampling: Sampling,
-    /// Where lines are sampled.
+    /// Places where lines are sampled.
     pub placement: Placement,
 }
 
@@ -102,7 +102,7 @@ fn run(pass: &CpuPass<'_>, band: &mut Band<'_>) {
     }));
 }
 
-/// What all blocks of a band share.
+/// Values that all blocks of a band share.
 struct Filter<'a> {
     params: Params,
     origins: View<'a>,
@@ -113,7 +113,7 @@ struct Filter<'a> {
     opaque: bool,
 }
 
-/// What all samples of eight lines share.
+/// Values that all samples of eight lines share.
 #[derive(Clone, Copy)]
 struct Origin<S: Simd> {
     colour: [f32x8<S>; 4],
@@ -121,7 +121,7 @@ struct Origin<S: Simd> {
     range: f32,
 }
 
-/// Where eight lines are sampled.
+/// Places where eight lines are sampled.
 struct Tap<S: Simd> {
     x: f32x8<S>,
     y: f32x8<S>,
@@ -184,7 +184,7 @@ impl Filter<'_> {
         ]
     }
 
-    /// Where a step of eight lines is sampled: at its end, or at the last crossing it has made.
+    /// Place where a step of eight lines is sampled: at its end, or at the last crossing it has made.
     #[inline(always)]
     fn tap<S: Simd>(&self, point: &Point<S, [f32x8<S>; 2]>, at_crossings: bool) -> Tap<S> {
         let (line, mut sampled) = (&point.line, point.active);
@@ -252,7 +252,7 @@ fn weight<S: Simd>(colour: [f32x8<S>; 3], origin: &Origin<S>, domain: f32x8<S>) 
     (d2.mul_add(d2, d1.mul_add(d1, d0 * d0)) * origin.range + domain).exp2()
 }
 
-/// How far back lines last crossed the centre of a row or column (3.11).
+/// Distance back to where lines last crossed the centre of a row or column (3.11).
 #[inline(always)]
 fn distance_back<S: Simd>(line: &Stream<S>) -> f32x8<S> {
     let (x, near_x) = back_along(line.x, line.direction[0]);

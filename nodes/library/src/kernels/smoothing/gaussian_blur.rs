@@ -22,7 +22,7 @@ crate::kernel!(gaussian_blur {
     pair: is_window,
 });
 
-/// Whether two passes are the rows and the columns of a window.
+/// True where two passes are the rows and the columns of a window.
 fn is_window(rows: &[u8], columns: &[u8]) -> bool {
     let [rows, columns]: [Params; 2] = [rows, columns].map(bytemuck::pod_read_unaligned);
     (rows.axis, columns.axis) == ([1, 0], [0, 1])

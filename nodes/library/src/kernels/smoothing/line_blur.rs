@@ -59,7 +59,7 @@ fn run(pass: &CpuPass<'_>, band: &mut Band<'_>) {
     dispatch!(pass.level, simd => hatched(simd, pass, &params, band));
 }
 
-/// Where a sample lies from a pixel, the shares of the four pixels around it, and its weight.
+/// Offset of a sample from a pixel, the shares of the four pixels around it, and its weight.
 struct Sample {
     at: [i32; 2],
     shares: [f32; 4],

@@ -53,7 +53,7 @@ crate::declare::choice::choice! {
     }
 }
 
-/// What a convolution is asked for.
+/// Options of a convolution.
 #[derive(Clone, Copy, Debug)]
 pub struct Options {
     /// Standard deviation along the line, pixels.
@@ -62,11 +62,11 @@ pub struct Options {
     pub step: f32,
     /// Most by which steps may be stretched ([`few_steps`]), at least 1.
     pub stretch: f32,
-    /// How the lines are stepped.
+    /// Integrator by which the lines are stepped.
     pub integrator: Integrator,
     /// Takes the tensors of the nearest pixels instead of interpolating (§ 2.9.2).
     pub nearest: bool,
-    /// How the length is adapted.
+    /// Adaption of the length.
     pub adapt: Adapt,
     /// A side ends at a step that turns by more, degrees; 0 for never.
     pub max_angle: f32,
@@ -262,9 +262,9 @@ struct Arcs<S: Simd> {
     length: f32x8<S>,
     /// Cosine of the most that lines may turn in one of them.
     least_turn: f32x8<S>,
-    /// Whether the arc length runs faster where lines turn.
+    /// True where the arc length runs faster where lines turn.
     turns_count: bool,
-    /// How far each side has come.
+    /// Arc length that each side has come.
     u: [f32x8<S>; 2],
     /// Over equal steps the Gaussian is carried from one to the next: the weight of the next step, by how much
     /// that of the one after is less, and by how much that changes.

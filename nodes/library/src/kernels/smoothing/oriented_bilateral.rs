@@ -52,14 +52,14 @@ crate::declare::choice::choice! {
     }
 }
 
-/// What a pass is asked for.
+/// Options of a pass.
 #[derive(Clone, Copy, Debug)]
 pub struct Options {
     /// Standard deviation along the line, pixels.
     pub sigma_d: f32,
     /// Standard deviation of the range, in the unit of the colour.
     pub sigma_r: f32,
-    /// Where range weights are applied.
+    /// Places where range weights are applied.
     pub sampling: Sampling,
     /// Elongation per unit of anisotropy; 0 for none.
     pub elongation: f32,

@@ -36,7 +36,7 @@ crate::declare::choice::choice! {
     }
 }
 
-/// What a step is asked for.
+/// Options of a step.
 #[derive(Clone, Copy, Debug)]
 pub struct Options {
     /// Length of the step.

@@ -22,16 +22,16 @@ crate::kernel!(wobble {
     },
 });
 
-/// How outlines waver.
+/// Options by which outlines waver.
 #[derive(Clone, Copy, Debug)]
 pub struct Options {
-    /// How far, pixels of the picture that is rendered.
+    /// Distance, pixels of the picture that is rendered.
     pub amount: f32,
     /// Length of the waves, pixels of the full-size picture.
     pub wavelength: f32,
     /// Rendered size over full size.
     pub scale: f32,
-    /// Where the picture stands in the canonical one, pixels.
+    /// Position of the picture in the canonical one, pixels.
     pub origin: [f32; 2],
 }
 

@@ -60,14 +60,14 @@ pub enum Neighbours {
     Column,
 }
 
-/// What a pass is asked for.
+/// Options of a pass.
 #[derive(Clone, Copy, Debug)]
 pub struct Options {
     /// Neighbours lie nearer than this, pixels.
     pub radius: f32,
     /// Their spatial weight.
     pub window: Window,
-    /// Which neighbours.
+    /// Neighbours that count.
     pub neighbours: Neighbours,
     /// The last pass gives tensors with their validity.
     pub last: bool,
@@ -117,7 +117,7 @@ impl Params {
 struct Span {
     /// The row, from the centre's.
     dy: i32,
-    /// How far they lie to either side.
+    /// Number of them to either side.
     half: i32,
     /// Spatial weight of the row.
     weight: f32,

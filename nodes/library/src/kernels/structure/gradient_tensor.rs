@@ -41,7 +41,7 @@ crate::kernel!(gradient_tensor {
     },
 });
 
-/// How to take derivatives (§ 2.2).
+/// Operator that takes derivatives (§ 2.2).
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Derivative {
     /// Central differences (2.18).
@@ -113,7 +113,7 @@ fn tables(smoothing: &[f32], derivative: &[f32]) -> (u32, Table, Table) {
     (derivative.len() as u32 - 1, pack(smoothing), pack(derivative))
 }
 
-/// What the tensor is taken of, beside the operator.
+/// Measure that the tensor is taken of, beside the operator.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Measure {
     /// Factor on the colours: 1 for gamma-encoded RGB, 1/100 for CIELAB.

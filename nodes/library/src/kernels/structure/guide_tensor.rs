@@ -41,10 +41,10 @@ crate::declare::choice::numbered! {
     }
 }
 
-/// How a guide counts.
+/// Options by which a guide counts.
 #[derive(Clone, Copy, Debug)]
 pub struct Options {
-    /// What it holds.
+    /// Content of the image.
     pub kind: Guide,
     /// Factor on its tensor.
     pub weight: f32,

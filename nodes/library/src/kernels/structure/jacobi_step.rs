@@ -26,7 +26,7 @@ pub fn pass(plan: &mut PlanBuilder, tensor: ImageId) -> ImageId {
 
 /// Replaces tensors that are not valid (w = 0) by a membrane spanned over the valid ones (2.165): a
 /// pyramid of means up to one pixel, and down again with `steps` Jacobi steps on each level (§ 2.7.3).
-/// Where no tensor is valid the field is 0.
+/// If no tensor is valid, the field is 0.
 pub fn relax(plan: &mut PlanBuilder, tensor: ImageId, steps: i32) -> ImageId {
     if plan.level_size(plan.desc(tensor).level) == [1, 1] {
         return tensor;

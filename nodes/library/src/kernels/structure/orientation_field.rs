@@ -1,4 +1,4 @@
-//! What orientation needs of a tensor, (E - G, F) (2.82): both are linear, so that interpolation
+//! Orientation of a tensor, (E - G, F) (2.82): both are linear, so that interpolation
 //! commutes, and stream lines load half as much. Read as a tensor whose G is 0 it has the same
 //! eigenvectors.
 //!

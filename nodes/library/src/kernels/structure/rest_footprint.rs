@@ -1,5 +1,5 @@
-//! How much of an object a pixel covers: by how much the point of the undeformed object changes from pixel to pixel
-//! of the same surface. Marks on objects keep their size on screen by it.
+//! Footprint of a pixel on an object: the distance by which the point of the undeformed object changes from pixel to
+//! pixel of the same surface. Marks on objects keep their size on screen by it.
 //!
 //! Let J be the 3 x 2 matrix of the point's derivatives by pixels and a >= b its singular values, the square roots of
 //! the eigenvalues of the first fundamental form J^T J. A pixel covers a b of the surface, so that sqrt(a b) is the

@@ -32,7 +32,7 @@ crate::kernel!(solid_noise {
     },
 });
 
-/// What noise looks like on screen.
+/// Appearance of noise on screen.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Marks {
     /// Standard deviation of the Gaussian that noise of the screen is smoothed by to have marks of this size, pixels of
@@ -58,7 +58,7 @@ impl Marks {
     }
 }
 
-/// What the coarse octave's variance counts against the fine one's, the root of 1/2: lines along which marks are smoothed
+/// Weight of the coarse octave's variance against the fine one's, the root of 1/2: lines along which marks are smoothed
 /// keep more of it, in proportion to its width. Widths of marks then vary by a tenth at most, smoothed along lines or not.
 const COARSE: f32 = 0.7071;
 

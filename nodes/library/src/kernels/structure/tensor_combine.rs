@@ -14,7 +14,7 @@ use crate::kernels::simd::pixels::{for_blocks, write};
 use isophote_engine::fearless_simd::{Simd, dispatch, f32x8, i32x8, prelude::*};
 use isophote_engine::{Band, Class, CpuPass, ImageId, PlanBuilder, Support, Tolerance, View};
 
-/// Where both anisotropies together are not above this, the finer tensor stays.
+/// Sum of both anisotropies up to which the finer tensor stays.
 const LEAST: f32 = 1e-6;
 
 crate::kernel!(tensor_combine {

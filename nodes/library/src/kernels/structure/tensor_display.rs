@@ -60,10 +60,10 @@ crate::declare::choice::numbered! {
     }
 }
 
-/// What to show, and its numbers.
+/// Measure to show, and its numbers.
 #[derive(Clone, Copy, Debug)]
 pub struct Options {
-    /// What.
+    /// The measure.
     pub show: Show,
     /// k of the Harris measure (2.159).
     pub k: f32,
@@ -119,7 +119,7 @@ fn orientation<S: Simd>(simd: S, e: f32x8<S>, f: f32x8<S>, g: f32x8<S>) -> [f32x
 const HALF_GRADIENT: f32 = 0.1;
 const HALF_SQUARE: f32 = 0.0025;
 
-/// What is shown as a grey; of orientation, its anisotropy.
+/// Measure that is shown as a grey; of orientation, its anisotropy.
 #[inline(always)]
 fn measure<S: Simd>(simd: S, show: Show, params: &Params, t: [f32x8<S>; 3]) -> f32x8<S> {
     let c = |v: f32| f32x8::splat(simd, v);
@@ -151,7 +151,7 @@ fn half_at_square<S: Simd>(square: f32x8<S>) -> f32x8<S> {
     square / (square + HALF_SQUARE)
 }
 
-/// What measures of corners are made of.
+/// Parts that measures of corners are made of.
 struct Corner<S: Simd> {
     trace: f32x8<S>,
     lambda1: f32x8<S>,

@@ -1,4 +1,4 @@
-//! What a motion field makes of the other picture: the mean of a pixel's brightness and that of the place it moves
+//! Brightness of the other picture by a motion field: the mean of a pixel's brightness and that of the place it moves
 //! to, and their difference, that there less that here.
 //!
 //! Cost: a bilinear sample, about 20 operations.

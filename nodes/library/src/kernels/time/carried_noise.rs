@@ -27,7 +27,7 @@ crate::kernel!(carried_noise {
     },
 });
 
-/// How two layers make one noise.
+/// Two layers that make one noise.
 #[derive(Clone, Copy, Debug)]
 pub struct Layers {
     /// Share of the second layer, 0..=1.
@@ -54,7 +54,7 @@ pub fn pass(
     plan.pass_reaching(&KERNEL, &[common, first, second, chain], &params, &[Class::Colour], &supports, 0)
 }
 
-/// How far apart places are, in standard deviations of the smoothing of the noise, from which on the layers have nothing in
+/// Distance of places, in standard deviations of the smoothing of the noise, from which on the layers have nothing in
 /// common.
 const APART: f32 = 0.5;
 

@@ -1,7 +1,7 @@
-//! How much a neighbouring frame counts beside those before it, where its colour agrees: its share of the average so
+//! Weight of a neighbouring frame beside those before it, where its colour agrees: its share of the average so
 //! far, and the sum of all weights, that of the frame at hand being 1.
 //!
-//! Where the motion is unknown or leads out of the picture it counts for nothing.
+//! If the motion is unknown or leads out of the picture, it counts for nothing.
 //!
 //! Cost: a bilinear sample of four channels, an exponential and about 40 operations.
 
@@ -28,7 +28,7 @@ crate::kernel!(carried_share {
 /// A neighbouring frame on its way to the one at hand.
 #[derive(Clone, Copy, Debug)]
 pub struct Neighbour {
-    /// Where the points of the frame at hand are in it.
+    /// Motion to the points of the frame at hand in it.
     pub motion: ImageId,
     /// Longest of these motions, pixels.
     pub reach: u32,
@@ -38,7 +38,7 @@ pub struct Neighbour {
     pub sigma: f32,
     /// Units of colour that a difference of alpha of 1 counts as.
     pub alpha: f32,
-    /// How far the guides agree, where there are some.
+    /// Degree to which the guides agree, where there are some.
     pub weights: Option<ImageId>,
 }
 

@@ -1,4 +1,4 @@
-//! How far a guide of a neighbouring frame agrees with that of the frame at hand, 0..=1: depths up to a difference of a
+//! Agreement of a guide of a neighbouring frame with that of the frame at hand, 0..=1: depths up to a difference of a
 //! twentieth, none from a tenth on; object numbers where they are the same. What disagrees was hidden there.
 //!
 //! Cost: four taps of one channel and about 30 operations.
@@ -20,7 +20,7 @@ crate::kernel!(guide_agreement {
     },
 });
 
-/// What a guide holds.
+/// Content of a guide.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Guide {
     /// Distances from the camera.
@@ -29,7 +29,7 @@ pub enum Guide {
     ObjectId = 1,
 }
 
-/// Where the points of the frame at hand are in a neighbouring one.
+/// Way from the points of the frame at hand to a neighbouring one.
 #[derive(Clone, Copy, Debug)]
 pub struct Way {
     /// Two channels.

@@ -47,10 +47,10 @@ crate::kernel!(inverse_search {
     },
 });
 
-/// What a search is asked for.
+/// Options of a search.
 #[derive(Clone, Copy, Debug)]
 pub struct Options {
-    /// Where patches start.
+    /// Motions that patches start from.
     pub start: Start,
     /// Gauss-Newton steps.
     pub steps: u32,
@@ -58,7 +58,7 @@ pub struct Options {
     pub reach: u32,
 }
 
-/// Where patches start.
+/// Motions that patches start from.
 #[derive(Clone, Copy, Debug)]
 pub enum Start {
     /// At rest.
@@ -142,7 +142,7 @@ impl<S: Simd> Patch<S> {
         Self { corner, rows, gradients, mean, inverse: [xx, xy, yy].map(|v| v / determinant) }
     }
 
-    /// How well the patch fits the other picture at a motion.
+    /// Fit of the patch to the other picture at a motion.
     #[inline(always)]
     fn fit(&self, simd: S, view: &View<'_>, motion: [f32; 2]) -> Fit {
         let whole = motion.map(f32::floor);
@@ -174,7 +174,7 @@ impl<S: Simd> Patch<S> {
     }
 }
 
-/// What a motion makes of a patch.
+/// Fit of a patch at a motion.
 struct Fit {
     /// Sum of the squared differences, without that of their mean.
     error: f32,
@@ -230,7 +230,7 @@ impl<S: Simd> Search<'_, S> {
         result
     }
 
-    /// What the start says of patch (x, y), which may lie beyond the picture's edge.
+    /// Motion of the start at patch (x, y), which may lie beyond the picture's edge.
     #[inline(always)]
     fn started(&self, x: i32, y: i32) -> [f32; 2] {
         let (view, scale) = (self.start, self.params.scale);

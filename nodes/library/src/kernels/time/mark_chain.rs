@@ -31,9 +31,9 @@ pub struct Step {
     pub longest: f32,
     /// Farthest on each axis that marks are carried, pixels.
     pub farthest: f32,
-    /// How many steps came before.
+    /// Number of steps that came before.
     pub count: u32,
-    /// Which layers were anchored before the frame that this step leads from.
+    /// True for layers that were anchored before the frame that this step leads from.
     pub advance: [bool; 2],
 }
 

@@ -36,7 +36,7 @@ crate::kernel!(motion_refine {
     },
 });
 
-/// What a refinement starts from.
+/// Options of a refinement, and images that it starts from.
 #[derive(Clone, Copy, Debug)]
 pub struct Options {
     /// The motion that the other picture was warped by.
@@ -119,7 +119,7 @@ impl Around<'_> {
     }
 }
 
-/// What smoothness asks of eight pixels.
+/// Terms that smoothness adds at eight pixels.
 struct Smoothness<S: Simd> {
     /// Sum of the neighbours' weights.
     weight: f32x8<S>,

@@ -1,6 +1,6 @@
-//! How far motion to a neighbouring frame and from there back lead to where they started, 0..=1: up to a distance of a
-//! pixel, and none from 1.4 pixels on, more for long motions (Sundaram, Brox and Keutzer 2010, with 0.01 of the squared
-//! length). What does not come back was hidden in one of the frames.
+//! Agreement of where motion to a neighbouring frame and from there back leads with where it started, 0..=1: up to a
+//! distance of a pixel, and none from 1.4 pixels on, more for long motions (Sundaram, Brox and Keutzer 2010, with 0.01
+//! of the squared length). What does not come back was hidden in one of the frames.
 //!
 //! Cost: four taps of two channels and about 50 operations.
 

@@ -30,7 +30,7 @@ pub const TWO: usize = 2 * PLACES;
 /// Values of a copy of a four-channel image.
 pub const FOUR: usize = 4 * PLACES;
 
-/// Which part of a picture the copies around one tile hold.
+/// Part of a picture that the copies around one tile hold.
 #[derive(Clone, Copy, Debug)]
 pub struct Frame {
     /// The tile, absolute.

@@ -2,11 +2,11 @@
 //! lines where geometry breaks.
 
 use crate::declare::choice::choice;
+use crate::declare::ports;
+use crate::declare::spec::{NodeSpec, Param, STEADINESS, Scope, WINDOW};
 use crate::kernels::colour::lightness;
 use crate::kernels::lines::flow_dog_two_dimensional::Stepping;
 use crate::kernels::shared::stream::Integrator;
-use crate::declare::ports;
-use crate::declare::spec::{NodeSpec, Param, STEADINESS, Scope, WINDOW};
 use crate::stages::difference_of_gaussians as dog;
 use crate::stages::flow_dog::{DEPTH, FlowDog, Kernel, NORMAL, OBJECT_ID, SIGMA_M, guides, tensor};
 use crate::stages::steady::{Agreement, COLOUR_AGREEMENT, Steadied, compared, steadied};
@@ -61,7 +61,7 @@ const KERNEL: Param = Param::choice("kernel", "Kernel", Kernel::Separable.select
 );
 
 choice! {
-    /// How stream lines are stepped.
+    /// Method by which stream lines are stepped.
     enum Tracing {
         /// Euler's method (2.176).
         Euler ("euler", "Euler"),

@@ -1,9 +1,9 @@
 //! The generalized Kuwahara filter of Papari et al. (§ 5.3).
 
 use crate::declare::choice::choice;
-use crate::kernels::painting::generalized_kuwahara::{self, Options};
 use crate::declare::ports;
 use crate::declare::spec::{NodeSpec, Param, Scope};
+use crate::kernels::painting::generalized_kuwahara::{self, Options};
 use crate::stages::generalized_kuwahara::{Q, SECTORS, THRESHOLD, sectors};
 use isophote_engine::ImageId;
 
@@ -36,7 +36,7 @@ pub static NODE: NodeSpec = NodeSpec {
 };
 
 choice! {
-    /// How the CPU sums up the sectors.
+    /// Method by which the CPU sums up the sectors.
     enum Method {
         /// Pixel by pixel.
         Spatial ("spatial", "Spatial"),

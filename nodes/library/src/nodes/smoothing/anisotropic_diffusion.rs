@@ -2,12 +2,12 @@
 //! coherence-enhancing schemes.
 
 use crate::declare::choice::choice;
+use crate::declare::ports;
+use crate::declare::spec::{NodeSpec, Param, Scope};
 use crate::kernels::smoothing::diffusion_tensor::{self, Scheme};
 use crate::kernels::smoothing::perona_malik::{self, Diffusivity, Options};
 use crate::kernels::smoothing::{diffusion_step, gaussian_blur};
 use crate::kernels::structure::gradient_tensor::{self, Derivative, Measure};
-use crate::declare::ports;
-use crate::declare::spec::{NodeSpec, Param, Scope};
 use isophote_engine::{Class, ImageId, PlanBuilder};
 
 /// The node.
@@ -52,7 +52,7 @@ pub static NODE: NodeSpec = NodeSpec {
 };
 
 choice! {
-    /// What stops or guides the diffusion.
+    /// Measure that stops or guides the diffusion.
     enum Diffusion {
         /// A diffusivity that falls with the difference between neighbours (3.2, 3.3).
         PeronaMalik ("perona_malik", "Perona-Malik"),

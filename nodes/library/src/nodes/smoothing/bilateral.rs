@@ -1,10 +1,10 @@
 //! The bilateral filter (§ 3.2) and its xy-separable form (§ 3.3).
 
 use crate::declare::choice::choice;
-use crate::kernels::colour::{lab_to_rgb, rgb_to_lab};
-use crate::kernels::smoothing::bilateral::Options;
 use crate::declare::ports;
 use crate::declare::spec::{NodeSpec, Param, Scope};
+use crate::kernels::colour::{lab_to_rgb, rgb_to_lab};
+use crate::kernels::smoothing::bilateral::Options;
 use crate::stages::bilateral::{CUTOFF, Kernel, Passes, iteration};
 use isophote_engine::ImageId;
 
@@ -45,7 +45,7 @@ pub static NODE: NodeSpec = NodeSpec {
 };
 
 choice! {
-    /// Where differences of colour are measured.
+    /// Space in which differences of colour are measured.
     enum Space {
         /// CIELAB, L in 0..100.
         Lab ("lab", "CIELAB"),

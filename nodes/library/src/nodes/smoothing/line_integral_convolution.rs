@@ -2,13 +2,14 @@
 //! makes edges more coherent and gives pictures the look of brush strokes.
 
 use crate::declare::choice::choice;
+use crate::declare::ports;
+use crate::declare::spec::{NodeSpec, Param, Scope};
 use crate::kernels::shared::stream::Integrator;
 use crate::kernels::smoothing::cabral_leedom;
 use crate::kernels::smoothing::line_integral_convolution::{self, Options};
-use crate::declare::ports;
-use crate::declare::spec::{NodeSpec, Param, Scope};
-use crate::stages::line_integral_convolution::{ADAPT, MAX_ANGLE, SIGMA, STEP};
 pub use crate::stages::line_integral_convolution::options;
+use crate::stages::line_integral_convolution::{ADAPT, MAX_ANGLE, SIGMA, STEP};
+use crate::stages::line_integral_convolution::{ADAPT, MAX_ANGLE, SIGMA, STEP};
 use crate::stages::structure_tensor;
 use isophote_engine::ImageId;
 
@@ -39,7 +40,7 @@ const SAMPLING: Param = Param::choice("sampling", "Sampling", Sampling::Linear.s
 );
 
 choice! {
-    /// What a line follows between pixels.
+    /// Tensor that a line follows between pixels.
     enum Sampling {
         /// The interpolated tensor.
         Linear ("linear", "Linear"),
@@ -49,7 +50,7 @@ choice! {
 }
 
 choice! {
-    /// How stream lines are stepped.
+    /// Method by which stream lines are stepped.
     enum Stepping {
         /// Euler's method (2.177).
         Euler ("euler", "Euler"),

@@ -59,7 +59,7 @@ pub static NODE: NodeSpec = NodeSpec {
 const SPREAD: f32 = 0.22;
 
 choice! {
-    /// What to show.
+    /// Measure to show.
     enum View {
         /// Noise along the stream lines (2.186).
         StreamLines ("lic", "Line integral convolution"),

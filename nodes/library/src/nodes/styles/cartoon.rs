@@ -1,18 +1,18 @@
 //! The enhanced cartoon filter (§ 4.6, Fig. 4.7).
 
 use crate::declare::choice::choice;
+use crate::declare::ports;
+use crate::declare::spec::{NodeSpec, Param, STEADINESS, Scope, WINDOW};
+use crate::declare::value::Value;
 use crate::kernels::colour::composite_lines::{self, Params as Composite};
 use crate::kernels::colour::{lab_to_rgb, lightness, rgb_to_lab};
 use crate::kernels::smoothing::line_integral_convolution::{self, Options as Lic};
-use crate::declare::ports;
-use crate::declare::spec::{NodeSpec, Param, STEADINESS, Scope, WINDOW};
 use crate::stages::abstraction::{self, Abstraction};
 use crate::stages::steady::{Agreement, COLOUR_AGREEMENT, Steadied, steadied};
 use crate::stages::{
     ADVANCED, LOOK, difference_of_gaussians as dog, flow_dog, flow_map, line_integral_convolution as lic,
     lines, quantization as levels, quantize_luminance as quantization, tone, warp_sharpen,
 };
-use crate::declare::value::Value;
 use isophote_engine::ImageId;
 
 /// The node.
@@ -103,7 +103,7 @@ const WARP: Param = Param::float("warp", "Warp", 0.0, [0.0, 20.0])
     .doc("How far the colours beside sharp edges are pulled towards them before lines are drawn, which narrows blurred edges (phi_w of `warp_sharpen`); 0 for not at all.");
 
 choice! {
-    /// How lines are found.
+    /// Filter by which lines are found.
     enum LineFilter {
         /// Across and along the local orientation (4.5).
         Flow ("flow", "Flow-based"),

@@ -2,11 +2,13 @@
 
 mod preset;
 
+use self::preset::{GRAIN, Look, Preset, Style, TONE};
 use crate::declare::ports;
-use crate::kernels::colour::{lab_to_rgb, lightness, rgb_to_lab};
+use crate::declare::spec::{HOLD, NodeSpec, Param, RENEWAL, STEADINESS, Scope, WINDOW};
 use crate::kernels::colour::composite_lines::{self, Params as Composite};
 use crate::kernels::colour::ink_sheet::{self, Drawing, Sheet};
 use crate::kernels::colour::tone_marks::{self, HATCHING, Inputs, Tones};
+use crate::kernels::colour::{lab_to_rgb, lightness, rgb_to_lab};
 use crate::kernels::lines::flow_dog_two_dimensional::Stepping;
 use crate::kernels::shared::edge_threshold::{Threshold, Xdog};
 use crate::kernels::shared::stream::Integrator;
@@ -14,15 +16,16 @@ use crate::kernels::smoothing::line_integral_convolution::{self, Options as Lic}
 use crate::kernels::structure::contrast;
 use crate::kernels::structure::solid_noise::Marks;
 use crate::kernels::structure::tensor_display::least_significant;
-use crate::declare::spec::{HOLD, NodeSpec, Param, RENEWAL, STEADINESS, Scope, WINDOW};
-use crate::stages::{ADVANCED, LOOK, difference_of_gaussians as dog, flow_map, line_integral_convolution as lic, lines, marks, tone};
 use crate::stages::abstraction::{self, Abstraction};
 use crate::stages::flow_dog::{self, FlowDog, Kernel};
 use crate::stages::steady::{Agreement, COLOUR_AGREEMENT, Steadied, steadied};
 use crate::stages::structure_tensor::of_color_and_guides;
 use crate::stages::tensor_options::TensorOptions;
+use crate::stages::{
+    ADVANCED, LOOK, difference_of_gaussians as dog, flow_map, line_integral_convolution as lic, lines, marks,
+    tone,
+};
 use isophote_engine::{ImageId, math};
-use self::preset::{GRAIN, Look, Preset, Style, TONE};
 
 /// The node.
 pub static NODE: NodeSpec = NodeSpec {
@@ -102,7 +105,8 @@ const fn shift(id: &'static str, label: &'static str, most: f32, doc: &'static s
     Param::float(id, label, 0.0, [-most, most]).group(ADVANCED).doc(doc)
 }
 
-/// How much more guides count than where lightness is inhibited: here it counts in full, and light grounds are far from ink.
+/// Factor by which guides count more than where lightness is inhibited: here it counts in full, and light grounds are
+/// far from ink.
 const GUIDES: f32 = 1.7;
 
 /// Anisotropy that noise exceeds in one of ten thousand places, in windows of standard deviation `rho` pixels (2.154, 2.158).

@@ -1,9 +1,9 @@
 //! Motion that is estimated from pictures, where nobody knows it.
 
 use crate::declare::choice::choice;
-use crate::kernels::time::motion_import;
 use crate::declare::ports;
 use crate::declare::spec::{ImageKind, NodeSpec, Param, Port, Scope};
+use crate::kernels::time::motion_import;
 use crate::stages::optical_flow::{Quality, estimate};
 use isophote_engine::ImageId;
 
@@ -34,7 +34,7 @@ pub static NODE: NodeSpec = NodeSpec {
 };
 
 choice! {
-    /// Which frame the motion leads to.
+    /// Frame that the motion leads to.
     enum Direction {
         /// The frame before.
         Backward ("backward", "Backward"),

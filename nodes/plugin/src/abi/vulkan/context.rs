@@ -1,4 +1,4 @@
-//! What effects on one device of a host's share: compiled shaders, and objects that wait to be destroyed.
+//! Context that effects on one device of a host's share: compiled shaders, and objects that wait to be destroyed.
 
 use super::device::Device;
 use super::objects::Kernel;

@@ -10,7 +10,7 @@ use std::collections::BTreeSet;
 use std::ffi::{CStr, CString, c_char, c_void};
 use std::ptr::null;
 
-/// What every device needs, as bits and as hosts know them.
+/// Features that every device needs, as bits and as hosts know them.
 const FEATURES: [(u32, &str); 2] = [
     (ISOPHOTE_VULKAN_STORAGE_IMAGE_EXTENDED_FORMATS, "shaderStorageImageExtendedFormats"),
     (ISOPHOTE_VULKAN_TIMELINE_SEMAPHORE, "timelineSemaphore"),
@@ -75,7 +75,7 @@ const FUNCTIONS: [&CStr; 44] = [
     c"vkUpdateDescriptorSets",
 ];
 
-/// What a device that is used with `api_version` must be created with.
+/// Needs of a device that is used with `api_version`, for its creation.
 ///
 /// # Errors
 /// Unsupported before Vulkan 1.1.
@@ -105,7 +105,7 @@ pub const fn format_of(format: Format) -> vk::Format {
     }
 }
 
-/// What an answer of Vulkan other than success comes to.
+/// Failure that a result of Vulkan other than success comes to.
 pub fn refused(answer: vk::Result, what: &str) -> Failure {
     match answer {
         vk::Result::ERROR_OUT_OF_HOST_MEMORY
@@ -310,7 +310,7 @@ impl Device {
         self.properties.device_type == vk::PhysicalDeviceType::CPU
     }
 
-    /// What images of a format can be used for.
+    /// Features that images of a format can be used for.
     pub fn format_features(&self, format: vk::Format) -> vk::FormatFeatureFlags {
         // SAFETY: the host keeps the instance as long as the object that this belongs to.
         unsafe { self.instance.get_physical_device_format_properties(self.physical, format) }
@@ -335,7 +335,7 @@ impl Device {
         ))
     }
 
-    /// Whether results can be blitted to images of a format.
+    /// True where results can be blitted to images of a format.
     pub fn can_blit(&self, from: vk::Format, to: vk::Format) -> bool {
         self.has_graphics
             && self.format_features(from).contains(vk::FormatFeatureFlags::BLIT_SRC)

@@ -124,7 +124,7 @@ impl Effect {
         Recorder { device: &self.context.device, commands }.record(&self.passes, ports, bindings);
     }
 
-    /// What the timeline has reached, which is less than `value`.
+    /// Value that the timeline has reached, which is less than `value`.
     fn reached_before(&self, value: u64) -> Outcome<u64> {
         let reached = self.context.advance()?;
         if value > reached {

@@ -15,7 +15,7 @@ const OUTPUT: &str = "output";
 /// More images than a graph has inputs and outputs.
 const MOST: u32 = 16;
 
-/// What the samples of a format are.
+/// Type of the samples of a format.
 #[derive(Clone, Copy, PartialEq, Eq)]
 enum Samples {
     Unsigned,
@@ -34,7 +34,7 @@ pub struct Given {
     pub view: vk::ImageView,
     /// Format of the view.
     pub format: vk::Format,
-    /// What the image was created for.
+    /// Usage that the image was created for.
     pub usage: vk::ImageUsageFlags,
     /// Texels of the view.
     pub size: [u32; 2],
@@ -47,7 +47,7 @@ pub struct Given {
 }
 
 impl Given {
-    /// What messages call it.
+    /// Name of it in messages.
     pub fn name(&self) -> &'static str {
         self.input.map_or(OUTPUT, GraphInput::id)
     }
@@ -138,7 +138,7 @@ impl Given {
         Ok(())
     }
 
-    /// Whether the last kernel can write it, whose results have the format `result`.
+    /// True where the last kernel can write it, whose results have the format `result`.
     pub fn is_written_directly(&self, result: vk::Format) -> bool {
         let needed = vk::ImageUsageFlags::STORAGE | vk::ImageUsageFlags::SAMPLED;
         self.format == result && self.usage.contains(needed) && !self.view.is_null()

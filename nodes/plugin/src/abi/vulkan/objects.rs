@@ -142,7 +142,7 @@ pub struct Kernel {
     pub layout: vk::PipelineLayout,
     /// The pipeline.
     pub pipeline: vk::Pipeline,
-    /// What it interpolates by, if it does; a part of the layout.
+    /// Sampler that it interpolates by, if it does; a part of the layout.
     sampler: vk::Sampler,
 }
 

@@ -21,11 +21,11 @@ pub struct Slot {
 
 /// One dispatch.
 pub struct Pass {
-    /// What it runs.
+    /// Kernel that it runs.
     pub kernel: Arc<Kernel>,
     /// Workgroups in x, y and z.
     pub workgroups: [u32; 3],
-    /// Whether it must wait for passes before it.
+    /// True where it must wait for passes before it.
     pub waits: bool,
     inputs: Vec<u32>,
     outputs: Vec<u32>,
@@ -34,7 +34,7 @@ pub struct Pass {
     params_size: u64,
 }
 
-/// What lies at the bindings of all passes, for one recording at a time.
+/// Bindings of all passes, for one recording at a time.
 struct Bindings {
     device: Arc<Device>,
     pool: vk::DescriptorPool,
@@ -63,7 +63,7 @@ pub struct Port {
     pub size: [u32; 2],
     /// Index of the program's image.
     slot: usize,
-    /// What the passes read or write.
+    /// View that the passes read or write.
     view: vk::ImageView,
 }
 
@@ -311,7 +311,7 @@ impl Passes {
 }
 
 impl Slot {
-    /// How a host's output is used, its view or one of the library's own, and what to blit from.
+    /// Use of a host's output, its view or one of the library's own, and the image to blit from.
     fn output(
         &mut self,
         device: &Arc<Device>,

@@ -52,7 +52,7 @@ pub fn response<S: Simd, const OPAQUE: bool>(
     sum * step / (2.506_628_3 * variance * sigma)
 }
 
-/// What the taps of eight pixels are.
+/// Taps of eight pixels.
 struct Taps<'a, S: Simd> {
     lumas: &'a LumaTaps,
     line: &'a Line<S>,

@@ -25,7 +25,7 @@ pub struct LumaTaps {
     rows: usize,
     radius: i32,
     opaque: bool,
-    /// Where coverage begins, laid out as luma is, where not all is opaque.
+    /// Index at which coverage begins, laid out as luma is, where not all is opaque.
     coverage: usize,
     data: Vec<f32>,
     scratch: Vec<f32>,
@@ -48,7 +48,7 @@ pub struct Line<S: Simd> {
     pub major_share: f32x8<S>,
     /// Index of the first centre, row by row.
     start: i32,
-    /// What one pixel along the nearer axis and one on the other add to it, where the lines share them.
+    /// Steps that one pixel along the nearer axis and one on the other add to it, where the lines share them.
     steps: [i32; 2],
     /// Least and greatest slope.
     slopes: [f32; 2],
@@ -63,8 +63,8 @@ pub struct Line<S: Simd> {
 pub const MOST_ROWS: usize = 3;
 
 impl<S: Simd> Line<S> {
-    /// How taps are best read: what [`LumaTaps::pair`] wants to know beforehand. To find it out at every tap
-    /// would be a branch that nothing predicts.
+    /// Number of rows in which taps are best read: [`LumaTaps::pair`] wants to know it beforehand. To find it out at
+    /// every tap would be a branch that nothing predicts.
     #[inline(always)]
     pub fn rows(&self) -> usize {
         self.rows
@@ -238,7 +238,7 @@ impl LumaTaps {
         pair::<_, ROWS>(simd, &self.data[self.coverage..], line, along, across, offset)
     }
 
-    /// What [`LumaTaps::pair`] gives with no offset, plus the pixels opposite to them, `along` > 0 steps
+    /// Pairs of [`LumaTaps::pair`] with no offset, plus the pixels opposite to them, `along` > 0 steps
     /// back.
     #[inline(always)]
     pub fn opposite_pairs<S: Simd, const ROWS: usize>(

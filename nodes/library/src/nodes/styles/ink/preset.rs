@@ -6,7 +6,7 @@ use crate::stages::LOOK;
 use crate::stages::lines::{self, length_factor, width_factor};
 
 choice! {
-    /// What is drawn with.
+    /// Tool that is drawn with.
     pub enum Style {
         /// Thin grey lines, tones hatched in two directions, a fine grain.
         Pencil ("pencil", "Pencil"),
@@ -34,11 +34,11 @@ impl Style {
     }
 }
 
-/// How much is dark.
+/// Amount of the drawing that is dark.
 pub const TONE: Param = Param::float("tone", "Tone", 0.5, [0.0, 1.0])
     .group(LOOK)
     .doc("How much is dark: 0 leaves lines alone, 1 fills what is not bright; shifts epsilon and scales the shading from 0 to 4 times.");
-/// How much the paper shows.
+/// Amount of the paper that shows.
 pub const GRAIN: Param = Param::float("grain", "Grain", 0.5, [0.0, 1.0])
     .group(LOOK)
     .doc("How much the paper shows in lines and tones, from not at all to twice the style's own.");
@@ -62,21 +62,21 @@ pub struct Preset {
     pub ease: f32,
     /// Share of the tones that is rubbed in.
     pub rubbed: f32,
-    /// How much of the hatching follows the form.
+    /// Share of the hatching that follows the form.
     pub form: f32,
     /// Distance of hatches.
     pub spacing: f32,
     /// Width and length of strokes along the form.
     pub stroke: [f32; 2],
-    /// How much of the grain follows them instead of the paper.
+    /// Share of the grain that follows them instead of the paper.
     pub follow: f32,
     /// Iterations of the bilateral filter beside `n_e`.
     pub flattening: i32,
     pub grain: f32,
     pub grain_size: f32,
-    /// How far lines break on the grain.
+    /// Degree to which lines break on the grain.
     pub dryness: f32,
-    /// How much of the picture's own colours shows.
+    /// Share of the picture's own colours that shows.
     pub colour: f32,
     /// Opacity of what is drawn with.
     pub opacity: f32,

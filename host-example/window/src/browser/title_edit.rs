@@ -4,16 +4,15 @@ use std::path::{Path, PathBuf};
 
 use isophote_files::error::{Error, Result};
 use isophote_files::files::{self, Existing};
-use isophote_finishing::stylize::preset::{self, Preset};
+use isophote_finishing::stylize::preset::{self, Preset, Title, is_line};
 use isophote_finishing::stylize::source;
-use isophote_finishing::stylize::title::{Title, is_line};
 
-/// What is typed.
+/// Words that are typed.
 #[derive(Clone, Debug, Default, PartialEq, Eq)]
 pub struct Words {
     /// The name.
     pub name: String,
-    /// What it looks like.
+    /// Description of the look.
     pub about: String,
     /// Tags with commas between them.
     pub tags: String,
@@ -21,10 +20,10 @@ pub struct Words {
 
 /// A title that is being changed.
 #[derive(Clone, Debug, PartialEq, Eq)]
-pub struct Titling {
+pub struct TitleEdit {
     /// The file.
     pub file: PathBuf,
-    /// What is typed.
+    /// Words that are typed.
     pub words: Words,
 }
 
@@ -58,8 +57,8 @@ pub fn write(file: &Path, title: &Title) -> Result<()> {
     if preset::is_graph(&text) {
         return Err(Error::file(file, "is a graph, which has no name or tags", "save it as a look first"));
     }
-    let preset = Preset { title: title.clone(), ..Preset::parse(file, &text)? };
-    let text = preset.to_json();
+    let preset = Preset { title: title.clone(), ..preset::parse(file, &text)? };
+    let text = preset::text(&preset)?;
     files::write_bytes(file, Existing::Replace, text.as_bytes())
 }
 
@@ -87,10 +86,10 @@ mod tests {
             r#"{"style": "ink", "lengths": "pixels", "parameters": {"tone": {"1": 0.2, "9": 1}}}"#,
         )
         .unwrap();
-        let before = Preset::parse(&file, &std::fs::read_to_string(&file).unwrap()).unwrap();
+        let before = preset::parse(&file, &std::fs::read_to_string(&file).unwrap()).unwrap();
         let title = Title { name: Some("Dusk".into()), about: None, tags: vec!["soft".into()] };
         write(&file, &title).unwrap();
-        let after = Preset::parse(&file, &std::fs::read_to_string(&file).unwrap()).unwrap();
+        let after = preset::parse(&file, &std::fs::read_to_string(&file).unwrap()).unwrap();
         assert_eq!(after, Preset { title, ..before });
         for (text, words) in
             [("{", "is no JSON"), (r#"{"nodes": []}"#, "is a graph"), (r#"{"sytle": "ink"}"#, "sytle")]

@@ -15,10 +15,10 @@ const MOST: u32 = 8192;
 
 /// Pictures that are shown.
 #[derive(Debug)]
-pub struct Reel {
+pub struct Playback {
     /// The document.
     pub document: Document,
-    /// Whether time passes.
+    /// True while time passes.
     pub playing: bool,
     /// Frames per second.
     pub rate: f64,
@@ -30,11 +30,11 @@ pub struct Reel {
     ticked: Instant,
 }
 
-impl Reel {
+impl Playback {
     /// The frames of a document, at the first. Waits for it; not for the window's thread.
     ///
     /// # Errors
-    /// Why it cannot be shown.
+    /// The reason why it cannot be shown.
     pub fn new(document: Document) -> Result<Self> {
         let frames = document.frames();
         let number = frames.as_ref().map_or(1, Frames::first);
@@ -70,7 +70,7 @@ impl Reel {
         self.document.frames()
     }
 
-    /// Whether the frame that is wanted is shown.
+    /// True where the frame that is wanted is not yet shown.
     pub fn is_waiting(&self) -> bool {
         self.frames().is_some()
             && self.frame.as_ref().and_then(|frame| frame.number).is_some_and(|shown| shown != self.number)
@@ -103,7 +103,7 @@ impl Reel {
     /// Lets time pass, and takes the frame that is wanted when it has been read.
     ///
     /// # Errors
-    /// Why the frame cannot be shown; the one before stays.
+    /// The reason why the frame cannot be shown; the one before stays.
     pub fn advance(&mut self) -> Result<()> {
         if self.frames().is_none() {
             return Ok(());
@@ -127,7 +127,7 @@ impl Reel {
     }
 }
 
-impl Reel {
+impl Playback {
     /// The file, or the pattern of the files.
     pub fn path(&self) -> PathBuf {
         self.document.path().to_owned()

@@ -2,8 +2,6 @@
 
 use std::sync::{Arc, Mutex, OnceLock, PoisonError};
 
-use isophote_loader::abi;
-
 use super::memory::Share;
 use isophote_pictures::convert;
 use isophote_pictures::exr::{ExrFile, Picture};
@@ -13,12 +11,12 @@ use isophote_pictures::read::Source;
 
 /// A frame that was read.
 #[derive(Debug)]
-pub struct Held<'a> {
+pub struct CachedFrame<'a> {
     /// Its number in a sequence.
     pub number: Option<i64>,
-    /// What was read, without what is only written.
+    /// Source that was read, without what is only written.
     pub source: Source,
-    /// What else is in an EXR file, until the frame is written.
+    /// The other content of an EXR file, until the frame is written.
     exr: Mutex<Option<ExrFile>>,
     /// The pictures in their working space, where that is another.
     changed: Vec<OnceLock<(Pixels, u64)>>,
@@ -26,7 +24,7 @@ pub struct Held<'a> {
     _share: Share<'a>,
 }
 
-impl<'a> Held<'a> {
+impl<'a> CachedFrame<'a> {
     /// A frame that was read; `is_written` says whether its file is needed for a result.
     pub fn new(number: Option<i64>, mut source: Source, is_written: bool, share: Share<'a>) -> Self {
         let exr = source.exr.take().filter(|_| is_written);
@@ -53,13 +51,14 @@ impl<'a> Held<'a> {
 #[derive(Clone, Debug)]
 pub struct Window<'a> {
     /// The frame itself.
-    pub own: Arc<Held<'a>>,
+    pub own: Arc<CachedFrame<'a>>,
     /// It and its neighbours, in any order.
-    pub frames: Vec<Arc<Held<'a>>>,
+    pub frames: Vec<Arc<CachedFrame<'a>>>,
 }
 
 impl Window<'_> {
-    /// What an input of picture `at` shows in a frame, if that is like the frame itself; `change` leads to the working space.
+    /// Image for an input of picture `at` in a frame, if that is like the frame itself; `change` leads to the working
+    /// space.
     pub fn image(&self, at: usize, input: &str, frame: i64, change: Option<&Change>) -> Option<&Pixels> {
         let (held, picture) = self.alike(at, frame)?;
         match input {
@@ -74,26 +73,12 @@ impl Window<'_> {
     }
 
     /// Picture `at` in a frame, if that is like the frame itself.
-    fn alike(&self, at: usize, frame: i64) -> Option<(&Held<'_>, &Picture)> {
+    fn alike(&self, at: usize, frame: i64) -> Option<(&CachedFrame<'_>, &Picture)> {
         let held = self.frames.iter().find(|held| held.number.unwrap_or_default() == frame)?;
         let (own, other): (&Picture, &Picture) =
             (self.own.source.pictures.get(at)?, held.source.pictures.get(at)?);
         let size = |picture: &Picture| (picture.pixels.width(), picture.pixels.height());
         let is_alike = size(own) == size(other) && self.own.source.state == held.source.state;
         is_alike.then_some((held, other))
-    }
-}
-
-/// The bit of a guide in a request.
-pub fn guide_bit(input: &str) -> u32 {
-    match input {
-        "normal" => abi::ISOPHOTE_GUIDE_NORMAL,
-        "depth" => abi::ISOPHOTE_GUIDE_DEPTH,
-        "object_id" => abi::ISOPHOTE_GUIDE_OBJECT_ID,
-        "mask" => abi::ISOPHOTE_GUIDE_MASK,
-        "motion" => abi::ISOPHOTE_GUIDE_MOTION,
-        "motion_forward" => abi::ISOPHOTE_GUIDE_MOTION_FORWARD,
-        "rest_position" => abi::ISOPHOTE_GUIDE_REST_POSITION,
-        _ => 0,
     }
 }

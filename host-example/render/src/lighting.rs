@@ -7,9 +7,9 @@ use isophote_scene::environment::Environment;
 use isophote_scene::pose::Pose;
 use isophote_scene::{LightKind, Scene};
 
-/// How a scene is lit and exposed. Light is given by what a white surface that faces it reflects.
+/// Light and exposure of a scene. Light is given by what a white surface that faces it reflects.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Look {
+pub struct Lighting {
     /// Factor on the radiance before tone mapping.
     pub exposure: f32,
     /// Unit vector towards the sun.
@@ -39,7 +39,7 @@ const KEY_COLOR: Vec3 = Vec3::new(1.02, 0.97, 0.90);
 /// The light of the sky beside it: what the sun does not reach is to be shade.
 const KEY_FILL: f32 = 0.55;
 
-impl Default for Look {
+impl Default for Lighting {
     /// The default sun, seen by the default camera, under a bright sky.
     fn default() -> Self {
         let azimuth = Direction::default().azimuth + KEY.azimuth;
@@ -65,8 +65,8 @@ const MOST_LIGHT: f32 = 1.2;
 /// The light of the sky beside that of the file.
 const SKY_FILL: f32 = 0.65;
 
-impl Look {
-    /// The default look, or, where the file has lights, those: its first directional light is the sun, and
+impl Lighting {
+    /// The default lighting, or, where the file has lights, those: its first directional light is the sun, and
     /// the sky only fills. Files count in lux and candela of any magnitude, so that together they are scaled
     /// to a picture that is neither dark nor burnt out. `light` says where the sun is instead. It and the default
     /// sun are placed as seen from the camera at `view`, and stay there when it moves. `environment` takes the place
@@ -80,31 +80,31 @@ impl Look {
     ) -> Self {
         let own = Self::of_file(scene, pose);
         let key = own.is_none().then_some(KEY);
-        let mut look = own.unwrap_or_default();
+        let mut lighting = own.unwrap_or_default();
         let sun = environment.and_then(|e| e.sun).filter(|_| light.is_none() && key.is_some());
         if let Some(sun) = sun {
-            look.sun_direction = sun;
+            lighting.sun_direction = sun;
         } else if let Some(light) = light.or(key) {
             let azimuth = view.azimuth() + light.azimuth;
-            look.sun_direction = Direction { azimuth, ..light }.vector();
-            look.sun_color.get_or_insert(KEY_COLOR);
+            lighting.sun_direction = Direction { azimuth, ..light }.vector();
+            lighting.sun_color.get_or_insert(KEY_COLOR);
         }
         if let Some(Environment { irradiance, zenith, horizon, ground, .. }) = environment {
-            look = Self {
+            lighting = Self {
                 irradiance: Some(*irradiance),
                 zenith: *zenith,
                 horizon: *horizon,
                 ground: *ground,
                 sky_scale: 1.0,
-                ..look
+                ..lighting
             };
         }
-        look
+        lighting
     }
 
     /// The lights of the file, if they shine.
     fn of_file(scene: &Scene, pose: &Pose) -> Option<Self> {
-        let mut look = Self::default();
+        let mut lighting = Self::default();
         let center = scene.bounds.center();
         let mut total = 0.0;
         let mut sun = None;
@@ -126,13 +126,13 @@ impl Look {
         if total <= 0.0 || !total.is_finite() {
             return None;
         }
-        look.sky_scale = SKY_FILL;
-        look.light_scale = total.clamp(LEAST_LIGHT, MOST_LIGHT) / total;
-        look.sun_color = sun.map(|(_, color)| color * look.light_scale);
+        lighting.sky_scale = SKY_FILL;
+        lighting.light_scale = total.clamp(LEAST_LIGHT, MOST_LIGHT) / total;
+        lighting.sun_color = sun.map(|(_, color)| color * lighting.light_scale);
         if let Some((place, _)) = sun {
-            look.sun_direction = place.transform_vector3(Vec3::Z).normalize_or(Vec3::Y);
+            lighting.sun_direction = place.transform_vector3(Vec3::Z).normalize_or(Vec3::Y);
         }
-        Some(look)
+        Some(lighting)
     }
 }
 

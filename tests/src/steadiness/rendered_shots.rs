@@ -15,9 +15,9 @@ pub const FRAMES: usize = 10;
 /// Size of the frames in pixels.
 pub const SIZE: [u32; 2] = [640, 360];
 
-/// What is rendered.
+/// Scene and options that are rendered.
 #[derive(Clone, Debug, Hash)]
-pub struct Take {
+pub struct ShotOptions {
     /// Of the shot.
     pub name: &'static str,
     /// glTF file; none for the demo scene.
@@ -33,7 +33,7 @@ pub struct Take {
 /// As [`shoot`].
 pub fn demo() -> Result<Shot, String> {
     let options = vec!["--animate", "--fps", "24", "--start", "1.8"];
-    shoot(&Take { name: "demo", scene: None, options })
+    shoot(&ShotOptions { name: "demo", scene: None, options })
 }
 
 /// The running fox before a camera at rest, 24 frames a second; `None` where the assets are not beside the checkout.
@@ -43,14 +43,14 @@ pub fn demo() -> Result<Shot, String> {
 pub fn fox() -> Option<Result<Shot, String>> {
     let scene = png::assets()?.join("gltf/Fox.glb");
     let options = vec!["--animation", "Run", "--fps", "24"];
-    scene.is_file().then(|| shoot(&Take { name: "fox", scene: Some(scene), options }))
+    scene.is_file().then(|| shoot(&ShotOptions { name: "fox", scene: Some(scene), options }))
 }
 
 /// Renders [`FRAMES`] frames, or reads those that the same program rendered before.
 ///
 /// # Errors
-/// What the program says, or what is wrong with its files.
-pub fn shoot(take: &Take) -> Result<Shot, String> {
+/// The error of the program, or the problem with its files.
+pub fn shoot(take: &ShotOptions) -> Result<Shot, String> {
     // Builds the programs too.
     library::path();
     let mut hash = DefaultHasher::new();
@@ -59,7 +59,7 @@ pub fn shoot(take: &Take) -> Result<Shot, String> {
         Some(file) => modified(file)?.hash(&mut hash),
         None => modified(&program("isophote-demo-scene"))?.hash(&mut hash),
     }
-    let shelf = png::results().join("footage");
+    let shelf = png::results().join("rendered_shots");
     fs::create_dir_all(&shelf).map_err(|e| format!("{}: {e}", shelf.display()))?;
     let folder = shelf.join(format!("{}-{:016x}", take.name, hash.finish()));
     if !folder.is_dir() {
@@ -95,7 +95,7 @@ fn sweep(shelf: &Path, name: &str) {
 }
 
 /// Renders into a folder that gets its name only when it is whole.
-fn render(take: &Take, shelf: &Path, folder: &Path) -> Result<(), String> {
+fn render(take: &ShotOptions, shelf: &Path, folder: &Path) -> Result<(), String> {
     let fault = |e: std::io::Error| format!("{}: {e}", shelf.display());
     let work = tempfile::tempdir_in(shelf).map_err(fault)?;
     let scene = match &take.scene {

@@ -1,0 +1,118 @@
+//! Guides: the program knows all that the library has, and painted flow maps bend what styles draw.
+
+mod support;
+
+use std::fs;
+use std::path::Path;
+use std::process::Command;
+
+use image::{Rgba, RgbaImage};
+use isophote_finishing::stylize::style::Style;
+use isophote_loader::{Control, Input, Library};
+use isophote_pictures::exr::Guide;
+use isophote_pictures::pixels::{Pixels, Precision, Samples};
+
+use support::{fails, folder, isophote, picture, succeeds};
+
+const SIZE: (u32, u32) = (96, 64);
+
+fn apply(folder: &Path, arguments: &[&str]) -> Command {
+    let mut command = isophote();
+    command.current_dir(folder).arg("apply").args(arguments).args(["--backend", "cpu"]);
+    command
+}
+
+/// A flow map that leads down to the right everywhere.
+fn flow() -> RgbaImage {
+    RgbaImage::from_pixel(SIZE.0, SIZE.1, Rgba([217, 217, 0, 255]))
+}
+
+#[test]
+fn every_guide_of_the_library_is_known() {
+    let library = Library::from_file(support::library()).expect("the library");
+    let mut known: Vec<&str> = Guide::ALL.map(Guide::id).into();
+    // It has an option of its own.
+    known.push("mask");
+    known.sort_unstable();
+    let mut listed: Vec<&str> = library.guides().expect("the guides").iter().map(|guide| guide.id).collect();
+    listed.sort_unstable();
+    assert_eq!(known, listed);
+}
+
+#[test]
+fn a_flow_map_bends_what_a_style_draws() {
+    let folder = folder();
+    let at = |name: &str| folder.path().join(name);
+    let input = picture(SIZE.0, SIZE.1);
+    input.save(at("in.png")).expect("the picture can be written");
+    flow().save(at("flow.png")).expect("as above");
+    succeeds(&mut apply(folder.path(), &["oil_paint", "in.png", "plain.png"]));
+    succeeds(&mut apply(folder.path(), &["oil_paint", "in.png", "bent.png", "--flow", "flow.png"]));
+    let read = |name: &str| image::open(at(name)).expect("a picture was written").to_rgb8().into_raw();
+    assert_ne!(read("plain.png"), read("bent.png"));
+    // As the library does it.
+    let library = Library::from_file(support::library()).expect("the library");
+    let mut style = Style::load(&library, "oil_paint", &[]).expect("the style");
+    let request = style.request(&library, SIZE).expect("the size is possible");
+    let pixels =
+        |channels, bytes| Pixels::new(SIZE.0, SIZE.1, channels, Samples::U8(bytes)).expect("as many");
+    let (color, flow) = (pixels(3, input.into_raw()), pixels(4, flow().into_raw()));
+    let inputs = [Input { name: "color", pixels: &color }, Input { name: "flow", pixels: &flow }];
+    let mut result = Pixels::zeroed(SIZE.0, SIZE.1, 3, Precision::U8);
+    style
+        .graph
+        .process(None, &request, &inputs, &mut result, &mut Control::default())
+        .expect("the style can be computed");
+    let Samples::U8(wanted) = result.samples() else { panic!("bytes were asked for") };
+    assert_eq!(*wanted, read("bent.png"));
+}
+
+#[test]
+fn flow_maps_of_frames_belong_to_their_frames() {
+    let folder = folder();
+    let at = |name: &str| folder.path().join(name);
+    for frame in 1..=2 {
+        picture(SIZE.0, SIZE.1).save(at(&format!("in.{frame:04}.png"))).expect("it can be written");
+    }
+    flow().save(at("flow.0001.png")).expect("as above");
+    let run = ["oil_paint", "in.####.png", "out.####.png", "--flow", "flow.####.png"];
+    fails(&mut apply(folder.path(), &run), 2, &["flow.0002.png", "flow maps of the frames 2 are missing"]);
+    RgbaImage::from_pixel(SIZE.0, SIZE.1, Rgba([128, 128, 0, 0]))
+        .save(at("flow.0002.png"))
+        .expect("as above");
+    succeeds(&mut apply(folder.path(), &run));
+    let read = |name: &str| fs::read(at(name)).expect("a picture was written");
+    assert_ne!(read("out.0001.png"), read("out.0002.png"));
+    // Nothing is painted in the second.
+    succeeds(&mut apply(folder.path(), &["oil_paint", "in.0002.png", "plain.png"]));
+    assert_eq!(read("out.0002.png"), read("plain.png"));
+}
+
+#[test]
+fn flow_maps_that_cannot_be_used_say_why() {
+    let folder = folder();
+    let at = |name: &str| folder.path().join(name);
+    picture(SIZE.0, SIZE.1).save(at("in.png")).expect("the picture can be written");
+    flow().save(at("flow.png")).expect("as above");
+    RgbaImage::new(50, 40).save(at("small.png")).expect("as above");
+    image::GrayImage::new(SIZE.0, SIZE.1).save(at("grey.png")).expect("as above");
+    for (style, map, words) in [
+        ("flow_dog", "flow.png", &["--flow", "follows no flow map"][..]),
+        ("oil_paint", "small.png", &["small.png", "50x40", "flow maps of the picture's size"]),
+        ("oil_paint", "grey.png", &["grey.png", "is grey"]),
+        ("oil_paint", "none.png", &["none.png"]),
+    ] {
+        fails(&mut apply(folder.path(), &[style, "in.png", "out.png", "--flow", map]), 2, words);
+        assert!(!at("out.png").exists(), "{map}");
+    }
+}
+
+#[test]
+fn jobs_for_farms_name_flow_maps_by_whole_paths() {
+    let folder = folder();
+    picture(SIZE.0, SIZE.1).save(folder.path().join("in.0001.png")).expect("the picture can be written");
+    let mut command = isophote();
+    command.current_dir(folder.path()).args(["farm", "openjd", "--", "apply", "oil_paint"]);
+    let job = succeeds(command.args(["in.####.png", "out.####.png", "--flow", "maps/flow.####.png"])).0;
+    assert!(job.contains("/maps/flow.####.png"), "{job}");
+}
