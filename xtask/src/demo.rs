@@ -4,7 +4,7 @@
 use crate::error::{Context, Result};
 use crate::scene;
 use crate::setup::{self, VULKAN};
-use crate::tools::{build_packages, heading, program, root, run as run_command};
+use crate::tools::{build, built_library, heading, program, root, run as run_command};
 use std::fs;
 use std::path::{Path, PathBuf};
 use std::process::Stdio;
@@ -24,8 +24,6 @@ pub struct Options {
 const EXAMPLE: &str = "isophote-example";
 /// The program that makes the contact sheet.
 const SHEET: &str = "isophote-demo-sheet";
-/// All packages of the demo. Each build names all of them, so that both choose the same features of what they share.
-const PACKAGES: [&str; 4] = ["isophote-plugin", EXAMPLE, scene::PACKAGE, SHEET];
 
 const PANEL: &str = "960x540";
 const TURNTABLE: &str = "640x360";
@@ -47,7 +45,8 @@ const STYLES: [(&str, &str); 4] = [
 pub fn run(options: &Options) -> Result<()> {
     setup::ensure(&[&VULKAN])?;
     heading("build");
-    build_packages(&PACKAGES, &["--lib", "--bin", EXAMPLE, "--bin", scene::PACKAGE])?;
+    // The library comes along with the program of the sheet, which depends on it.
+    build("debug", &[EXAMPLE, scene::PACKAGE, SHEET])?;
     let out = root().join(&options.out);
     heading("scene");
     let scene = scene::write(&out.join("scene"))?;
@@ -69,7 +68,6 @@ pub fn run(options: &Options) -> Result<()> {
     }
 
     heading("contact sheet");
-    build_packages(&PACKAGES, &["--bin", SHEET])?;
     let sheet = out.join("contact-sheet.png");
     let columns = STYLES.len().to_string();
     // A column for each style: the panels above, the frames of the turntables below them.
@@ -85,6 +83,7 @@ pub fn run(options: &Options) -> Result<()> {
 fn frames(scene: &Path, style: &str, size: &str, count: u32, place: impl Fn(u32) -> PathBuf) -> Result<()> {
     let folder = scene.with_file_name("frames");
     let mut command = program(EXAMPLE, "debug");
+    command.env("ISOPHOTE_LIBRARY", built_library("debug"));
     command.current_dir(root()).arg(scene).args(["--style", style, "--size", size]);
     command.args(["--count", &count.to_string(), "--frames"]).arg(&folder);
     run_command(command.stdout(Stdio::null()))?;

@@ -58,15 +58,6 @@ pub fn build(profile: &str, programs: &[&str]) -> Result<()> {
     run(command.args(chosen(profile)))
 }
 
-/// Builds targets of some packages alone, in the profile of development.
-///
-/// # Errors
-/// The command line, when it fails.
-pub fn build_packages(packages: &[&str], targets: &[&str]) -> Result<()> {
-    let mut command = cargo_command(&["build"]);
-    run(command.args(packages.iter().flat_map(|package| ["-p", package])).args(targets))
-}
-
 /// Builds the dynamic library, the sample host and some more programs. The libraries of the workspace come along,
 /// for a choice of packages would give their dependencies other features and compile them anew.
 ///
@@ -97,6 +88,12 @@ pub fn build_library(profile: &str, programs: &[&str]) -> Result<()> {
 pub fn library_file(profile: &str) -> PathBuf {
     let (prefix, suffix) = (std::env::consts::DLL_PREFIX, std::env::consts::DLL_SUFFIX);
     target_dir(profile).join(format!("{prefix}isophote{suffix}"))
+}
+
+/// The dynamic library where it lies after a build that was asked for a program alone.
+pub fn built_library(profile: &str) -> PathBuf {
+    let (prefix, suffix) = (std::env::consts::DLL_PREFIX, std::env::consts::DLL_SUFFIX);
+    target_dir(profile).join("deps").join(format!("{prefix}isophote{suffix}"))
 }
 
 fn program_file(name: &str, profile: &str) -> PathBuf {

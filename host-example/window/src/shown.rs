@@ -4,13 +4,13 @@ use super::canvas::Numbers;
 use super::live_look::LiveLook;
 use super::pictures::numbers;
 use super::session::Which;
-use super::source::Source;
+use super::source::LookInput;
 use super::viewport::Overlay;
 use isophote_loader::catalogue::Kind;
 
 /// One of the pictures that can be shown; the original where there is nothing else yet.
 pub fn picture<'s>(
-    source: &'s Source,
+    source: &'s LookInput,
     looks: &'s [LiveLook; 3],
     overlay: Overlay,
     which: Which,

@@ -6,7 +6,7 @@ use super::document::frame::{Frame, GuideImage};
 use super::source::SceneSource;
 use super::worker::{Wake, Worker};
 use isophote_files::error::{Error, Result};
-use isophote_finishing::apply::asked::Asked;
+use isophote_finishing::apply::picture_request::PictureRequest;
 use isophote_pictures::exr::Guide;
 use isophote_pictures::read::ImageState;
 use isophote_pictures::space::Space;
@@ -97,7 +97,7 @@ impl Copied {
             height: self.size.1,
             guides: guides.collect::<Result<_>>()?,
             color,
-            asked: Asked {
+            asked: PictureRequest {
                 space: Space::Linear,
                 state: ImageState::SceneReferred,
                 origin: [0.0; 2],

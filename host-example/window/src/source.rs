@@ -163,14 +163,14 @@ impl SceneSource {
 }
 
 /// Input of looks.
-pub enum Source {
+pub enum LookInput {
     /// A scene.
     Scene(Box<SceneSource>),
     /// A picture.
     Picture(PictureSource),
 }
 
-impl Source {
+impl LookInput {
     /// Request of looks on it.
     pub fn asked(&self) -> IsophoteRequest {
         match self {

@@ -5,7 +5,7 @@ use std::sync::Arc;
 use super::document::frame::Frame;
 use super::pictures::PictureSource;
 use super::session::Session;
-use super::source::{SceneSource, SceneState, Source};
+use super::source::{LookInput, SceneSource, SceneState};
 use super::worker::{Wake, Worker};
 use isophote_files::error::{AtPlace, Result};
 use isophote_loader::abi::IsophoteRequest;
@@ -26,15 +26,15 @@ enum Thing {
 }
 
 /// Result of an upload: the source, or why it could not be uploaded.
-type Uploaded = (Thing, Result<Source>);
+type Uploaded = (Thing, Result<LookInput>);
 
 /// Inputs of looks, as far as they are on the device.
 pub struct Sources {
     gpu: Gpu,
     worker: Worker<UploadJob, Uploaded>,
-    present: Option<Source>,
+    present: Option<LookInput>,
     /// The picture at its other size: whole, or its small copy.
-    spare: Option<Source>,
+    spare: Option<LookInput>,
     /// Thing that is being uploaded, or cannot be.
     asked: Option<Thing>,
     number: u64,
@@ -52,12 +52,12 @@ impl Sources {
     }
 
     /// The present input of looks.
-    pub fn present(&self) -> Option<&Source> {
+    pub fn present(&self) -> Option<&LookInput> {
         self.present.as_ref()
     }
 
     /// The present input of looks, to be rendered.
-    pub fn present_mut(&mut self) -> Option<&mut Source> {
+    pub fn present_mut(&mut self) -> Option<&mut LookInput> {
         self.present.as_mut()
     }
 
@@ -84,7 +84,7 @@ impl Sources {
                 let pixels = |length: f32| ((length * scale).round() as u32).max(1);
                 let size = (pixels(half.width), pixels(half.height));
                 match &mut self.present {
-                    Some(Source::Scene(source)) if source.is_of(scenery) => {
+                    Some(LookInput::Scene(source)) if source.is_of(scenery) => {
                         source.follow(scenery, size, scale)?
                     }
                     _ => {
@@ -135,7 +135,7 @@ impl Sources {
         }
         // Frames that follow one another take each other's place.
         if frame.number.is_some()
-            && let Some(Source::Picture(source)) = &mut self.present
+            && let Some(LookInput::Picture(source)) = &mut self.present
             && source.follow(&self.gpu, frame, scale)
         {
             self.number += 1;
@@ -193,19 +193,19 @@ impl Thing {
     }
 }
 
-fn shows(source: Option<&Source>, frame: &Arc<Frame>) -> bool {
-    matches!(source, Some(Source::Picture(source)) if source.shows(frame))
+fn shows(source: Option<&LookInput>, frame: &Arc<Frame>) -> bool {
+    matches!(source, Some(LookInput::Picture(source)) if source.shows(frame))
 }
 
 fn upload(gpu: &Gpu, job: UploadJob) -> Uploaded {
     match job {
         UploadJob::Scene { state, size, usual } => {
             let source = SceneSource::new(gpu, &state, size, usual);
-            (Thing::Scene(state.scene), source.map(|source| Source::Scene(Box::new(source))))
+            (Thing::Scene(state.scene), source.map(|source| LookInput::Scene(Box::new(source))))
         }
         UploadJob::Picture { frame, scale, usual } => {
             let source = PictureSource::new(gpu, &frame, scale, usual);
-            (Thing::Picture(frame), source.map(Source::Picture))
+            (Thing::Picture(frame), source.map(LookInput::Picture))
         }
     }
 }

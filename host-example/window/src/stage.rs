@@ -18,7 +18,7 @@ use super::screen::{self, Screen};
 use super::session::{Session, Which};
 use super::shown::picture;
 use super::snapshot::Snapshots;
-use super::source::Source;
+use super::source::LookInput;
 use super::sources::Sources;
 use super::viewport::Overlay;
 use super::worker::{Wake, Worker};
@@ -206,7 +206,7 @@ impl Stage {
         let asked = source.asked();
         for (live, look) in self.looks.iter_mut().zip([&*seen, &compared, &overlay]) {
             problems.extend(live.follow(&session.library, look, session.precision, asked).err());
-            if let Source::Scene(source) = source
+            if let LookInput::Scene(source) = source
                 && live.wants_rest_positions()?
                 && source.add_rest_positions()
             {
@@ -230,7 +230,7 @@ impl Stage {
             session.is_covered() && !session.is_playing() && self.progress == Progress::Done && !waits;
         let made = self.made.as_ref().filter(|made| is_wanted && made.asked.scale == 1.0);
         let state = made.map(|made| (made.asked, made.source, made.scene));
-        if let (Some(Source::Scene(source)), Some(scenery), Some(state)) =
+        if let (Some(LookInput::Scene(source)), Some(scenery), Some(state)) =
             (self.sources.present_mut(), &session.scenery, state)
             && !self.snapshots.shows(&state)
         {
@@ -440,7 +440,7 @@ impl Stage {
         passes: usize,
     ) -> Result<bool> {
         let Some(source) = self.sources.present_mut() else { return Ok(true) };
-        if let (Source::Scene(source), Some(scenery), true) = (&mut *source, &session.scenery, begins) {
+        if let (LookInput::Scene(source), Some(scenery), true) = (&mut *source, &session.scenery, begins) {
             source.encode(encoder, scenery);
         }
         let asked = source.asked();

@@ -3,10 +3,10 @@
 use std::path::Path;
 use std::sync::Arc;
 
-use super::asked::Asked;
 use super::backend::Backend;
 use super::frame_cache::Window;
 use super::memory::Needs;
+use super::picture_request::PictureRequest;
 use crate::stylize::style::Style;
 use isophote_example::history::{is_stage, split};
 use isophote_files::error::{AtPlace, Error, Result};
@@ -255,7 +255,7 @@ impl Filter {
             let precision = if to == source.state { color.precision() } else { Precision::F32 };
             let size = (color.width(), color.height());
             let usual = self.library.request(size).map_err(|e| e.at(name, "use a smaller picture"))?;
-            let request = Asked::of(picture, source.state, working.space, own.number).request(usual);
+            let request = PictureRequest::of(picture, source.state, working.space, own.number).request(usual);
             let job = LayerJob { at, there, request, color, window };
             let share = 1.0 / count as f32;
             let mut report = |done: f32| progress((at as f32 + done) * share);

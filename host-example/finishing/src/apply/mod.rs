@@ -1,6 +1,5 @@
 //! Filtering pictures and sequences of pictures from file to file, without any scene.
 
-pub mod asked;
 pub mod backend;
 pub mod dry_run;
 pub mod filter;
@@ -9,6 +8,7 @@ pub mod looks;
 mod machine;
 pub mod masks;
 pub mod memory;
+pub mod picture_request;
 pub mod reader;
 pub mod report;
 pub mod sequence;

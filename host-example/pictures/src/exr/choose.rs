@@ -144,7 +144,7 @@ pub struct Chosen {
     /// The channel of its alpha.
     pub alpha: Option<usize>,
     /// Sources of its guides.
-    pub guides: Vec<Source>,
+    pub guides: Vec<GuideSource>,
     /// The masks that are in the file, one for each that was asked for.
     pub masks: Vec<Option<ChosenMask>>,
 }
@@ -160,7 +160,7 @@ impl Chosen {
 
 /// Source of a guide.
 #[derive(Clone, Debug)]
-pub struct Source {
+pub struct GuideSource {
     /// The guide.
     pub guide: Guide,
     /// Index of the part.
@@ -316,7 +316,7 @@ fn sources(
     groups: &[Group],
     picture: &Group,
     selection: &Selection,
-) -> Result<Vec<Source>, Fault> {
+) -> Result<Vec<GuideSource>, Fault> {
     let mut sources = Vec::new();
     for guide in Guide::ALL {
         let choice = selection.guides.iter().rev().find(|c| c.guide == guide);
@@ -344,7 +344,7 @@ fn sources(
             near.iter().find_map(|group| {
                 let channels =
                     xyz(group).filter(|_| matches!(group.word().as_str(), "p" | "pworld" | "position"))?;
-                Some(Source { guide, part: group.part, channels, meaning: Meaning::Position })
+                Some(GuideSource { guide, part: group.part, channels, meaning: Meaning::Position })
             })
         });
         let found = found.or_else(|| {
@@ -369,19 +369,19 @@ fn sources(
 }
 
 /// The ids in front, of a Cryptomatte or of the one of objects.
-fn hashes(exr: &File, groups: &[Group], picture: &Group, matte: Option<&str>) -> Result<Source, Fault> {
+fn hashes(exr: &File, groups: &[Group], picture: &Group, matte: Option<&str>) -> Result<GuideSource, Fault> {
     let mattes = mattes(exr);
     let ranks = pick(&mattes, matte)?.ranks(exr, groups, picture)?;
     let Ranks { part, channels } = &ranks[0];
     let (channels, meaning) = (vec![channels[0]], Meaning::Hashes);
-    Ok(Source { guide: Guide::ObjectId, part: *part, channels, meaning })
+    Ok(GuideSource { guide: Guide::ObjectId, part: *part, channels, meaning })
 }
 
 /// Motion vectors in a file of their own, where they may lie in its main layer.
 ///
 /// # Errors
 /// [`Fault::Choice`] for files without.
-pub fn motion(exr: &File, selection: &Selection) -> Result<Vec<Source>, Fault> {
+pub fn motion(exr: &File, selection: &Selection) -> Result<Vec<GuideSource>, Fault> {
     let groups = groups(exr);
     let readable: Vec<&Group> = groups.iter().filter(|g| exr.can_decode(g.part)).collect();
     let wanted = selection.wanted.iter().copied().filter(|guide| guide.is_motion());
@@ -410,8 +410,8 @@ pub fn motion(exr: &File, selection: &Selection) -> Result<Vec<Source>, Fault> {
     Ok(found)
 }
 
-fn of_vectors(group: &Group, guide: Guide, motion::Found { channels, rule }: motion::Found) -> Source {
-    Source { guide, part: group.part, channels, meaning: Meaning::Vectors(rule) }
+fn of_vectors(group: &Group, guide: Guide, motion::Found { channels, rule }: motion::Found) -> GuideSource {
+    GuideSource { guide, part: group.part, channels, meaning: Meaning::Vectors(rule) }
 }
 
 fn xyz(group: &Group) -> Option<Vec<usize>> {
@@ -429,7 +429,7 @@ fn vectors(
     guide: Guide,
     name: Option<&str>,
     convention: Option<Convention>,
-) -> Option<Source> {
+) -> Option<GuideSource> {
     let is_named = name.is_some_and(|name| is_named(exr, group, name));
     if name.is_some() && !is_named {
         return None;
@@ -439,9 +439,9 @@ fn vectors(
 }
 
 /// The channels of a guide in a group; `name` is the layer or channel that was asked for.
-fn source(exr: &File, group: &Group, guide: Guide, name: Option<&str>) -> Option<Source> {
+fn source(exr: &File, group: &Group, guide: Guide, name: Option<&str>) -> Option<GuideSource> {
     let part = &exr.parts()[group.part];
-    let found = |channels| Source { guide, part: group.part, channels, meaning: Meaning::Same };
+    let found = |channels| GuideSource { guide, part: group.part, channels, meaning: Meaning::Same };
     let single = |components: &[&str]| {
         let known = components.iter().find_map(|c| group.member(c));
         known.or(match group.members.as_slice() {

@@ -4,7 +4,7 @@ use std::path::Path;
 
 use isophote_exr_edit::{Channel, Decoded, Edit, Error as ExrError, File, Part, Plane, Window};
 
-use super::choose::{Chosen, Meaning, Selection, Source};
+use super::choose::{Chosen, GuideSource, Meaning, Selection};
 use super::fault::Fault;
 use super::motion::applied;
 use super::names::{Model, components};
@@ -206,7 +206,7 @@ fn interleaved(window: Window, planes: &[Plane]) -> Option<Pixels> {
 pub fn guide(
     exr: &File,
     decoded: &[Option<Decoded>],
-    source: &Source,
+    source: &GuideSource,
     window: Window,
     world_to_camera: Option<[f32; 16]>,
 ) -> Result<Option<Pixels>, ExrError> {

@@ -391,7 +391,7 @@ impl ApplyArgs {
     ///
     /// # Errors
     /// As [`Masks::new`]; [`Error::Input`] for a flow map that no style would follow.
-    fn maps(&self, choices: &[MaskChoice], looks: &[Look]) -> Result<Masks> {
+    fn maps(&self, choices: &[MaskChoice], looks: &[MaskedStyle]) -> Result<Masks> {
         if self.flow.is_some() {
             let mut followed = false;
             for look in looks {

@@ -2,7 +2,7 @@
 
 use isophote_files::error::{Error, Result};
 use isophote_files::limits;
-use isophote_finishing::apply::asked::Asked;
+use isophote_finishing::apply::picture_request::PictureRequest;
 use isophote_loader::abi::{ISOPHOTE_ALPHA_EMISSIVE, IsophoteRequest};
 use isophote_pictures::convert;
 use isophote_pictures::exr::Guide;
@@ -27,7 +27,7 @@ pub struct Frame {
     /// is apart from it where it is display-referred: multiplied and divided again it would not be the same.
     pub color: Vec<[f32; 4]>,
     /// Properties of the picture that the request names.
-    pub asked: Asked,
+    pub asked: PictureRequest,
     /// True where colour has light where alpha is 0 or little, which is filtered by itself.
     pub has_light: bool,
     /// Guides that the file holds beside colour.
@@ -73,7 +73,7 @@ impl Frame {
             width: pixels.width(),
             height: pixels.height(),
             has_light: source.state == ImageState::SceneReferred && color.iter().any(is_beyond_coverage),
-            asked: Asked::of(picture, source.state, working.space, number),
+            asked: PictureRequest::of(picture, source.state, working.space, number),
             guides: named.collect(),
             replaced: replaced + bad,
             color,

@@ -44,8 +44,7 @@ fn picture(port: &Port) -> Option<GraphInput> {
 mod tests {
     use super::*;
     use crate::guides::Guides;
-    use crate::plan::planned::Planned;
-    use crate::plan::request::Request;
+    use crate::{Planned, Request};
 
     #[test]
     fn every_node_can_be_planned_by_its_id() {

@@ -1,19 +1,10 @@
-<<<<<<< HEAD:nodes/library/src/preset/lengths.rs
 //! Lengths of parameters: pixels of the picture, or of one of a fixed height.
-=======
-//! Unit of parameters that are given in pixels.
->>>>>>> b617af452ab6a0386a074a1f0b50e5a414a324e3:host-example/finishing/src/stylize/lengths.rs
 
 use serde::{Deserialize, Serialize};
 
-<<<<<<< HEAD:nodes/library/src/preset/lengths.rs
 /// Meaning of the lengths of parameters, which are given in pixels.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(rename_all = "lowercase")]
-=======
-/// Unit of the lengths of parameters, which are given in pixels.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, ValueEnum)]
->>>>>>> b617af452ab6a0386a074a1f0b50e5a414a324e3:host-example/finishing/src/stylize/lengths.rs
 pub enum Lengths {
     /// Pixels of a picture 1080 lines high: pictures of all sizes get the same look.
     #[default]
@@ -37,11 +28,7 @@ impl Lengths {
         }
     }
 
-<<<<<<< HEAD:nodes/library/src/preset/lengths.rs
     /// The lengths that a word stands for.
-=======
-    /// Unit that the word stands for.
->>>>>>> b617af452ab6a0386a074a1f0b50e5a414a324e3:host-example/finishing/src/stylize/lengths.rs
     pub fn of(id: &str) -> Option<Self> {
         Self::ALL.into_iter().find(|lengths| lengths.id() == id)
     }

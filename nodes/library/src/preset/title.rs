@@ -1,10 +1,4 @@
-<<<<<<< HEAD:nodes/library/src/preset/title.rs
 //! The title of a preset: text for people who look for one.
-=======
-//! Title of a preset, for people who look for one.
-
-use std::path::Path;
->>>>>>> b617af452ab6a0386a074a1f0b50e5a414a324e3:host-example/finishing/src/stylize/title.rs
 
 use super::fault::Fault;
 use serde::{Deserialize, Serialize};
@@ -80,11 +74,7 @@ fn line(value: Value) -> Option<String> {
     }
 }
 
-<<<<<<< HEAD:nodes/library/src/preset/title.rs
 /// True for a text that can be a name, a description or a tag.
-=======
-/// True where a text can be a name, a description or a tag.
->>>>>>> b617af452ab6a0386a074a1f0b50e5a414a324e3:host-example/finishing/src/stylize/title.rs
 pub fn is_line(text: &str) -> bool {
     !text.trim().is_empty() && !text.chars().any(char::is_control)
 }

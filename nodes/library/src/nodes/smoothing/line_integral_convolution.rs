@@ -9,7 +9,6 @@ use crate::kernels::smoothing::cabral_leedom;
 use crate::kernels::smoothing::line_integral_convolution::{self, Options};
 pub use crate::stages::line_integral_convolution::options;
 use crate::stages::line_integral_convolution::{ADAPT, MAX_ANGLE, SIGMA, STEP};
-use crate::stages::line_integral_convolution::{ADAPT, MAX_ANGLE, SIGMA, STEP};
 use crate::stages::structure_tensor;
 use isophote_engine::ImageId;
 

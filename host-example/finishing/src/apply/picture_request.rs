@@ -13,7 +13,7 @@ const MOST_ORIGIN: i32 = 1_000_000;
 
 /// The part of a request that is the picture's.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Asked {
+pub struct PictureRequest {
     /// The space in which it is filtered.
     pub space: Space,
     /// State of the numbers.
@@ -26,7 +26,7 @@ pub struct Asked {
     pub frame: i64,
 }
 
-impl Asked {
+impl PictureRequest {
     /// Of a picture in `space`, of the frame of this number.
     pub fn of(picture: &Picture, state: ImageState, space: Space, number: Option<i64>) -> Self {
         // Windows farther out than marks can be told apart are windows of their own.
