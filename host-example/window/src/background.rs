@@ -137,6 +137,32 @@ impl Background {
         self.opener.is_busy().then_some("Opening").or(self.export.as_ref().map(|_| "Exporting"))
     }
 
+    /// Takes over the file or folder that was chosen in a dialog.
+    fn take_chosen(&mut self, session: &mut Session, dialog: Dialog, path: PathBuf) {
+        match dialog {
+            Dialog::File => self.opener.ask(OpenJob::Files(session.library.clone(), vec![path])),
+            Dialog::Look => {
+                session.settings.look_folder = path.parent().map(Path::to_owned);
+                self.opener.ask(OpenJob::Look(session.library.clone(), path));
+            }
+            Dialog::Surroundings => self.opener.ask(OpenJob::Surroundings(path)),
+            Dialog::LookFolder => {
+                session.settings.add_look_folder(&path);
+                session.browser.is_outdated = true;
+            }
+            Dialog::Save => {
+                if let Some(saving) = &mut session.saving {
+                    saving.place(Some(&path));
+                }
+            }
+            Dialog::Export => {
+                if let Some(plan) = &mut session.plan {
+                    plan.path = path.display().to_string();
+                }
+            }
+        }
+    }
+
     /// Takes over what was done since the last call.
     pub fn collect(&mut self, session: &mut Session) {
         while let Ok((dialog, path)) = self.chosen.try_recv() {
@@ -149,28 +175,7 @@ impl Background {
                     continue;
                 }
             };
-            match dialog {
-                Dialog::File => self.opener.ask(OpenJob::Files(session.library.clone(), vec![path])),
-                Dialog::Look => {
-                    session.settings.look_folder = path.parent().map(Path::to_owned);
-                    self.opener.ask(OpenJob::Look(session.library.clone(), path));
-                }
-                Dialog::Surroundings => self.opener.ask(OpenJob::Surroundings(path)),
-                Dialog::LookFolder => {
-                    session.settings.add_look_folder(&path);
-                    session.browser.is_outdated = true;
-                }
-                Dialog::Save => {
-                    if let Some(saving) = &mut session.saving {
-                        saving.place(Some(&path));
-                    }
-                }
-                Dialog::Export => {
-                    if let Some(plan) = &mut session.plan {
-                        plan.path = path.display().to_string();
-                    }
-                }
-            }
+            self.take_chosen(session, dialog, path);
         }
         self.follow_export(session);
         self.looks.collect(session);
