@@ -85,8 +85,9 @@ def test_arrays_that_claim_another_shape_are_not_believed(small: np.ndarray) -> 
             return {"data": (8, False), "shape": (9, 9, 3), "strides": None, "typestr": "|u1", "version": 3}
 
     liar = small.view(Liar)
-    graph = isophote.native.Style.named("gaussian").graph()
-    request = isophote.style.Settings().request(small, ["color"], 0, "relative")
+    style = isophote.Style("gaussian")
+    graph = style._graph
+    request = isophote.style.Settings().request(small, ["color"], 0, style)
     out = np.empty_like(small)
     graph.process(request, {"color": liar}, out, None, 0, None)
     assert np.array_equal(out, isophote.apply("gaussian", small))
