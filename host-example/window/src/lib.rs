@@ -31,6 +31,7 @@ pub mod leaving;
 mod live_look;
 pub mod look;
 mod look_work;
+mod made;
 mod notes;
 mod pace;
 mod panel;

@@ -12,6 +12,7 @@ use super::canvas::{Arrangement, Canvas, SURROUND, Shown};
 use super::document::frame::Frame;
 use super::live_look::{LiveLook, Part};
 use super::look::EditedLook;
+use super::made::{FrameState, Made};
 use super::panel::Panel;
 use super::probe::Probe;
 use super::screen::{self, Screen};
@@ -20,17 +21,13 @@ use super::shown::picture;
 use super::snapshot::Snapshots;
 use super::source::LookInput;
 use super::sources::Sources;
-use super::viewport::Overlay;
 use super::worker::{Wake, Worker};
 use isophote_example::kernels::Kernels;
 use isophote_example::plan_runner::Counts;
 use isophote_files::error::{Error, Result};
-use isophote_loader::abi::IsophoteRequest;
 use isophote_render::gpu::Gpu;
 use isophote_render::layouts;
-use isophote_render::lighting::Lighting as Light;
 use isophote_render::timestamps::Timestamps;
-use isophote_scene::camera::View;
 
 /// All of one device. Fields are dropped in order: what uses the device before it.
 pub struct Stage {
@@ -101,20 +98,6 @@ pub enum Drawn {
     /// There was no surface to draw on; try again later.
     Skipped,
 }
-
-/// Origins of a picture. While they stay the same, so does the picture.
-#[derive(Clone, Debug, PartialEq)]
-struct Made {
-    shown: [Which; 2],
-    overlay: Overlay,
-    asked: IsophoteRequest,
-    revisions: [u64; 3],
-    source: u64,
-    scene: Option<(View, Light, f32)>,
-}
-
-/// State that a frame of a scene shows, looks apart.
-type FrameState = (IsophoteRequest, u64, Option<(View, Light, f32)>);
 
 /// Time that recording a part of a picture may take.
 const GOAL: [Duration; 2] = [Duration::from_millis(15), Duration::from_millis(40)];

@@ -33,7 +33,7 @@ impl Library {
     /// A graph of one node whose inputs are the pictures of the same name.
     ///
     /// # Errors
-    /// [`Error`] when there is no such node, naming the nearest.
+    /// [`Error`](crate::Error) when there is no such node, naming the nearest.
     pub fn single(&self, node: &str) -> Result<Graph> {
         let node = text::argument(node)?;
         self.graph(|error, graph| {
@@ -45,7 +45,7 @@ impl Library {
     /// The graph that a JSON text describes.
     ///
     /// # Errors
-    /// [`Error`] saying what is wrong with it and where.
+    /// [`Error`](crate::Error) saying what is wrong with it and where.
     pub fn graph_from_json(&self, json: &str) -> Result<Graph> {
         let json = text::argument(json)?;
         self.graph(|error, graph| {
@@ -74,7 +74,7 @@ impl Graph {
     /// Adds a node under a name of its own, and returns its index.
     ///
     /// # Errors
-    /// [`Error`] when there is no such node, or the name is taken.
+    /// [`Error`](crate::Error) when there is no such node, or the name is taken.
     pub fn add(&mut self, name: &str, node: &str) -> Result<u32> {
         let (name, node) = (text::argument(name)?, text::argument(node)?);
         let mut index = 0;
@@ -88,7 +88,7 @@ impl Graph {
     /// Connects the output of node `from` to an input of node `to`.
     ///
     /// # Errors
-    /// [`Error`] when there is no such node or input, or the two do not fit.
+    /// [`Error`](crate::Error) when there is no such node or input, or the two do not fit.
     pub fn connect(&mut self, from: u32, to: u32, port: &str) -> Result<()> {
         let port = text::argument(port)?;
         // SAFETY: the handle is this object's, and the text ends with a zero.
@@ -99,7 +99,7 @@ impl Graph {
     /// Connects a picture that enters the graph to the input of node `to` that bears its name.
     ///
     /// # Errors
-    /// [`Error`] when there is no such picture, node or input.
+    /// [`Error`](crate::Error) when there is no such picture, node or input.
     pub fn connect_input(&mut self, input: &str, to: u32) -> Result<()> {
         let input = text::argument(input)?;
         // SAFETY: the handle is this object's, and the text ends with a zero.
@@ -124,7 +124,7 @@ impl Graph {
     /// Name of a node within the graph.
     ///
     /// # Errors
-    /// [`Error`] when there is no such index.
+    /// [`Error`](crate::Error) when there is no such index.
     pub fn name(&self, node: u32) -> Result<String> {
         // SAFETY: the handle is this object's; the text is a buffer of the length that it says.
         let (status, name) = text::whole(|out| unsafe { (self.api.graph_name)(self.handle, node, out) });
@@ -135,7 +135,7 @@ impl Graph {
     /// Declaration of a node.
     ///
     /// # Errors
-    /// [`Error`] when there is no such index.
+    /// [`Error`](crate::Error) when there is no such index.
     pub fn spec(&self, node: u32) -> Result<Node> {
         let mut spec = std::ptr::null();
         // SAFETY: the handle is this object's; `spec` may be written during the call.
@@ -148,7 +148,7 @@ impl Graph {
     /// Sets how precisely graphics devices compute it.
     ///
     /// # Errors
-    /// [`Error`] when the library computes exactly alone.
+    /// [`Error`](crate::Error) when the library computes exactly alone.
     pub fn set_precision(&self, precision: IsophotePrecision) -> Result<()> {
         let table =
             extension::<IsophotePrecisionApi>(self.api, PRECISION, "this library computes exactly alone")?;
@@ -159,7 +159,7 @@ impl Graph {
     /// Sets a parameter from text as a person writes it: `2.5`, `true`, `scharr3`, `#12407b`.
     ///
     /// # Errors
-    /// [`Error`] when there is no such parameter, or it cannot have this value.
+    /// [`Error`](crate::Error) when there is no such parameter, or it cannot have this value.
     pub fn set(&self, node: u32, param: &str, value: &str) -> Result<()> {
         let (param, value) = (text::argument(param)?, text::argument(value)?);
         // SAFETY: the handle is this object's; both texts end with a zero.
@@ -170,7 +170,7 @@ impl Graph {
     /// Kind of image that leaves the graph.
     ///
     /// # Errors
-    /// [`Error`] when it has no output.
+    /// [`Error`](crate::Error) when it has no output.
     pub fn output_kind(&self) -> Result<Kind> {
         let mut kind = 0;
         // SAFETY: the handle is this object's; `kind` may be written during the call.
@@ -182,7 +182,7 @@ impl Graph {
     /// The graph as JSON.
     ///
     /// # Errors
-    /// [`Error`] when the library fails.
+    /// [`Error`](crate::Error) when the library fails.
     pub fn to_json(&self) -> Result<String> {
         // SAFETY: the handle is this object's; the text is a buffer of the length that it says.
         let (status, json) = text::whole(|out| unsafe { (self.api.graph_to_json)(self.handle, out) });

@@ -91,7 +91,7 @@ impl Library {
 /// The table of an extension; `missing` says what cannot be done without it.
 ///
 /// # Errors
-/// [`Error`] when the library has none, or a smaller one.
+/// [`Error`](crate::Error) when the library has none, or a smaller one.
 pub(super) fn extension<T: Table>(api: &'static IsophoteApi, id: &CStr, missing: &str) -> Result<&'static T> {
     // SAFETY: the name ends with a zero.
     let table = unsafe { (api.extension)(id.as_ptr()) }.cast::<T>();

@@ -153,7 +153,7 @@ impl Library {
     /// All looks that ship, in the order of lists.
     ///
     /// # Errors
-    /// [`Error`] when the library has no presets.
+    /// [`Error`](crate::Error) when the library has no presets.
     pub fn looks(&self) -> Result<Vec<Look>> {
         let table = self.presets()?;
         let (mut looks, mut count) = (std::ptr::null(), 0);
@@ -173,7 +173,7 @@ impl Library {
     /// The colour that a person wrote: gamma-encoded RGBA, 0 to 1.
     ///
     /// # Errors
-    /// [`Error`] for text that is none.
+    /// [`Error`](crate::Error) for text that is none.
     pub fn color(&self, text: &str) -> Result<[f32; 4]> {
         let (table, text) = (self.presets()?, text::argument(text)?);
         let mut color = [0.0; 4];
@@ -187,7 +187,7 @@ impl Library {
     /// Reads the text of a preset, as far as it can be read, or tells that it is a graph. `place` names it in messages.
     ///
     /// # Errors
-    /// [`Error`] for text that is no JSON object.
+    /// [`Error`](crate::Error) for text that is no JSON object.
     pub fn read_style(&self, place: &str, json: &str) -> Result<StyleText> {
         let (table, json, place) = (self.presets()?, text::argument(json)?, text::argument(place)?);
         let report = written(|out, fault| {
@@ -202,7 +202,7 @@ impl Library {
     /// The text of a file that holds a preset.
     ///
     /// # Errors
-    /// [`Error`] when the library fails.
+    /// [`Error`](crate::Error) when the library fails.
     pub fn write_preset(&self, preset: &Preset) -> Result<String> {
         let table = self.presets()?;
         let preset = serde_json::to_string(preset).map_err(|error| mistake(&error))?;
@@ -217,7 +217,7 @@ impl Library {
     /// names, if it names one.
     ///
     /// # Errors
-    /// [`Error`] when the library fails.
+    /// [`Error`](crate::Error) when the library fails.
     pub fn check_preset(&self, place: &str, json: &str, graph: Option<&str>) -> Result<Vec<Fault>> {
         let (table, json, place) = (self.presets()?, text::argument(json)?, text::argument(place)?);
         let graph = graph.map(text::argument).transpose()?;

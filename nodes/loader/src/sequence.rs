@@ -44,7 +44,7 @@ impl Library {
     /// A sequence of which stages are kept in at most `memory` bytes.
     ///
     /// # Errors
-    /// [`Error`] when the library has no sequences, or `max_motion`, in pixels, is out of range; 0 is the library's own.
+    /// [`Error`](crate::Error) when the library has no sequences, or `max_motion`, in pixels, is out of range; 0 is the library's own.
     pub fn sequence(&self, memory: u64, max_motion: f32) -> Result<Sequence> {
         let table = self.sequences()?;
         let mut handle = Default::default();
@@ -59,7 +59,7 @@ impl Library {
     /// Frames before and after its own that a frame of `graph` depends on.
     ///
     /// # Errors
-    /// [`Error`] when the graph has no output.
+    /// [`Error`](crate::Error) when the graph has no output.
     pub fn frames(&self, graph: &Graph) -> Result<[u32; 2]> {
         let table = self.sequences()?;
         let [mut past, mut future] = [0; 2];
@@ -72,7 +72,7 @@ impl Library {
     /// Plans the whole picture of `request` where so many frames before it are known.
     ///
     /// # Errors
-    /// [`Error`] when an input that is needed is open, or the size is impossible.
+    /// [`Error`](crate::Error) when an input that is needed is open, or the size is impossible.
     pub fn plan_in_order(
         &self,
         graph: &Graph,
@@ -93,7 +93,7 @@ impl Sequence {
     /// must not use the sequence.
     ///
     /// # Errors
-    /// [`Error`] when an image is missing or has another size than the request, and when the device fails; `target` is
+    /// [`Error`](crate::Error) when an image is missing or has another size than the request, and when the device fails; `target` is
     /// then as before.
     pub fn process<P: AsImage>(
         &mut self,
@@ -136,7 +136,7 @@ impl Sequence {
     /// Gives back the memory of all stages.
     ///
     /// # Errors
-    /// [`Error`] when the library fails.
+    /// [`Error`](crate::Error) when the library fails.
     pub fn forget(&mut self) -> Result<()> {
         // SAFETY: the handle is this object's.
         let status = unsafe { (self.table.forget)(self.handle) };

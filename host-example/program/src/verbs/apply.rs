@@ -1,5 +1,7 @@
 //! `isophote apply`: a node, graph or preset on a picture or a sequence of frames, without any scene.
 
+mod on_video;
+
 use std::path::{Path, PathBuf};
 
 use clap::{Args, ValueHint};
@@ -174,11 +176,7 @@ pub fn run(args: &ApplyArgs) -> Result<()> {
     let threads = limits::start_threads(args.threads as usize)?;
     let entries = args.entries()?;
     let looks = args.looks(&library, files.style, &entries)?;
-    if tasks.is_sequence() {
-        let frames: Vec<i64> =
-            tasks.ready.iter().chain(&tasks.missing).filter_map(|task| task.frame).collect();
-        looks.iter().for_each(|look| look.style.warn_of_keys_beyond(&frames));
-    }
+    warn_of_keys_beyond(&tasks, &looks);
     let choices = args.masks(&entries);
     let masks = args.maps(&choices, &looks)?;
     masks.check(Some(&tasks))?;
@@ -202,16 +200,9 @@ pub fn run(args: &ApplyArgs) -> Result<()> {
     if !tasks.is_sequence() {
         stop.ends_the_process("the picture");
     }
-    let report = Report::new(tasks.count(), tasks.is_sequence(), args.json);
-    for task in &tasks.missing {
-        report.frame(task, &Outcome::Missing);
-    }
-    let mut filters = vec![filter];
-    if tasks.is_sequence() && threads == Threads::Several {
-        while filters.len() < filters[0].best_count()? {
-            filters.push(filters[0].beside(args.looks(&library, files.style, &entries)?)?);
-        }
-    }
+    let report = args.report(&tasks);
+    let is_parallel = tasks.is_sequence() && threads == Threads::Several;
+    let mut filters = filters(filter, is_parallel, || args.looks(&library, files.style, &entries))?;
     let budget = Budget::new(most.0, filters.len());
     let frame_source = FrameSource {
         frames: tasks.sequence.as_ref(),
@@ -228,6 +219,28 @@ pub fn run(args: &ApplyArgs) -> Result<()> {
     counts.check(files.input, tasks.ready.len(), args.consent())
 }
 
+/// Warns of keyframes of looks that no frame of a sequence reaches.
+fn warn_of_keys_beyond(tasks: &Tasks, looks: &[MaskedStyle]) {
+    if tasks.is_sequence() {
+        let frames: Vec<i64> =
+            tasks.ready.iter().chain(&tasks.missing).filter_map(|task| task.frame).collect();
+        looks.iter().for_each(|look| look.style.warn_of_keys_beyond(&frames));
+    }
+}
+
+/// The filter alone, or as many like it as are best side by side.
+fn filters(
+    filter: Filter,
+    is_parallel: bool,
+    looks: impl Fn() -> Result<Vec<MaskedStyle>>,
+) -> Result<Vec<Filter>> {
+    let mut filters = vec![filter];
+    while is_parallel && filters.len() < filters[0].best_count()? {
+        filters.push(filters[0].beside(looks()?)?);
+    }
+    Ok(filters)
+}
+
 /// The files that the command line names.
 pub struct Files<'a> {
     /// Style: a file or the name of a node or look.
@@ -239,6 +252,15 @@ pub struct Files<'a> {
 }
 
 impl ApplyArgs {
+    /// Report of a run, with the frames that are missing.
+    fn report(&self, tasks: &Tasks) -> Report {
+        let report = Report::new(tasks.count(), tasks.is_sequence(), self.json);
+        for task in &tasks.missing {
+            report.frame(task, &Outcome::Missing);
+        }
+        report
+    }
+
     /// Memory that the first picture needs, where that can be known: no more than there is.
     fn needs(
         &self,
@@ -287,58 +309,6 @@ impl ApplyArgs {
                 ))
             }
         }
-    }
-
-    /// Filters a video.
-    fn run_on_video(&self, files: &Files<'_>) -> Result<()> {
-        let wrong = |place: &str, problem: &str, fix: &str| Err(Error::input(place, problem, fix));
-        if !video::is_video(files.input) || !video::is_video(files.output) {
-            let place = files.output.display().to_string();
-            return wrong(&place, "a video becomes a video, and pictures pictures", "name two of a kind");
-        }
-        let others = [
-            ("--frames", self.frames.is_some()),
-            ("--dry-run", self.dry_run),
-            ("--motion", self.motion.is_some() && !self.estimates_motion()),
-            ("--into", self.into.is_some()),
-        ];
-        if let Some((option, _)) = others.iter().find(|(_, given)| *given) {
-            return wrong(option, "is not for videos", "leave it out");
-        }
-        let choices = self.masks(&self.entries()?);
-        let made = Made { from: Some(files.input), to: files.output };
-        if files.output != Path::new("-") {
-            self.consent().check(&[made], false, || self.inputs(&choices, None))?;
-        }
-        if self.skip_existing && files.output.is_file() {
-            return Ok(());
-        }
-        if files.output != Path::new("-") {
-            files::check_writable(files.output, Existing::Replace)?;
-            files::sweep(files.output);
-        }
-        let library = Library::open()?;
-        limits::start_threads(self.threads as usize)?;
-        let looks = self.looks(&library, files.style, &self.entries()?)?;
-        let is_file = |mask: &MaskChoice| matches!(mask.source, MaskSource::File(_));
-        if !(self.mask_from.is_some() || choices.iter().all(is_file)) {
-            return wrong(
-                "--mask",
-                "a video has no layers",
-                "name files of masks, or EXR files by --mask-from",
-            );
-        }
-        let masks = self.maps(&choices, &looks)?;
-        masks.check(None)?;
-        let mut filter = Filter::new(library, looks, self.backend, self.space, self.threads)?;
-        let stop = Stop::on_signals();
-        let (input, output, encode) = (files.input, files.output, self.encode.as_deref());
-        let run = |existing| {
-            let (on_error, json, masks, stop) = (self.on_error, self.json, &masks, &stop);
-            let job = video::VideoJob { input, output, existing, encode, on_error, json, masks, stop };
-            video::run(&job, &mut filter)
-        };
-        self.consent().write(made, Path::is_file, run).map(drop)
     }
 
     /// The looks of a file; none where there is a style.
