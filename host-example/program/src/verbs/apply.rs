@@ -12,7 +12,6 @@ use isophote_files::files::{self, Existing};
 use isophote_files::frames::{FrameList, Pattern};
 use isophote_files::identity::is_same;
 use isophote_files::limits::{self, Threads};
-use isophote_files::replacing::Made;
 use isophote_files::stop::Stop;
 use isophote_finishing::apply::backend::Backend;
 use isophote_finishing::apply::dry_run::DryRun;
