@@ -110,7 +110,7 @@ impl Graph {
     /// Plans the whole picture of `request`.
     ///
     /// # Errors
-    /// [`Error`](crate::Error) when an input that is needed is open, or the size is impossible.
+    /// [`Error`] when an input that is needed is open, or the size is impossible.
     pub fn plan(&self, request: &IsophoteRequest) -> Result<Plan> {
         Plan::made(self.api, |error, plan| {
             // SAFETY: the handle is the graph's; the request is read and the others written during the call.
@@ -134,7 +134,7 @@ impl Plan {
     /// Takes over the parameters that `graph` has now, and what `request` of the same size asks for.
     ///
     /// # Errors
-    /// [`Error`](crate::Error) as [`Graph::plan`]; the plan is then as before.
+    /// [`Error`] as [`Graph::plan`]; the plan is then as before.
     pub fn update(&mut self, graph: &Graph, request: &IsophoteRequest) -> Result<Change> {
         let mut change = 0;
         // SAFETY: both handles are their objects'; the request may be read and `change` written during the call.
@@ -146,7 +146,7 @@ impl Plan {
     /// All textures; passes name them by their index.
     ///
     /// # Errors
-    /// [`Error`](crate::Error) when the library fails or a texture is not of a form that the contract names.
+    /// [`Error`] when the library fails or a texture is not of a form that the contract names.
     pub fn textures(&self) -> Result<Vec<Texture<'_>>> {
         let (mut textures, mut count) = (std::ptr::null(), 0);
         // SAFETY: the handle is this object's; the other two may be written during the call.
@@ -161,7 +161,7 @@ impl Plan {
     /// All passes in the order of execution. Nothing is allocated.
     ///
     /// # Errors
-    /// [`Error`](crate::Error) when the library fails.
+    /// [`Error`] when the library fails.
     pub fn passes(&self) -> Result<impl ExactSizeIterator<Item = Pass<'_>>> {
         let (mut passes, mut count) = (std::ptr::null(), 0);
         // SAFETY: the handle is this object's; the other two may be written during the call.
@@ -176,7 +176,7 @@ impl Plan {
     /// The shader of a pass.
     ///
     /// # Errors
-    /// [`Error`](crate::Error) when there is no such pass or the library fails.
+    /// [`Error`] when there is no such pass or the library fails.
     pub fn wgsl(&self, pass: u32) -> Result<Wgsl> {
         let mut shader = std::ptr::null();
         // SAFETY: the handle is this object's; `shader` may be written during the call.
