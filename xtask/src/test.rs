@@ -275,7 +275,8 @@ fn run_named(programs: &[Program], filter: &str) -> Result<Vec<String>> {
 }
 
 /// Programs that take long, the longest first.
-const LONG: [&str; 14] = [
+const LONG: [&str; 15] = [
+    "experiments_steadiness",
     "documents",
     "docs",
     "dist",

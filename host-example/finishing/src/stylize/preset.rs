@@ -89,15 +89,16 @@ pub fn id_of_look(style: &Path) -> Option<&str> {
     style.to_str()?.strip_prefix(LOOK)
 }
 
-/// The error of the name of a look that does not ship.
-pub fn no_look(refused: isophote_loader::Error, style: &Path) -> Error {
-    const LIST: &str = "`isophote preset list` lists them";
+/// How to find a look.
+pub const LIST_OF_LOOKS: &str = "`isophote preset list` lists them";
+
+/// The error of a name that no style bears. `fix` is how to find one, unless a look is near, which the library names then.
+pub fn unknown(refused: isophote_loader::Error, style: &Path, fix: &str) -> Error {
     match refused {
-        // Unless one is near, which the library names then.
         isophote_loader::Error::Fault { fault, .. } if !fault.fix.contains(LOOK) => {
-            Error::file(style, fault.problem, LIST)
+            Error::file(style, fault.problem, fix)
         }
-        refused => refused.at(style.display(), LIST),
+        refused => refused.at(style.display(), fix),
     }
 }
 

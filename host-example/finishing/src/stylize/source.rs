@@ -21,7 +21,9 @@ pub fn read(path: &Path) -> Result<String> {
             return Ok(look.json.to_owned());
         }
         // Opened only to be told which is near.
-        library.style(&path.to_string_lossy()).map_err(|e| preset::no_look(e, path))?;
+        library
+            .style(&path.to_string_lossy())
+            .map_err(|e| preset::unknown(e, path, preset::LIST_OF_LOOKS))?;
     }
     let fix = "name a graph file or a preset (.json), or a node";
     input::text(path, MOST_BYTES).map_err(|e| Error::file(path, format!("cannot be read: {e}"), fix))

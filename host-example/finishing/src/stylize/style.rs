@@ -277,6 +277,10 @@ impl Style {
 /// How to put most presets right.
 const FIX: &str = "correct the file";
 
+/// How to find a style.
+const LIST_OF_STYLES: &str =
+    "name a node that `isophote nodes` lists, a look, or a graph file or preset (.json)";
+
 fn open(library: &Library, style: &OsStr) -> Result<Tracks> {
     if let Some(json) = style.to_str().filter(|text| preset::is_written_out(text)) {
         return open_text(library, Path::new("the graph"), json, None);
@@ -292,10 +296,10 @@ fn open(library: &Library, style: &OsStr) -> Result<Tracks> {
             let preset = if preset::is_graph(&text) { None } else { Some(preset::parse(path, &text)?) };
             open_text(library, path, &text, preset.as_ref())
         }
-        Err(refused) if preset::id_of_look(path).is_some() => Err(preset::no_look(refused, path)),
         Err(refused) => {
-            let fix = "name a node that `isophote nodes` lists, a look, or a graph file or preset (.json)";
-            Err(refused.at(path.display(), fix))
+            let is_look = preset::id_of_look(path).is_some();
+            let fix = if is_look { preset::LIST_OF_LOOKS } else { LIST_OF_STYLES };
+            Err(preset::unknown(refused, path, fix))
         }
     }
 }
