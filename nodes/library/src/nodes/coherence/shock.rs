@@ -1,10 +1,13 @@
 //! Shock filters (§ 6.4): sharp edges by eroding about minima and dilating about maxima.
 
-use crate::declare::ports;
 use crate::declare::choice::choice;
+use crate::declare::ports;
 use crate::declare::spec::{NodeSpec, Param, Scope};
+use crate::stages::shock::{
+    Directed, ITERATIONS, RADIUS, SIGMA_G, SIGMA_I, THRESHOLD, TIME_STEP, coherence_enhancing_step,
+    osher_rudin_step,
+};
 use crate::stages::{structure_tensor, tensor_options};
-use crate::stages::shock::{Directed, ITERATIONS, RADIUS, SIGMA_G, SIGMA_I, THRESHOLD, TIME_STEP, coherence_enhancing_step, osher_rudin_step};
 use isophote_engine::ImageId;
 
 /// The node.

@@ -1,8 +1,8 @@
 //! Lines over a picture (§ 4.6).
 
-use crate::kernels::colour::composite_lines::{self, Params};
 use crate::declare::ports;
 use crate::declare::spec::{ImageKind, NodeSpec, Param, Port, Scope};
+use crate::kernels::colour::composite_lines::{self, Params};
 use isophote_engine::ImageId;
 
 /// The node.

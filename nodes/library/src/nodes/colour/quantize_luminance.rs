@@ -1,8 +1,8 @@
 //! Soft quantization of lightness (§ 4.6).
 
-use crate::kernels::colour::{lab_to_rgb, rgb_to_lab};
 use crate::declare::ports;
 use crate::declare::spec::{NodeSpec, Param, Scope};
+use crate::kernels::colour::{lab_to_rgb, rgb_to_lab};
 use crate::stages::quantize_luminance::{
     BINS, LAMBDA_DELTA, LAMBDA_PHI, LEAST_GRADIENT, OMEGA_DELTA, OMEGA_PHI, PHI_Q, flattened,
 };

@@ -1,9 +1,9 @@
 //! The extended difference of Gaussians filter (§ 4.2-4.4).
 
-use crate::kernels::colour::lightness;
-use crate::kernels::lines::dog_columns::{self, Options};
 use crate::declare::ports;
 use crate::declare::spec::{NodeSpec, Scope};
+use crate::kernels::colour::lightness;
+use crate::kernels::lines::dog_columns::{self, Options};
 use crate::stages::difference_of_gaussians::{
     EDGES, EPSILON, EPSILON_P, FORM, K, P, PHI, PHI_P, SIGMA_E, TAU, THRESHOLD, xdog,
 };

@@ -1,10 +1,10 @@
 //! Classical edge detection (§ 4.1, 4.2.1): lines one pixel wide, as computer vision draws them.
 
+use crate::declare::ports;
+use crate::declare::spec::{NodeSpec, Param, Scope};
 use crate::kernels::colour::rgb_to_lab;
 use crate::kernels::lines::edge_candidates::{self, Method, Options};
 use crate::kernels::lines::{edge_gradient, edge_hysteresis};
-use crate::declare::ports;
-use crate::declare::spec::{NodeSpec, Param, Scope};
 use crate::stages::difference_of_gaussians as dog;
 use isophote_engine::ImageId;
 

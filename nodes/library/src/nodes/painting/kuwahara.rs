@@ -1,10 +1,10 @@
 //! The classical Kuwahara filter (§ 5.2) and its Gaussian variant.
 
 use crate::declare::choice::choice;
-use crate::kernels::painting::kuwahara;
-use crate::kernels::painting::kuwahara_rows::Side;
 use crate::declare::ports;
 use crate::declare::spec::{NodeSpec, Param, Scope};
+use crate::kernels::painting::kuwahara;
+use crate::kernels::painting::kuwahara_rows::Side;
 use isophote_engine::ImageId;
 
 /// The node.

@@ -1,10 +1,10 @@
 //! The flow-based bilateral filter (§ 3.5): as the oriented one, with the second pass along stream
 //! lines, so that curved features are enhanced and not smoothed away.
 
-use crate::kernels::colour::{lab_to_rgb, rgb_to_lab};
-use crate::kernels::smoothing::{flow_bilateral, oriented_bilateral};
 use crate::declare::ports;
 use crate::declare::spec::{NodeSpec, Param, Scope};
+use crate::kernels::colour::{lab_to_rgb, rgb_to_lab};
+use crate::kernels::smoothing::{flow_bilateral, oriented_bilateral};
 use crate::stages::flow_bilateral::{
     INTEGRATOR, PLACEMENT, Passes, SIGMA_DG, SIGMA_DT, SIGMA_RG, SIGMA_RT, Stepping, iteration,
 };

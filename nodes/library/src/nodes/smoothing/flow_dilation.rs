@@ -1,9 +1,9 @@
 //! Dilation of noise along stream lines (§ 5.1): brush-like strokes with sharp borders.
 
-use crate::kernels::smoothing::{flow_dilation, gaussian_blur};
-use crate::kernels::structure::noise;
 use crate::declare::ports;
 use crate::declare::spec::{HOLD, NodeSpec, Param, Scope};
+use crate::kernels::smoothing::{flow_dilation, gaussian_blur};
+use crate::kernels::structure::noise;
 use crate::stages::structure_tensor;
 use isophote_engine::{Class, ImageId};
 

@@ -1,8 +1,8 @@
 //! The Gaussian filter (§ 2.2.2, equation 2.21).
 
-use crate::kernels::smoothing::gaussian_blur;
 use crate::declare::ports;
 use crate::declare::spec::{NodeSpec, Param, Scope};
+use crate::kernels::smoothing::gaussian_blur;
 use isophote_engine::ImageId;
 
 /// The node.

@@ -2,8 +2,8 @@
 //! abstraction of Kang and Lee.
 
 use crate::declare::ports;
-use crate::kernels::smoothing::mean_curvature_flow;
 use crate::declare::spec::{NodeSpec, Param, Scope};
+use crate::kernels::smoothing::mean_curvature_flow;
 use crate::stages::{shock, structure_tensor, tensor_options};
 use isophote_engine::ImageId;
 

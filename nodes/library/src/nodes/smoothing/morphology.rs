@@ -6,9 +6,9 @@
 //! light.
 
 use crate::declare::choice::choice;
-use crate::kernels::smoothing::disc_extremum::{self, Extremum};
 use crate::declare::ports;
 use crate::declare::spec::{NodeSpec, Param, Scope};
+use crate::kernels::smoothing::disc_extremum::{self, Extremum};
 use crate::stages::morphology::{close, open};
 use isophote_engine::ImageId;
 

@@ -1,9 +1,9 @@
 //! The orientation-aligned bilateral filter (§ 3.4): regions of like colour become flat, borders stay.
 
-use crate::kernels::colour::{lab_to_rgb, rgb_to_lab};
-use crate::kernels::smoothing::oriented_bilateral::Options;
 use crate::declare::ports;
 use crate::declare::spec::{NodeSpec, Param, STEADINESS, Scope, WINDOW};
+use crate::kernels::colour::{lab_to_rgb, rgb_to_lab};
+use crate::kernels::smoothing::oriented_bilateral::Options;
 use crate::stages::oriented_bilateral::{
     ANISOTROPY, Passes, SAMPLING, SIGMA_DG, SIGMA_DT, SIGMA_RG, SIGMA_RT, iteration,
 };

@@ -1,13 +1,13 @@
 //! A blueprint: light lines on tinted paper (§ 1.2, 4.5).
 
-use crate::kernels::colour::blueprint_paper::{self, Sheet};
-use crate::kernels::colour::{lightness, rgb_to_lab};
 use crate::declare::ports;
 use crate::declare::spec::{NodeSpec, Param, STEADINESS, Scope, WINDOW};
+use crate::declare::value::Value;
+use crate::kernels::colour::blueprint_paper::{self, Sheet};
+use crate::kernels::colour::{lightness, rgb_to_lab};
 use crate::stages::abstraction::{self, Abstraction};
 use crate::stages::steady::{Agreement, COLOUR_AGREEMENT, Steadied, steadied};
 use crate::stages::{ADVANCED, LOOK, difference_of_gaussians as dog, flow_dog, flow_map, lines};
-use crate::declare::value::Value;
 use isophote_engine::ImageId;
 
 /// The node.

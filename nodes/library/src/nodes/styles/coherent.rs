@@ -1,14 +1,14 @@
 //! Coherence-enhancing filtering as a style (§ 6).
 
-use crate::kernels::colour::quantize_luminance::{self, Steepness};
-use crate::kernels::colour::{lab_to_rgb, rgb_to_lab};
 use crate::declare::ports;
 use crate::declare::spec::{NodeSpec, Param, STEADINESS, Scope, WINDOW};
+use crate::declare::value::Value;
+use crate::kernels::colour::quantize_luminance::{self, Steepness};
+use crate::kernels::colour::{lab_to_rgb, rgb_to_lab};
 use crate::stages::coherence_enhancing::{self as filter, Filter, filtered};
 use crate::stages::{
     ADVANCED, LOOK, abstraction, quantization as levels, quantize_luminance as quantization, shock, tone,
 };
-use crate::declare::value::Value;
 use isophote_engine::ImageId;
 
 /// The node.

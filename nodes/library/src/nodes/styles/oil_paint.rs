@@ -2,15 +2,17 @@
 //! the flow its strokes.
 
 use crate::declare::ports;
-use crate::kernels::colour::{lab_to_rgb, rgb_to_lab};
+use crate::declare::spec::{HOLD, NodeSpec, Param, RENEWAL, STEADINESS, Scope, WINDOW};
 use crate::kernels::colour::paint_relief::{self, Relief};
+use crate::kernels::colour::{lab_to_rgb, rgb_to_lab};
 use crate::kernels::smoothing::flow_dilation;
 use crate::kernels::smoothing::line_integral_convolution::{self, Adapt, Options as Lic};
-use crate::declare::spec::{HOLD, NodeSpec, Param, RENEWAL, STEADINESS, Scope, WINDOW};
-use crate::stages::{ADVANCED, LOOK, flow_map, line_integral_convolution as lic, marks, structure_tensor, tone};
 use crate::stages::abstraction::{self, Abstraction};
 use crate::stages::steady::{Agreement, COLOUR_AGREEMENT, Steadied, steadied};
 use crate::stages::tensor_options::TensorOptions;
+use crate::stages::{
+    ADVANCED, LOOK, flow_map, line_integral_convolution as lic, marks, structure_tensor, tone,
+};
 use isophote_engine::{ImageId, math};
 
 /// The node.

@@ -1,16 +1,16 @@
 //! A painting: the multi-scale anisotropic Kuwahara filter (§ 5.5), which abstracts strongly and keeps the
 //! direction of features as strokes.
 
-use crate::kernels::colour::{lab_to_rgb, rgb_to_lab};
 use crate::declare::ports;
 use crate::declare::spec::{NodeSpec, Param, Port, STEADINESS, Scope, WINDOW};
+use crate::declare::value::Value;
+use crate::kernels::colour::{lab_to_rgb, rgb_to_lab};
 use crate::stages::anisotropic_kuwahara::{
     ALPHA, LEVELS, LIMIT_RANGE, P_D, P_S, Painting, RADIUS, TAU_V, TAU_W, Weights,
 };
 use crate::stages::generalized_kuwahara::{Q, SECTORS, THRESHOLD};
 use crate::stages::steady::steadied_picture;
 use crate::stages::{ADVANCED, LOOK, abstraction, flow_dog, tone};
-use crate::declare::value::Value;
 use isophote_engine::ImageId;
 
 /// The node.

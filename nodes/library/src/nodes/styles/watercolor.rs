@@ -1,16 +1,18 @@
 //! Watercolour (§ 1.2, 5.1): flat washes with dark borders on grained paper, after Bousseau et al. 2006.
 
 use crate::declare::ports;
-use crate::kernels::colour::{lab_to_rgb, rgb_to_lab};
+use crate::declare::spec::{NodeSpec, Param, RENEWAL, STEADINESS, Scope, WINDOW};
 use crate::kernels::colour::watercolor_wash::{self, CLOUDS, Wash};
+use crate::kernels::colour::{lab_to_rgb, rgb_to_lab};
 use crate::kernels::smoothing::gaussian_blur;
 use crate::kernels::smoothing::line_integral_convolution::{self, Options as Lic};
 use crate::kernels::smoothing::wobble::{self, Options as Wobble};
-use crate::declare::spec::{NodeSpec, Param, RENEWAL, STEADINESS, Scope, WINDOW};
-use crate::stages::{ADVANCED, LOOK, flow_map, line_integral_convolution as lic, marks, morphology, structure_tensor, tone};
 use crate::stages::abstraction::{self, Abstraction};
 use crate::stages::steady::{Agreement, COLOUR_AGREEMENT, Steadied, steadied};
 use crate::stages::tensor_options::TensorOptions;
+use crate::stages::{
+    ADVANCED, LOOK, flow_map, line_integral_convolution as lic, marks, morphology, structure_tensor, tone,
+};
 use isophote_engine::ImageId;
 
 /// The node.

@@ -2,8 +2,8 @@
 
 use crate::declare::ports;
 use crate::declare::spec::{NodeSpec, Param, STEADINESS, Scope, WINDOW};
-use crate::stages::steady::{Agreement, COLOUR_AGREEMENT, Steadied, compared, steadied};
 use crate::declare::value::Value;
+use crate::stages::steady::{Agreement, COLOUR_AGREEMENT, Steadied, compared, steadied};
 use isophote_engine::ImageId;
 
 /// The node.
