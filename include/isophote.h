@@ -1092,9 +1092,9 @@ typedef struct IsophoteLook {
 typedef struct IsophoteFault {
   // File and parameter at fault; empty where the caller knows them alone.
   struct IsophoteText place;
-  // What is wrong with it.
+  // Problem with it.
   struct IsophoteText problem;
-  // How to put it right; empty where the problem says that.
+  // Way to put it right; empty where the problem says that.
   struct IsophoteText fix;
   // Id of the node whose declaration says what is possible; empty for none.
   struct IsophoteText node;

@@ -38,9 +38,9 @@ pub struct IsophoteLook {
 pub struct IsophoteFault {
     /// File and parameter at fault; empty where the caller knows them alone.
     pub place: IsophoteText,
-    /// What is wrong with it.
+    /// Problem with it.
     pub problem: IsophoteText,
-    /// How to put it right; empty where the problem says that.
+    /// Way to put it right; empty where the problem says that.
     pub fix: IsophoteText,
     /// Id of the node whose declaration says what is possible; empty for none.
     pub node: IsophoteText,

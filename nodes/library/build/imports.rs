@@ -6,10 +6,10 @@ use std::path::Path;
 /// Group and stem of a file.
 pub type Name = (String, String);
 
-/// What several shaders share, and its twins in Rust.
+/// Folder of what several shaders share, and of its twins in Rust.
 pub const SHARED: &str = "shared";
 
-/// What only GPUs need, such as where a texture lies in the picture, and functions for devices that filter, under the
+/// Folder of what only GPUs need, such as where a texture lies in the picture, and functions for devices that filter, under the
 /// stems of `shared`; it has no twins.
 pub const GPU: &str = "gpu";
 

@@ -66,7 +66,7 @@ macro_rules! guides {
             /// None of them.
             pub const NONE: Self = Self { $($id: false,)+ };
 
-            /// Those that `has` says there are.
+            /// Set of those that `has` says there are.
             pub fn of(has: impl Fn(GraphInput) -> bool) -> Self {
                 Self { $($id: has(GraphInput::$guide),)+ }
             }
@@ -89,7 +89,7 @@ guides! {
     Depth depth ("Depth", Depth),
     /// A number per object, 0 where there is nothing.
     ObjectId object_id ("Object id", ObjectId),
-    /// How much of the result is used, 0 to 1.
+    /// Share of the result that is used, 0 to 1.
     Mask mask ("Mask", Scalar),
     /// A painted flow map: x and y in red and green, 0.5 for none, and its strength in alpha.
     Flow flow ("Flow", Flow),

@@ -129,7 +129,7 @@ impl Look {
     }
 }
 
-/// What the library reports of the text of a preset.
+/// Report of the library on the text of a preset.
 #[derive(Deserialize)]
 struct Report {
     preset: Option<Preset>,

@@ -76,7 +76,7 @@ pub mod native {
         Ok(looks.into_iter().map(|look| (look.id, look.json)).collect())
     }
 
-    /// What the text of a preset says, as JSON of one form; none for the text of a graph. `place` names it in messages.
+    /// Content of the text of a preset, as JSON of one form; none for the text of a graph. `place` names it in messages.
     #[pyfunction]
     fn read_preset(py: Python<'_>, place: &str, json: &str) -> PyResult<Option<String>> {
         let read = library()?.read_style(place, json).map_err(|error| raised(py, &error))?;

@@ -19,7 +19,7 @@ impl Look {
     /// The look that a page names, or writes out.
     ///
     /// # Errors
-    /// Those of [`preset::open`] and [`preset::open_json`].
+    /// Faults of [`preset::open`] and [`preset::open_json`].
     pub fn read(json: &Value, frame: i64) -> Result<Self, Error> {
         let (mut graph, settings) = match json {
             Value::String(name) => preset::open(name)?,

@@ -86,7 +86,7 @@ pub struct Planner {
     library: Library,
     layers: Vec<Layer>,
     guides: Vec<Guide>,
-    /// Whether frames have painted flow maps.
+    /// True where frames have painted flow maps.
     has_flow: bool,
     /// What filtering a picture of this size takes, as was found last.
     last: Option<((u32, u32), u64)>,

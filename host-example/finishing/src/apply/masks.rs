@@ -238,7 +238,7 @@ impl Flow {
         of_file(&self.kept, &self.place, frame, || Self::read(&path, frame))
     }
 
-    /// What is in a file, in the size of a picture.
+    /// Map in a file, in the size of a picture.
     fn read(path: &Path, frame: Frame) -> Result<Pixels> {
         let source = read::open(path, &Selection::default())?.decode(path)?;
         let Some(picture) = source.pictures.into_iter().next() else {
@@ -276,7 +276,7 @@ impl Flow {
     }
 }
 
-/// What a file holds for a picture of this frame: as it was kept, or as it is read, and kept where all frames have it in
+/// Map that a file holds for a picture of this frame: as it was kept, or as it is read, and kept where all frames have it in
 /// common.
 fn of_file(
     kept: &Mutex<Option<(Frame, Pixels)>>,

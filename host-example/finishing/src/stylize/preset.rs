@@ -8,7 +8,7 @@ use isophote_files::error::{AtPlace, Error, Result};
 use isophote_loader::Library;
 pub use isophote_loader::preset::{LOOK, Lengths, Look, Preset, StyleText, Title, Track};
 
-/// How to put most presets right.
+/// Way to put most presets right.
 const FIX: &str = "correct the preset";
 
 /// Reads the text of the file `path`.
@@ -89,7 +89,7 @@ pub fn id_of_look(style: &Path) -> Option<&str> {
     style.to_str()?.strip_prefix(LOOK)
 }
 
-/// How to find a look.
+/// Way to find a look.
 pub const LIST_OF_LOOKS: &str = "`isophote preset list` lists them";
 
 /// The error of a name that no style bears. `fix` is how to find one, unless a look is near, which the library names then.

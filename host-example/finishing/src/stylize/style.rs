@@ -231,7 +231,7 @@ impl Style {
         Ok(false)
     }
 
-    /// Whether a node of the graph reads a guide that enters it by its name.
+    /// True where a node of the graph reads a guide that enters it by its name.
     ///
     /// # Errors
     /// [`Error::Failure`] when the library fails.
@@ -274,10 +274,10 @@ impl Style {
     }
 }
 
-/// How to put most presets right.
+/// Way to put most presets right.
 const FIX: &str = "correct the file";
 
-/// How to find a style.
+/// Way to find a style.
 const LIST_OF_STYLES: &str =
     "name a node that `isophote nodes` lists, a look, or a graph file or preset (.json)";
 

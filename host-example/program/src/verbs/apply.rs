@@ -356,7 +356,7 @@ impl ApplyArgs {
         }
     }
 
-    /// What lies over the pictures: masks, and the flow map.
+    /// Maps over the pictures: masks, and the flow map.
     ///
     /// # Errors
     /// As [`Masks::new`]; [`Error::Input`] for a flow map that no style would follow.

@@ -11,7 +11,7 @@ macro_rules! joined {
     ($($case:ident $text:literal)*) => { concat!($($text),*) };
 }
 
-/// Those pieces.
+/// Pieces of that text.
 macro_rules! pieces {
     (@ Text $text:literal) => { Piece::Text($text) };
     (@ Name $text:literal) => { Piece::Name($text) };

@@ -117,7 +117,7 @@ pub fn decimal(value: f32) -> f64 {
     value.to_string().parse().unwrap_or(f64::from(value))
 }
 
-/// How people write colours.
+/// Forms in which people write colours.
 const COLOUR: &str = "a colour such as #12407b or 0.1,0.2,0.5";
 
 /// A channel of a colour, in the precision that its reader needs.

@@ -9,9 +9,9 @@ use std::fmt::{Display, Formatter};
 pub struct Fault {
     /// File and parameter at fault; empty where the caller knows them alone.
     pub place: String,
-    /// What is wrong with it.
+    /// Problem with it.
     pub problem: String,
-    /// How to put it right; empty where the problem says that.
+    /// Way to put it right; empty where the problem says that.
     pub fix: String,
     /// Id of the node whose declaration says what is possible; empty for none.
     pub node: String,

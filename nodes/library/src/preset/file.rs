@@ -170,7 +170,7 @@ pub fn is_graph(text: &str) -> bool {
     serde_json::from_str(text).is_ok_and(|json| has(&json, "nodes") || has(&json, "format"))
 }
 
-/// What the file says of a parameter, unless it has faults, which are added.
+/// Setting of a parameter as the file has it, unless it has faults, which are added.
 fn track(place: &str, value: Value, faults: &mut Vec<Fault>) -> Option<Track> {
     let before = faults.len();
     let Value::Object(object) = value else {

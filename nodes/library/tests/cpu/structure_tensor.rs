@@ -76,7 +76,7 @@ impl Scene {
     }
 }
 
-/// How far the tangent at a pixel is from a direction, as the sine of the angle.
+/// Sine of the angle between the tangent at a pixel and a direction.
 fn off(tensor: &Image, x: i32, y: i32, direction: [f32; 2]) -> f32 {
     let t = tensor.pixel(x, y);
     let [tx, ty] = scalar::tangent(t[0], t[1], t[2]);
