@@ -3,6 +3,8 @@
 //! and the list of kernels.
 //! A shader that is broken, or that has no Rust file of the same stem, fails the build.
 
+#[path = "build/directives.rs"]
+mod directives;
 #[path = "build/filtered.rs"]
 mod filtered;
 #[path = "build/generated.rs"]

@@ -15,10 +15,10 @@ struct Params {
     weights: array<vec4f, 3>,
 }
 
-@group(0) @binding(1) var<uniform> params: Params;
-@group(0) @binding(2) var source: texture_2d<f32>;
-@group(0) @binding(3) var earlier: texture_2d<f32>;
-@group(0) @binding(4) var target_image: texture_storage_2d<rgba32float, write>;
+#params
+#input source
+#input earlier
+#output target_image rgba32float
 
 // E, F and G on a square of 24 x 24 pixels, and smoothed along its rows.
 var<workgroup> square: array<vec3f, 576>;

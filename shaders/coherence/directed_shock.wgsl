@@ -18,12 +18,12 @@ struct Params {
     threshold: f32,
 }
 
-@group(0) @binding(1) var<uniform> params: Params;
-@group(0) @binding(2) var source: texture_2d<f32>;
-@group(0) @binding(3) var tensors: texture_2d<f32>;
+#params
+#input source
+#input tensors
 // What the derivative is taken of.
-@group(0) @binding(4) var smooth_source: texture_2d<f32>;
-@group(0) @binding(5) var target_image: texture_storage_2d<rgba32float, write>;
+#input smooth_source
+#output target_image rgba32float
 
 // A line through a pixel (Fig. 3.9).
 struct PixelSteps {

@@ -3,8 +3,8 @@
 // Cost: five loads.
 #import gpu/grid
 
-@group(0) @binding(2) var source: texture_2d<f32>;
-@group(0) @binding(3) var target_image: texture_storage_2d<rgba32float, write>;
+#input source
+#output target_image rgba32float
 
 // By how much a neighbour exceeds the centre; where it is transparent it stands for the centre.
 fn excess(p: vec2i, centre: vec3f) -> vec3f {

@@ -4,9 +4,9 @@
 #import gpu/grid
 #import shared/tensor
 
-@group(0) @binding(2) var source: texture_2d<f32>;
-@group(0) @binding(3) var tensors: texture_2d<f32>;
-@group(0) @binding(4) var target_image: texture_storage_2d<rgba32float, write>;
+#input source
+#input tensors
+#output target_image rgba32float
 
 // By how much a neighbour exceeds the centre; where it is transparent it stands for the centre.
 fn excess(p: vec2i, centre: vec3f) -> vec3f {

@@ -10,10 +10,10 @@ struct Params {
     steepness: f32,
 }
 
-@group(0) @binding(1) var<uniform> params: Params;
-@group(0) @binding(2) var source: texture_2d<f32>;
-@group(0) @binding(3) var detector: texture_2d<f32>;
-@group(0) @binding(4) var target_image: texture_storage_2d<rgba32float, write>;
+#params
+#input source
+#input detector
+#output target_image rgba32float
 
 // By how much a neighbour lies on the side that the step goes to; where it is transparent it stands for
 // the centre.

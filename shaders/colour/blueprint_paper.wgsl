@@ -26,10 +26,10 @@ struct Params {
     origin: vec2f,
 }
 
-@group(0) @binding(1) var<uniform> params: Params;
-@group(0) @binding(2) var lightness: texture_2d<f32>;
-@group(0) @binding(3) var edges: texture_2d<f32>;
-@group(0) @binding(4) var target_image: texture_storage_2d<rgba32float, write>;
+#params
+#input lightness
+#input edges
+#output target_image rgba32float
 
 // How much of a pixel at `x` is covered by lines `width` wide, `spacing` apart.
 fn ruled(x: vec2f, spacing: f32, width: f32) -> f32 {

@@ -9,10 +9,10 @@ struct Params {
     paper: vec4f,
 }
 
-@group(0) @binding(1) var<uniform> params: Params;
-@group(0) @binding(2) var source: texture_2d<f32>;
-@group(0) @binding(3) var edges: texture_2d<f32>;
-@group(0) @binding(4) var target_image: texture_storage_2d<rgba32float, write>;
+#params
+#input source
+#input edges
+#output target_image rgba32float
 
 fn of_pixel(id: vec3u, v: vec4f, edges: vec4f) -> vec4f {
     let ink = (1.0 - clamp(edges.x, 0.0, 1.0)) * params.line.a;

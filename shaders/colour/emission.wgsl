@@ -3,8 +3,8 @@
 #import gpu/grid
 #import shared/host_colour
 
-@group(0) @binding(2) var source: texture_2d<f32>;
-@group(0) @binding(3) var target_image: texture_storage_2d<rgba32float, write>;
+#input source
+#output target_image rgba32float
 
 fn of_pixel(id: vec3u, source: vec4f) -> vec4f {
     return vec4f(beyond_coverage(finite(source)), 1.0);

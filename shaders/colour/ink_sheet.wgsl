@@ -29,14 +29,14 @@ struct Params {
     origin: vec2f,
 }
 
-@group(0) @binding(1) var<uniform> params: Params;
+#params
 // Black lines on white.
-@group(0) @binding(2) var lines: texture_2d<f32>;
-@group(0) @binding(3) var source: texture_2d<f32>;
-@group(0) @binding(4) var strokes: texture_2d<f32>;
+#input lines
+#input source
+#input strokes
 // The share of the paper that marks cover, and how far grain shows in them.
-@group(0) @binding(5) var marks: texture_2d<f32>;
-@group(0) @binding(6) var target_image: texture_storage_2d<rgba32float, write>;
+#input marks
+#output target_image rgba32float
 
 // Noise whose values fill 0..1.
 fn even(v: f32) -> f32 {

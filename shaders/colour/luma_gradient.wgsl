@@ -2,8 +2,8 @@
 // Cost: nine loads.
 #import gpu/grid
 
-@group(0) @binding(2) var source: texture_2d<f32>;
-@group(0) @binding(3) var target_image: texture_storage_2d<rgba32float, write>;
+#input source
+#output target_image rgba32float
 
 fn luma(v: vec4f) -> f32 {
     return dot(v.rgb, vec3f(0.2126, 0.7152, 0.0722));

@@ -7,10 +7,10 @@ struct Params {
     amount: f32,
 }
 
-@group(0) @binding(1) var<uniform> params: Params;
-@group(0) @binding(2) var first: texture_2d<f32>;
-@group(0) @binding(3) var second: texture_2d<f32>;
-@group(0) @binding(4) var target_image: texture_storage_2d<rgba32float, write>;
+#params
+#input first
+#input second
+#output target_image rgba32float
 
 fn of_pixel(id: vec3u, a: vec4f, b: vec4f) -> vec4f {
     let weights = vec2f((1.0 - params.amount) * a.a, params.amount * b.a);

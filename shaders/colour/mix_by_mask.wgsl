@@ -8,11 +8,11 @@ struct Params {
     amount: f32,
 }
 
-@group(0) @binding(1) var<uniform> params: Params;
-@group(0) @binding(2) var first: texture_2d<f32>;
-@group(0) @binding(3) var second: texture_2d<f32>;
-@group(0) @binding(4) var mask: texture_2d<f32>;
-@group(0) @binding(5) var target_image: texture_storage_2d<rgba32float, write>;
+#params
+#input first
+#input second
+#input mask
+#output target_image rgba32float
 
 fn of_pixel(id: vec3u, a: vec4f, b: vec4f, mask: vec4f) -> vec4f {
     // As coverage comes in: cut to 0..=1, and 0 for what is not a number.

@@ -9,10 +9,10 @@ struct Params {
     bristle: f32,
 }
 
-@group(0) @binding(1) var<uniform> params: Params;
-@group(0) @binding(2) var source: texture_2d<f32>;
-@group(0) @binding(3) var heights: texture_2d<f32>;
-@group(0) @binding(4) var target_image: texture_storage_2d<rgba32float, write>;
+#params
+#input source
+#input heights
+#output target_image rgba32float
 
 fn height(p: vec2i) -> f32 {
     return fetch(heights, 1u, p).x;

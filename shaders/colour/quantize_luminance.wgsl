@@ -25,11 +25,11 @@ struct Params {
     crispest: f32,
 }
 
-@group(0) @binding(1) var<uniform> params: Params;
-@group(0) @binding(2) var source: texture_2d<f32>;
+#params
+#input source
 // The mean gradient of L around each pixel, at half the size.
-@group(0) @binding(3) var tones_around: texture_2d<f32>;
-@group(0) @binding(4) var target_image: texture_storage_2d<rgba32float, write>;
+#input tones_around
+#output target_image rgba32float
 
 const INPUT_SOURCE: u32 = 0u;
 const INPUT_TONES_AROUND: u32 = 1u;

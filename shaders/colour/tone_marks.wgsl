@@ -40,14 +40,14 @@ struct Params {
     given_gain: f32,
 }
 
-@group(0) @binding(1) var<uniform> params: Params;
+#params
 // (L alpha, alpha).
-@group(0) @binding(2) var tones: texture_2d<f32>;
-@group(0) @binding(3) var tensor: texture_2d<f32>;
-@group(0) @binding(4) var strokes: texture_2d<f32>;
-@group(0) @binding(5) var first_hatching: texture_2d<f32>;
-@group(0) @binding(6) var second_hatching: texture_2d<f32>;
-@group(0) @binding(7) var target_image: texture_storage_2d<rg32float, write>;
+#input tones
+#input tensor
+#input strokes
+#input first_hatching
+#input second_hatching
+#output target_image rg32float
 
 const HALF: vec2f = vec2f(0.5);
 

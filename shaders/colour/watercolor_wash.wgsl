@@ -24,11 +24,11 @@ struct Params {
     given: u32,
 }
 
-@group(0) @binding(1) var<uniform> params: Params;
-@group(0) @binding(2) var source: texture_2d<f32>;
-@group(0) @binding(3) var blurred: texture_2d<f32>;
-@group(0) @binding(4) var given_clouds: texture_2d<f32>;
-@group(0) @binding(5) var target_image: texture_storage_2d<rgba32float, write>;
+#params
+#input source
+#input blurred
+#input given_clouds
+#output target_image rgba32float
 
 // Luma within the range of paper.
 fn luma(c: vec3f) -> f32 {

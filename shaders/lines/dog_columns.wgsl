@@ -23,9 +23,9 @@ struct Params {
     wide: array<vec4f, 64>,
 }
 
-@group(0) @binding(1) var<uniform> params: Params;
-@group(0) @binding(2) var source: texture_2d<f32>;
-@group(0) @binding(3) var target_image: texture_storage_2d<r32float, write>;
+#params
+#input source
+#output target_image r32float
 
 fn weights(i: i32) -> vec4f {
     return vec4f(vec2f(params.narrow[i >> 2u][i & 3]), vec2f(params.wide[i >> 2u][i & 3]));

@@ -13,9 +13,9 @@ struct Params {
     wide: array<vec4f, 64>,
 }
 
-@group(0) @binding(1) var<uniform> params: Params;
-@group(0) @binding(2) var source: texture_2d<f32>;
-@group(0) @binding(3) var target_image: texture_storage_2d<rgba32float, write>;
+#params
+#input source
+#output target_image rgba32float
 
 const WINDOW_PIXELS: i32 = WINDOW_LINE;
 

@@ -22,13 +22,13 @@ struct Params {
     phi: f32,
 }
 
-@group(0) @binding(1) var<uniform> params: Params;
-@group(0) @binding(2) var response: texture_2d<f32>;
+#params
+#input response
 // Share of the last frame, sum of weights.
-@group(0) @binding(3) var shares: texture_2d<f32>;
+#input shares
 // To the nearest other frame, pixels.
-@group(0) @binding(4) var motion: texture_2d<f32>;
-@group(0) @binding(5) var target_image: texture_storage_2d<r32float, write>;
+#input motion
+#output target_image r32float
 
 // The response beside one; that one itself where nothing is covered.
 fn beside(p: vec2i, own: f32) -> f32 {

@@ -13,10 +13,10 @@ struct Params {
     high: f32,
 }
 
-@group(0) @binding(1) var<uniform> params: Params;
+#params
 // gx, gy, height, Laplacian; see edge_gradient.
-@group(0) @binding(2) var gradient: texture_2d<f32>;
-@group(0) @binding(3) var target_image: texture_storage_2d<r32float, write>;
+#input gradient
+#output target_image r32float
 
 // Values nearer to each other than this ratio count as equal: decided by rounding, lines would be ragged.
 const TIE: f32 = 1.0005;

@@ -13,9 +13,9 @@ struct Params {
     scale: f32,
 }
 
-@group(0) @binding(1) var<uniform> params: Params;
-@group(0) @binding(2) var source: texture_2d<f32>;
-@group(0) @binding(3) var target_image: texture_storage_2d<rgba32float, write>;
+#params
+#input source
+#output target_image rgba32float
 
 // How far the lightness at p is above `own`, as far as the pixel is covered.
 fn rise(p: vec2i, own: f32) -> f32 {

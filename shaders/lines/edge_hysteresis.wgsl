@@ -16,9 +16,9 @@ struct Params {
     strong: f32,
 }
 
-@group(0) @binding(1) var<uniform> params: Params;
-@group(0) @binding(2) var candidates: texture_2d<f32>;
-@group(0) @binding(3) var target_image: texture_storage_2d<r32float, write>;
+#params
+#input candidates
+#output target_image r32float
 
 // Half rows while they are read; bit 0 is the leftmost pixel.
 var<workgroup> candidate_halves: array<u32, 64>;

@@ -16,11 +16,11 @@ struct Params {
     phi: f32,
 }
 
-@group(0) @binding(1) var<uniform> params: Params;
-@group(0) @binding(2) var response: texture_2d<f32>;
+#params
+#input response
 // (E - G, F), see orientation_field.
-@group(0) @binding(3) var field: texture_2d<f32>;
-@group(0) @binding(4) var target_image: texture_storage_2d<r32float, write>;
+#input field
+#output target_image r32float
 
 @compute @workgroup_size(8, 8)
 fn main(@builtin(global_invocation_id) id: vec3u) {

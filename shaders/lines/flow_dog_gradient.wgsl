@@ -22,11 +22,11 @@ struct Params {
     edge: f32,
 }
 
-@group(0) @binding(1) var<uniform> params: Params;
-@group(0) @binding(2) var lightness: texture_2d<f32>;
+#params
+#input lightness
 // (E - G, F), see orientation_field.
-@group(0) @binding(3) var field: texture_2d<f32>;
-@group(0) @binding(4) var target_image: texture_storage_2d<rg32float, write>;
+#input field
+#output target_image rg32float
 
 // The interpolated sample k steps along the line.
 fn sample(line: Line, k: i32, inside: bool) -> vec2f {

@@ -30,13 +30,13 @@ struct Params {
     phi: f32,
 }
 
-@group(0) @binding(1) var<uniform> params: Params;
-@group(0) @binding(2) var lightness: texture_2d<f32>;
+#params
+#input lightness
 // (E - G, F), see orientation_field.
-@group(0) @binding(3) var field: texture_2d<f32>;
+#input field
 // Lightness less the lines that guides draw.
-@group(0) @binding(4) var marked: texture_2d<f32>;
-@group(0) @binding(5) var target_image: texture_storage_2d<r32float, write>;
+#input marked
+#output target_image r32float
 
 const CABRAL_LEEDOM = 3u;
 

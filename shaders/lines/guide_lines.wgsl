@@ -26,14 +26,14 @@ struct Params {
     guides: u32,
 }
 
-@group(0) @binding(1) var<uniform> params: Params;
-@group(0) @binding(2) var response: texture_2d<f32>;
+#params
+#input response
 // (E - G, F), see orientation_field.
-@group(0) @binding(3) var field: texture_2d<f32>;
-@group(0) @binding(4) var normal: texture_2d<f32>;
-@group(0) @binding(5) var depth: texture_2d<f32>;
-@group(0) @binding(6) var object_id: texture_2d<f32>;
-@group(0) @binding(7) var target_image: texture_storage_2d<rg32float, write>;
+#input field
+#input normal
+#input depth
+#input object_id
+#output target_image rg32float
 
 // False for NaN and infinities, by bits: shader compilers may assume that they do not exist.
 fn is_finite(v: f32) -> bool {

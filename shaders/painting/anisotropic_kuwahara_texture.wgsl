@@ -24,11 +24,11 @@ struct Params {
     weights: array<vec4f, 960>,
 }
 
-@group(0) @binding(1) var<uniform> params: Params;
-@group(0) @binding(2) var source: texture_2d<f32>;
-@group(0) @binding(3) var tensors: texture_2d<f32>;
-@group(0) @binding(4) var target_image: texture_storage_2d<rgba32float, write>;
-@group(0) @binding(5) var deviations: texture_storage_2d<r32float, write>;
+#params
+#input source
+#input tensors
+#output target_image rgba32float
+#output deviations r32float
 
 const WINDOW_PIXELS: i32 = WINDOW_AREA_BESIDE_WEIGHTS;
 

@@ -16,12 +16,12 @@ struct Params {
     weights: array<vec4f, 32>,
 }
 
-@group(0) @binding(1) var<uniform> params: Params;
-@group(0) @binding(2) var left_sums: texture_2d<f32>;
-@group(0) @binding(3) var right_sums: texture_2d<f32>;
-@group(0) @binding(4) var square_sums: texture_2d<f32>;
-@group(0) @binding(5) var source: texture_2d<f32>;
-@group(0) @binding(6) var target_image: texture_storage_2d<rgba32float, write>;
+#params
+#input left_sums
+#input right_sums
+#input square_sums
+#input source
+#output target_image rgba32float
 
 // Rounding of a variance, as a share of the mean square.
 const ROUNDING: f32 = 4e-6;

@@ -14,11 +14,11 @@ struct Params {
     weights: array<vec4f, 32>,
 }
 
-@group(0) @binding(1) var<uniform> params: Params;
-@group(0) @binding(2) var source: texture_2d<f32>;
-@group(0) @binding(3) var left_sums: texture_storage_2d<rgba32float, write>;
-@group(0) @binding(4) var right_sums: texture_storage_2d<rgba32float, write>;
-@group(0) @binding(5) var square_sums: texture_storage_2d<rg32float, write>;
+#params
+#input source
+#output left_sums rgba32float
+#output right_sums rgba32float
+#output square_sums rg32float
 
 const WINDOW_PIXELS: i32 = WINDOW_LINE;
 

@@ -16,9 +16,9 @@ struct Params {
     limited: u32,
 }
 
-@group(0) @binding(1) var<uniform> params: Params;
-@group(0) @binding(2) var source: texture_2d<f32>;
-@group(0) @binding(3) var target_image: texture_storage_2d<rgba32float, write>;
+#params
+#input source
+#output target_image rgba32float
 
 fn lobe(d: i32) -> f32 {
     // Offsets 0, 1, 2, ... and -1, -2, -3, ... lie 1/2, 3/2, 5/2, ... from the centre.

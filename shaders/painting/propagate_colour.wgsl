@@ -16,12 +16,12 @@ struct Params {
     inverse_ramp: f32,
 }
 
-@group(0) @binding(1) var<uniform> params: Params;
-@group(0) @binding(2) var source: texture_2d<f32>;
-@group(0) @binding(3) var coarse: texture_2d<f32>;
-@group(0) @binding(4) var deviations: texture_2d<f32>;
-@group(0) @binding(5) var structure: texture_2d<f32>;
-@group(0) @binding(6) var target_image: texture_storage_2d<rgba32float, write>;
+#params
+#input source
+#input coarse
+#input deviations
+#input structure
+#output target_image rgba32float
 
 @compute @workgroup_size(8, 8)
 fn main(@builtin(global_invocation_id) id: vec3u) {

@@ -7,9 +7,9 @@
 // Least anisotropy that counts.
 const FLOOR: f32 = 1e-3;
 
-@group(0) @binding(2) var fine: texture_2d<f32>;
-@group(0) @binding(3) var coarse: texture_2d<f32>;
-@group(0) @binding(4) var target_image: texture_storage_2d<rgba32float, write>;
+#input fine
+#input coarse
+#output target_image rgba32float
 
 @compute @workgroup_size(8, 8)
 fn main(@builtin(global_invocation_id) id: vec3u) {

@@ -14,10 +14,10 @@ struct Params {
     adapt: u32,
 }
 
-@group(0) @binding(1) var<uniform> params: Params;
-@group(0) @binding(2) var source: texture_2d<f32>;
-@group(0) @binding(3) var tensors: texture_2d<f32>;
-@group(0) @binding(4) var target_image: texture_storage_2d<rgba32float, write>;
+#params
+#input source
+#input tensors
+#output target_image rgba32float
 
 const INPUT_TENSORS = 1u;
 

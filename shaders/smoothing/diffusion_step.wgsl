@@ -7,10 +7,10 @@ struct Params {
     time_step: f32,
 }
 
-@group(0) @binding(1) var<uniform> params: Params;
-@group(0) @binding(2) var source: texture_2d<f32>;
-@group(0) @binding(3) var weights: texture_2d<f32>;
-@group(0) @binding(4) var target_image: texture_storage_2d<rgba32float, write>;
+#params
+#input source
+#input weights
+#output target_image rgba32float
 
 // The workgroup's pixels and those around them.
 var<workgroup> colours: array<vec4f, 100>;

@@ -11,9 +11,9 @@ struct Params {
     scheme: u32,
 }
 
-@group(0) @binding(1) var<uniform> params: Params;
-@group(0) @binding(2) var tensors: texture_2d<f32>;
-@group(0) @binding(3) var target_image: texture_storage_2d<rgba32float, write>;
+#params
+#input tensors
+#output target_image rgba32float
 
 const COHERENCE_ENHANCING = 1u;
 

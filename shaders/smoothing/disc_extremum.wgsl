@@ -12,9 +12,9 @@ struct Params {
     sign: f32,
 }
 
-@group(0) @binding(1) var<uniform> params: Params;
-@group(0) @binding(2) var source: texture_2d<f32>;
-@group(0) @binding(3) var target_image: texture_storage_2d<rgba32float, write>;
+#params
+#input source
+#output target_image rgba32float
 
 // Below every value.
 const LOWEST: f32 = -3.40282346e38;

@@ -14,9 +14,9 @@ struct Params {
     gain: f32,
 }
 
-@group(0) @binding(1) var<uniform> params: Params;
-@group(0) @binding(2) var source: texture_2d<f32>;
-@group(0) @binding(3) var target_image: texture_storage_2d<rgba32float, write>;
+#params
+#input source
+#output target_image rgba32float
 
 @compute @workgroup_size(8, 8)
 fn main(@builtin(global_invocation_id) id: vec3u) {

@@ -22,12 +22,12 @@ struct Params {
     nearest: u32,
 }
 
-@group(0) @binding(1) var<uniform> params: Params;
-@group(0) @binding(2) var source: texture_2d<f32>;
-@group(0) @binding(3) var tensors: texture_2d<f32>;
+#params
+#input source
+#input tensors
 // (E - G, F), see orientation_field.
-@group(0) @binding(4) var field: texture_2d<f32>;
-@group(0) @binding(5) var target_image: texture_storage_2d<rgba32float, write>;
+#input field
+#output target_image rgba32float
 
 const INPUT_TENSORS = 1u;
 const INPUT_FIELD = 2u;

@@ -15,9 +15,9 @@ struct Params {
     origin: vec2f,
 }
 
-@group(0) @binding(1) var<uniform> params: Params;
-@group(0) @binding(2) var source: texture_2d<f32>;
-@group(0) @binding(3) var target_image: texture_storage_2d<rgba32float, write>;
+#params
+#input source
+#output target_image rgba32float
 
 fn offset(q: vec2f, seed: u32) -> f32 {
     return params.amount * (1.3 * value_noise(q, seed) + 0.7 * value_noise(q * 2.7, seed + 97u) - 1.0);

@@ -1,8 +1,8 @@
 // A colour at half the resolution: the mean of four pixels by their coverage. Cost: 4 loads.
 #import shared/coverage
 
-@group(0) @binding(2) var source: texture_2d<f32>;
-@group(0) @binding(3) var target_image: texture_storage_2d<rgba32float, write>;
+#input source
+#output target_image rgba32float
 
 @compute @workgroup_size(8, 8)
 fn main(@builtin(global_invocation_id) id: vec3u) {

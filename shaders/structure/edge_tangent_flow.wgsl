@@ -17,10 +17,10 @@ struct Params {
     weights: array<vec4f, 6>,
 }
 
-@group(0) @binding(1) var<uniform> params: Params;
-@group(0) @binding(2) var source: texture_2d<f32>;
-@group(0) @binding(3) var largest: texture_2d<f32>;
-@group(0) @binding(4) var target_image: texture_storage_2d<rgba32float, write>;
+#params
+#input source
+#input largest
+#output target_image rgba32float
 
 fn weight(i: i32) -> f32 {
     return params.weights[abs(i) >> 2u][abs(i) & 3];

@@ -2,9 +2,9 @@
 // Cost: two loads and about 15 operations.
 #import gpu/grid
 
-@group(0) @binding(2) var source: texture_2d<f32>;
-@group(0) @binding(3) var flow: texture_2d<f32>;
-@group(0) @binding(4) var target_image: texture_storage_2d<rgba32float, write>;
+#input source
+#input flow
+#output target_image rgba32float
 
 // Trace that painted orientation has where the picture has none: (1/255)^2, one step of eight bits a pixel.
 const LEAST_TRACE: f32 = 1.5378701e-5;

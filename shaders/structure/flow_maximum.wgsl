@@ -6,9 +6,9 @@ struct Params {
     channel: u32,
 }
 
-@group(0) @binding(1) var<uniform> params: Params;
-@group(0) @binding(2) var source: texture_2d<f32>;
-@group(0) @binding(3) var target_image: texture_storage_2d<r32float, write>;
+#params
+#input source
+#output target_image r32float
 
 fn value(p: vec2i) -> f32 {
     return fetch(source, 0u, p)[params.channel];

@@ -6,8 +6,8 @@
 // A magnitude below this is no gradient.
 const LEAST: f32 = 1e-6;
 
-@group(0) @binding(2) var source: texture_2d<f32>;
-@group(0) @binding(3) var target_image: texture_storage_2d<rgba32float, write>;
+#input source
+#output target_image rgba32float
 
 fn of_pixel(id: vec3u, t: vec4f) -> vec4f {
     let axis = tensor_axis((t.x - t.z) * 0.5, t.y);

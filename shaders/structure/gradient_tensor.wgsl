@@ -21,9 +21,9 @@ struct Params {
     derivative: array<vec4f, 5>,
 }
 
-@group(0) @binding(1) var<uniform> params: Params;
-@group(0) @binding(2) var source: texture_2d<f32>;
-@group(0) @binding(3) var target_image: texture_storage_2d<rgba32float, write>;
+#params
+#input source
+#output target_image rgba32float
 
 struct Column {
     smoothed: vec4f,

@@ -12,10 +12,10 @@ struct Params {
     threshold: f32,
 }
 
-@group(0) @binding(1) var<uniform> params: Params;
-@group(0) @binding(2) var source: texture_2d<f32>;
-@group(0) @binding(3) var guide: texture_2d<f32>;
-@group(0) @binding(4) var target_image: texture_storage_2d<rgba32float, write>;
+#params
+#input source
+#input guide
+#output target_image rgba32float
 
 // Where there is nothing, or no number, the depth is far behind everything.
 const FAR: f32 = 1e30;

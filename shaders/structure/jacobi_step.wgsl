@@ -2,8 +2,8 @@
 // their four neighbours (2.171, Listing 2.3). Cost: up to 5 loads.
 #import gpu/grid
 
-@group(0) @binding(2) var source: texture_2d<f32>;
-@group(0) @binding(3) var target_image: texture_storage_2d<rgba32float, write>;
+#input source
+#output target_image rgba32float
 
 @compute @workgroup_size(8, 8)
 fn main(@builtin(global_invocation_id) id: vec3u) {

@@ -16,8 +16,8 @@ struct Params {
     origin: vec2f,
 }
 
-@group(0) @binding(1) var<uniform> params: Params;
-@group(0) @binding(2) var target_image: texture_storage_2d<rgba32float, write>;
+#params
+#output target_image rgba32float
 
 fn mixed(v: u32) -> u32 {
     var h = v;

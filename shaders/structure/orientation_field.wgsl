@@ -3,8 +3,8 @@
 // Cost: one load.
 #import gpu/grid
 
-@group(0) @binding(2) var tensor: texture_2d<f32>;
-@group(0) @binding(3) var target_image: texture_storage_2d<rg32float, write>;
+#input tensor
+#output target_image rg32float
 
 fn of_pixel(id: vec3u, t: vec4f) -> vec4f {
     return vec4f(t.x - t.z, t.y, 0.0, 0.0);

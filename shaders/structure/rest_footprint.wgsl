@@ -4,8 +4,8 @@
 #import shared/rest_position
 #import gpu/grid
 
-@group(0) @binding(2) var points: texture_2d<f32>;
-@group(0) @binding(3) var target_image: texture_storage_2d<rg32float, write>;
+#input points
+#output target_image rg32float
 
 // Change of the point per pixel along an axis, and 1 where it is known. Across a silhouette another object lies
 // beside, so that of both sides the one with less change holds.

@@ -3,9 +3,9 @@
 #import shared/rest_position
 #import gpu/grid
 
-@group(0) @binding(2) var points: texture_2d<f32>;
-@group(0) @binding(3) var footprints: texture_2d<f32>;
-@group(0) @binding(4) var target_image: texture_storage_2d<r32float, write>;
+#input points
+#input footprints
+#output target_image r32float
 
 @compute @workgroup_size(8, 8)
 fn main(@builtin(global_invocation_id) id: vec3u) {

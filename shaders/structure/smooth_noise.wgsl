@@ -17,8 +17,8 @@ struct Params {
     inverse_scale: f32,
 }
 
-@group(0) @binding(1) var<uniform> params: Params;
-@group(0) @binding(2) var target_image: texture_storage_2d<rgba32float, write>;
+#params
+#output target_image rgba32float
 
 @compute @workgroup_size(8, 8)
 fn main(@builtin(global_invocation_id) id: vec3u) {

@@ -14,11 +14,11 @@ struct Params {
     seed: u32,
 }
 
-@group(0) @binding(1) var<uniform> params: Params;
-@group(0) @binding(2) var points: texture_2d<f32>;
-@group(0) @binding(3) var scales: texture_2d<f32>;
-@group(0) @binding(4) var screen: texture_2d<f32>;
-@group(0) @binding(5) var target_image: texture_storage_2d<rgba32float, write>;
+#params
+#input points
+#input scales
+#input screen
+#output target_image rgba32float
 
 // A number in -0.5..0.5 that belongs to a cell, of a sum of its coordinates' products.
 fn solid_hash(cell: u32) -> f32 {

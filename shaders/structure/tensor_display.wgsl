@@ -13,9 +13,9 @@ struct Params {
     threshold: f32,
 }
 
-@group(0) @binding(1) var<uniform> params: Params;
-@group(0) @binding(2) var source: texture_2d<f32>;
-@group(0) @binding(3) var target_image: texture_storage_2d<rgba32float, write>;
+#params
+#input source
+#output target_image rgba32float
 
 // Values that are shown as middle grey: a gradient and, for corners, a squared one.
 const HALF_GRADIENT: f32 = 0.1;

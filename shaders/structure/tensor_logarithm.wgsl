@@ -12,9 +12,9 @@ struct Params {
     share: f32,
 }
 
-@group(0) @binding(1) var<uniform> params: Params;
-@group(0) @binding(2) var source: texture_2d<f32>;
-@group(0) @binding(3) var target_image: texture_storage_2d<rgba32float, write>;
+#params
+#input source
+#output target_image rgba32float
 
 // The tensor with the eigenvalue a along v and b across.
 fn composed(a: f32, b: f32, v: vec2f) -> vec3f {

@@ -1,8 +1,8 @@
 // Brightness of a colour over black, which optical flow compares. Cost: 1 load.
 #import gpu/grid
 
-@group(0) @binding(2) var source: texture_2d<f32>;
-@group(0) @binding(3) var target_image: texture_storage_2d<r32float, write>;
+#input source
+#output target_image r32float
 
 // Highlights beyond it would outweigh all else that moves.
 const BRIGHTEST = 4.0;

@@ -2,10 +2,10 @@
 // and of its gradient. Central differences; in levels of brightness. Cost: 14 loads.
 #import gpu/grid
 
-@group(0) @binding(2) var mean: texture_2d<f32>;
-@group(0) @binding(3) var difference: texture_2d<f32>;
-@group(0) @binding(4) var first_image: texture_storage_2d<rgba32float, write>;
-@group(0) @binding(5) var second_image: texture_storage_2d<rgba32float, write>;
+#input mean
+#input difference
+#output first_image rgba32float
+#output second_image rgba32float
 
 // Levels of brightness to 1.
 const LEVELS = 255.0;

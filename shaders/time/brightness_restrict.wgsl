@@ -2,8 +2,8 @@
 // which leaves the mean of those that exist. Cost: 4 loads.
 #import gpu/grid
 
-@group(0) @binding(2) var source: texture_2d<f32>;
-@group(0) @binding(3) var target_image: texture_storage_2d<r32float, write>;
+#input source
+#output target_image r32float
 
 @compute @workgroup_size(8, 8)
 fn main(@builtin(global_invocation_id) id: vec3u) {

@@ -2,11 +2,11 @@
 // to, and their difference, that there less that here. Cost: 6 loads.
 #import shared/sampling
 
-@group(0) @binding(2) var here: texture_2d<f32>;
-@group(0) @binding(3) var there: texture_2d<f32>;
-@group(0) @binding(4) var motion: texture_2d<f32>;
-@group(0) @binding(5) var mean_image: texture_storage_2d<r32float, write>;
-@group(0) @binding(6) var difference_image: texture_storage_2d<r32float, write>;
+#input here
+#input there
+#input motion
+#output mean_image r32float
+#output difference_image r32float
 
 @compute @workgroup_size(8, 8)
 fn main(@builtin(global_invocation_id) id: vec3u) {

@@ -11,12 +11,12 @@ struct Params {
     decay: f32,
 }
 
-@group(0) @binding(1) var<uniform> params: Params;
-@group(0) @binding(2) var of_both: texture_2d<f32>;
-@group(0) @binding(3) var first: texture_2d<f32>;
-@group(0) @binding(4) var second: texture_2d<f32>;
-@group(0) @binding(5) var chain: texture_2d<f32>;
-@group(0) @binding(6) var target_image: texture_storage_2d<rgba32float, write>;
+#params
+#input of_both
+#input first
+#input second
+#input chain
+#output target_image rgba32float
 
 // The noise at a place; beyond the border it is mirrored.
 fn noise_at(image: texture_2d<f32>, slot: u32, p: vec2f) -> f32 {

@@ -15,13 +15,13 @@ struct Params {
     follows: f32,
 }
 
-@group(0) @binding(1) var<uniform> params: Params;
-@group(0) @binding(2) var own: texture_2d<f32>;
-@group(0) @binding(3) var motion: texture_2d<f32>;
-@group(0) @binding(4) var weights: texture_2d<f32>;
-@group(0) @binding(5) var before: texture_2d<f32>;
-@group(0) @binding(6) var theirs: texture_2d<f32>;
-@group(0) @binding(7) var target_image: texture_storage_2d<rg32float, write>;
+#params
+#input own
+#input motion
+#input weights
+#input before
+#input theirs
+#output target_image rg32float
 
 @compute @workgroup_size(8, 8)
 fn main(@builtin(global_invocation_id) id: vec3u) {

@@ -2,11 +2,11 @@
 // Cost: 16 loads of colour and 100 operations.
 #import shared/motion
 
-@group(0) @binding(2) var average: texture_2d<f32>;
-@group(0) @binding(3) var motion: texture_2d<f32>;
-@group(0) @binding(4) var shares: texture_2d<f32>;
-@group(0) @binding(5) var theirs: texture_2d<f32>;
-@group(0) @binding(6) var target_image: texture_storage_2d<rgba32float, write>;
+#input average
+#input motion
+#input shares
+#input theirs
+#output target_image rgba32float
 
 @compute @workgroup_size(8, 8)
 fn main(@builtin(global_invocation_id) id: vec3u) {

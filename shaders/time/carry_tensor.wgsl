@@ -2,11 +2,11 @@
 // Cost: five loads of motion, four of tensors and 60 operations.
 #import shared/motion
 
-@group(0) @binding(2) var average: texture_2d<f32>;
-@group(0) @binding(3) var motion: texture_2d<f32>;
-@group(0) @binding(4) var shares: texture_2d<f32>;
-@group(0) @binding(5) var theirs: texture_2d<f32>;
-@group(0) @binding(6) var target_image: texture_storage_2d<rgba32float, write>;
+#input average
+#input motion
+#input shares
+#input theirs
+#output target_image rgba32float
 
 // The derivative of motion from its values before, at and after a pixel: the smaller one-sided difference, and none
 // across borders of things.

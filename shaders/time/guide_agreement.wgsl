@@ -9,12 +9,12 @@ struct Params {
     weighted: f32,
 }
 
-@group(0) @binding(1) var<uniform> params: Params;
-@group(0) @binding(2) var own: texture_2d<f32>;
-@group(0) @binding(3) var motion: texture_2d<f32>;
-@group(0) @binding(4) var weights: texture_2d<f32>;
-@group(0) @binding(5) var theirs: texture_2d<f32>;
-@group(0) @binding(6) var target_image: texture_storage_2d<r32float, write>;
+#params
+#input own
+#input motion
+#input weights
+#input theirs
+#output target_image r32float
 
 // Agreement of two values of a guide, 0..1.
 fn agreement(here: f32, there: f32) -> f32 {

@@ -20,11 +20,11 @@ struct Params {
     steps: u32,
 }
 
-@group(0) @binding(1) var<uniform> params: Params;
-@group(0) @binding(2) var here: texture_2d<f32>;
-@group(0) @binding(3) var there: texture_2d<f32>;
-@group(0) @binding(4) var start: texture_2d<f32>;
-@group(0) @binding(5) var target_image: texture_storage_2d<rg32float, write>;
+#params
+#input here
+#input there
+#input start
+#output target_image rg32float
 
 // Added to the Hessian's diagonal, brightness squared per pixel: two of 255 levels for every pixel of a patch. Where
 // there is less texture a patch stays where it starts.

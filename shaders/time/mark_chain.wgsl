@@ -14,10 +14,10 @@ struct Params {
     begin: u32,
 }
 
-@group(0) @binding(1) var<uniform> params: Params;
-@group(0) @binding(2) var so_far: texture_2d<f32>;
-@group(0) @binding(3) var steps: texture_2d<f32>;
-@group(0) @binding(4) var target_image: texture_storage_2d<rgba32float, write>;
+#params
+#input so_far
+#input steps
+#output target_image rgba32float
 
 // One step on; a point whose motion is not known, or that goes too far, stays where it is for this frame.
 fn onward(found: vec2f, here: vec2f, advance: u32) -> vec2f {

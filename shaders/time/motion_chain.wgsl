@@ -9,10 +9,10 @@ struct Params {
     limit: f32,
 }
 
-@group(0) @binding(1) var<uniform> params: Params;
-@group(0) @binding(2) var so_far: texture_2d<f32>;
-@group(0) @binding(3) var steps: texture_2d<f32>;
-@group(0) @binding(4) var target_image: texture_storage_2d<rg32float, write>;
+#params
+#input so_far
+#input steps
+#output target_image rg32float
 
 @compute @workgroup_size(8, 8)
 fn main(@builtin(global_invocation_id) id: vec3u) {

@@ -7,9 +7,9 @@ struct Params {
     limit: f32,
 }
 
-@group(0) @binding(1) var<uniform> params: Params;
-@group(0) @binding(2) var source: texture_2d<f32>;
-@group(0) @binding(3) var target_image: texture_storage_2d<rg32float, write>;
+#params
+#input source
+#output target_image rg32float
 
 fn of_pixel(id: vec3u, source: vec4f) -> vec4f {
     let motion = bounded_motion(source.xy, params.limit);

@@ -9,13 +9,13 @@ struct Params {
     momentum: f32,
 }
 
-@group(0) @binding(1) var<uniform> params: Params;
-@group(0) @binding(2) var first_image: texture_2d<f32>;
-@group(0) @binding(3) var second_image: texture_2d<f32>;
-@group(0) @binding(4) var start: texture_2d<f32>;
-@group(0) @binding(5) var before: texture_2d<f32>;
-@group(0) @binding(6) var now: texture_2d<f32>;
-@group(0) @binding(7) var target_image: texture_storage_2d<rg32float, write>;
+#params
+#input first_image
+#input second_image
+#input start
+#input before
+#input now
+#output target_image rg32float
 
 // Weights of the gradient's constancy and of smoothness against that of the brightness.
 const GRADIENT = 2.0;

@@ -2,10 +2,10 @@
 // less the more the brightness differs that it takes the pixel to. Cost: 21 loads.
 #import gpu/grid
 
-@group(0) @binding(2) var here: texture_2d<f32>;
-@group(0) @binding(3) var there: texture_2d<f32>;
-@group(0) @binding(4) var patches: texture_2d<f32>;
-@group(0) @binding(5) var target_image: texture_storage_2d<rg32float, write>;
+#input here
+#input there
+#input patches
+#output target_image rg32float
 
 // Levels of brightness to 1; differences of one level or less count alike.
 const LEVELS = 255.0;

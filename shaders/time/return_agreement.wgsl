@@ -9,11 +9,11 @@ struct Params {
     weighted: f32,
 }
 
-@group(0) @binding(1) var<uniform> params: Params;
-@group(0) @binding(2) var motion: texture_2d<f32>;
-@group(0) @binding(3) var weights: texture_2d<f32>;
-@group(0) @binding(4) var back: texture_2d<f32>;
-@group(0) @binding(5) var target_image: texture_storage_2d<r32float, write>;
+#params
+#input motion
+#input weights
+#input back
+#output target_image r32float
 
 @compute @workgroup_size(8, 8)
 fn main(@builtin(global_invocation_id) id: vec3u) {

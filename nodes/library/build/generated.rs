@@ -87,9 +87,10 @@ fn fusible(shaders: &Path, stem: &str, shader: &Shader) -> Result<String, String
     let path = shaders.join(GPU).join(format!("{stem}_pair.wgsl"));
     let case = match &shader.fusible {
         Fusible::First if path.exists() => {
-            let text = Text::read(shaders, &path)?;
+            let in_pair = |fault| format!("{}: {fault}", path.display());
+            let text = Text::read(shaders, &path).map_err(in_pair)?;
             let block = shader.struct_params.as_ref().ok_or("windows have parameters")?;
-            check_pair(&text, block).map_err(|fault| format!("{}: {fault}", path.display()))?;
+            check_pair(&text, block).map_err(in_pair)?;
             return Ok(format!(
                 "const PAIR_IMPORTS: &[&isophote_engine::wgsl::Import] = {};\n\
                  /// Part that it can take in a dispatch of several; `fits` is true for the rows and the columns of a window.\n\

@@ -1,5 +1,6 @@
 //! A shader's text put together from its files.
 
+use crate::directives::{Bindings, Directive};
 use std::fs;
 use std::path::Path;
 
@@ -35,16 +36,19 @@ pub struct Text {
 }
 
 impl Text {
-    /// Reads the shader at `path`, with what it imports from the folder `shaders`: every line `#import folder/name`
-    /// stands for `folder/name.wgsl`.
+    /// Reads the shader at `path`, with what its directives stand for: `#import folder/name` for the file
+    /// `folder/name.wgsl` of the folder `shaders`, the others for what is bound.
     ///
     /// # Errors
-    /// Which file cannot be read.
+    /// Which file cannot be read, and on which line a directive is malformed or out of order.
     pub fn read(shaders: &Path, path: &Path) -> Result<Self, String> {
         let mut text = Self::default();
-        for line in read(path)?.lines() {
-            match line.strip_prefix("#import ") {
-                Some(name) => text.import(shaders, name.trim())?,
+        let mut bindings = Bindings::default();
+        for (number, line) in (1..).zip(read(path)?.lines()) {
+            let at_line = |fault| format!("line {number}: {fault}");
+            match Directive::read(line).map_err(at_line)? {
+                Some(Directive::Import(name)) => text.import(shaders, name)?,
+                Some(directive) => text.own.push_str(&bindings.declare(directive).map_err(at_line)?),
                 None => {
                     text.own.push_str(line);
                     text.own.push('\n');
@@ -60,8 +64,8 @@ impl Text {
             return Ok(());
         }
         for line in read(&shaders.join(format!("{name}.wgsl")))?.lines() {
-            if let Some(inner) = line.strip_prefix("#import ") {
-                self.import(shaders, inner.trim())?;
+            if let Ok(Some(Directive::Import(inner))) = Directive::read(line) {
+                self.import(shaders, inner)?;
             }
         }
         self.imports.push(name.to_owned());
@@ -73,11 +77,18 @@ impl Text {
 /// The text of what shaders import by `name`, without its own imports, which stand before it.
 ///
 /// # Errors
-/// When it cannot be read.
+/// When it cannot be read, and on which line it has a directive that is no import.
 pub fn imported(shaders: &Path, name: &str) -> Result<String, String> {
-    let text = read(&shaders.join(format!("{name}.wgsl")))?;
-    let lines = text.lines().filter(|line| !line.starts_with("#import "));
-    Ok(lines.flat_map(|line| [line, "\n"]).collect())
+    let mut text = String::new();
+    for (number, line) in (1..).zip(read(&shaders.join(format!("{name}.wgsl")))?.lines()) {
+        let at_line = |fault| format!("shaders/{name}.wgsl: line {number}: {fault}");
+        match Directive::read(line).map_err(at_line)? {
+            Some(Directive::Import(_)) => {}
+            Some(_) => return Err(at_line(format!("`{line}` is for kernels, which bind what they read"))),
+            None => text.extend([line, "\n"]),
+        }
+    }
+    Ok(text)
 }
 
 /// What stands for an import where windows hold 16-bit floats: the file of its name with `_half` behind it; none where
