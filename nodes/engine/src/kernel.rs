@@ -133,6 +133,12 @@ pub struct Tolerance {
 }
 
 impl Tolerance {
+    /// That of roundings alone, without outliers: a bound in the unit of the output, another as a share of the pixel's largest
+    /// value, and why these numbers.
+    pub const fn of_rounding(absolute: f32, relative: f32, reason: &'static str) -> Self {
+        Self { absolute, relative, outliers: 0.0, reason }
+    }
+
     /// That of results which are stored in 16-bit floats, and are computed as exactly as before.
     pub const fn rounded_to_half(self) -> Self {
         let (relative, absolute) = (self.relative + 1.0 / 2040.0, self.absolute + 1e-7);

@@ -20,11 +20,27 @@ pub mod trace;
 include!(concat!(env!("OUT_DIR"), "/kernels.rs"));
 
 /// Declares `pub static KERNEL` from the CPU twin, the cost for given parameters and the tolerance; the rest comes from
-/// the shader of the same stem. Where 16-bit floats cost more than the rounding of the result, or a sampler interpolates,
+/// the shader of the same stem. The twin is a function, or what a closure of a SIMD token, the pass, its parameters, if it
+/// has some, and the band does, compiled for each instruction set. Where 16-bit floats cost more than the rounding of the result, or a sampler interpolates,
 /// `fast` is the tolerance of that. `pair` says of uniform blocks whether their passes are the rows and the columns of a
 /// window, which `shaders/gpu/<kernel>_pair.wgsl` runs in one dispatch.
 #[macro_export]
 macro_rules! kernel {
+    ($kernel:ident { cpu: |$simd:ident, $pass:ident, $params:ident, $band:ident| $twin:expr, $($rest:tt)* }) => {
+        $crate::kernel!($kernel {
+            cpu: |$pass, $band| {
+                let $params: Params = $pass.params();
+                isophote_engine::fearless_simd::dispatch!($pass.level, $simd => $twin);
+            },
+            $($rest)*
+        });
+    };
+    ($kernel:ident { cpu: |$simd:ident, $pass:ident, $band:ident| $twin:expr, $($rest:tt)* }) => {
+        $crate::kernel!($kernel {
+            cpu: |$pass, $band| isophote_engine::fearless_simd::dispatch!($pass.level, $simd => $twin),
+            $($rest)*
+        });
+    };
     ($kernel:ident { cpu: $cpu:expr, cost: |_| $cost:expr, tolerance: $tolerance:expr $(, fast: $fast:expr)? $(, pair: $pair:expr)? $(,)? }) => {
         $crate::kernel!(@ $kernel, $cpu, |_| $cost, $tolerance, $crate::kernel!(@ fast $tolerance $(, $fast)?), $crate::kernel!(@ fusible $kernel $($pair)?));
     };

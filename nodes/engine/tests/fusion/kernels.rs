@@ -7,7 +7,7 @@ use isophote_engine::kernel::Fusible;
 use isophote_engine::wgsl::{Piece, Pieces};
 use isophote_engine::{Band, Kernel, Tolerance};
 
-const EXACT: Tolerance = Tolerance { absolute: 1e-5, relative: 1e-5, outliers: 0.0, reason: "few sums" };
+const EXACT: Tolerance = Tolerance::of_rounding(1e-5, 1e-5, "few sums");
 
 #[repr(C)]
 #[derive(Clone, Copy, Pod, Zeroable)]

@@ -30,7 +30,7 @@ pub static GRID: Import = Import {
     packed: None,
 };
 
-const EXACT: Tolerance = Tolerance { absolute: 1e-5, relative: 1e-5, outliers: 0.0, reason: "few sums" };
+const EXACT: Tolerance = Tolerance::of_rounding(1e-5, 1e-5, "few sums");
 
 #[repr(C)]
 #[derive(Clone, Copy, bytemuck::Pod, bytemuck::Zeroable)]

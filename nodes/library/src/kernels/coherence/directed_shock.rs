@@ -13,7 +13,7 @@
 pub use crate::kernels::shaders::directed_shock::Params;
 use crate::kernels::shared::tensor::axis;
 use crate::kernels::simd::pixels::{BLOCK, Block, fetch4, offsets, write};
-use isophote_engine::fearless_simd::{Simd, dispatch, f32x8, i32x8, mask32x8, prelude::*};
+use isophote_engine::fearless_simd::{Simd, f32x8, i32x8, mask32x8, prelude::*};
 use isophote_engine::{Band, Class, CpuPass, ImageId, PlanBuilder, Rect, Support, Tolerance, View};
 use luma_taps::{Line, LumaTaps, STRIP};
 
@@ -23,7 +23,7 @@ mod flow_log;
 mod luma_taps;
 
 crate::kernel!(directed_shock {
-    cpu: run,
+    cpu: |simd, pass, params, band| strips(simd, pass, &params, band),
     cost: |p| 60.0 + 50.0 * f64::from(p.reach) + 60.0 * f64::from(p.radius * p.scale),
     tolerance: Tolerance {
         absolute: 1e-6,
@@ -74,11 +74,6 @@ fn reach(params: &Params) -> i32 {
 /// Most steps to a side that an extremum is looked for.
 fn steps(params: &Params) -> i32 {
     ((params.radius + 1e-3).floor() * params.scale).ceil() as i32
-}
-
-fn run(pass: &CpuPass<'_>, band: &mut Band<'_>) {
-    let params: Params = pass.params();
-    dispatch!(pass.level, simd => strips(simd, pass, &params, band));
 }
 
 #[inline(always)]

@@ -9,7 +9,7 @@ use isophote_engine::{Band, Class, CpuPass, ImageId, PlanBuilder, Support, Toler
 crate::kernel!(add_light {
     cpu: run,
     cost: |_| 3.0,
-    tolerance: Tolerance { absolute: 1e-7, relative: 1e-6, outliers: 0.0, reason: "one rounding" },
+    tolerance: Tolerance::of_rounding(1e-7, 1e-6, "one rounding"),
 });
 
 /// Adds the pass.

@@ -7,11 +7,11 @@
 pub use crate::kernels::shaders::blueprint_paper::Params;
 use crate::kernels::shared::value_noise::noise;
 use crate::kernels::simd::pixels::{for_blocks, write};
-use isophote_engine::fearless_simd::{Simd, dispatch, f32x8, prelude::*};
+use isophote_engine::fearless_simd::{Simd, f32x8, prelude::*};
 use isophote_engine::{Band, Class, CpuPass, ImageId, PlanBuilder, Support, Tolerance};
 
 crate::kernel!(blueprint_paper {
-    cpu: run,
+    cpu: |simd, pass, params, band| sheet(simd, pass, &params, band),
     cost: |_| 200.0,
     tolerance: Tolerance {
         absolute: 1e-4,
@@ -56,11 +56,6 @@ pub fn pass(plan: &mut PlanBuilder, lightness: ImageId, edges: ImageId, sheet: &
         origin: sheet.origin,
     };
     plan.pass(&KERNEL, &[lightness, edges], &params, Class::Colour, Support::Pixels(0))
-}
-
-fn run(pass: &CpuPass<'_>, band: &mut Band<'_>) {
-    let params: Params = pass.params();
-    dispatch!(pass.level, simd => sheet(simd, pass, &params, band));
 }
 
 #[inline(always)]

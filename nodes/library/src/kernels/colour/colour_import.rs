@@ -15,12 +15,11 @@ use isophote_engine::{Band, Class, CpuPass, ImageId, PlanBuilder, Support, Toler
 crate::kernel!(colour_import {
     cpu: run,
     cost: |_| 60.0,
-    tolerance: Tolerance {
-        absolute: 2e-5,
-        relative: 2e-5,
-        outliers: 0.0,
-        reason: "shader powers are exact to a few units in the last place at best",
-    },
+    tolerance: Tolerance::of_rounding(
+        2e-5,
+        2e-5,
+        "shader powers are exact to a few units in the last place at best"
+    ),
 });
 
 /// Adds the pass.

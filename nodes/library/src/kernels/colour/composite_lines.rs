@@ -10,7 +10,7 @@ use isophote_engine::{Band, Class, CpuPass, ImageId, PlanBuilder, Support, Toler
 crate::kernel!(composite_lines {
     cpu: run,
     cost: |_| 10.0,
-    tolerance: Tolerance { absolute: 1e-6, relative: 2e-6, outliers: 0.0, reason: "a few roundings" },
+    tolerance: Tolerance::of_rounding(1e-6, 2e-6, "a few roundings"),
 });
 
 /// Draws the `edges` (1 = paper, 0 = line) over `color`. The alpha of `line` is the opacity of lines,

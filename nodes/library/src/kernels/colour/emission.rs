@@ -14,12 +14,7 @@ use isophote_engine::{Band, Class, CpuPass, ImageId, PlanBuilder, Support, Toler
 crate::kernel!(emission {
     cpu: run,
     cost: |_| 10.0,
-    tolerance: Tolerance {
-        absolute: 1e-6,
-        relative: 1e-6,
-        outliers: 0.0,
-        reason: "a fourth power and a quotient of a few roundings",
-    },
+    tolerance: Tolerance::of_rounding(1e-6, 1e-6, "a fourth power and a quotient of a few roundings"),
 });
 
 /// Adds the pass; `image` is the host's, premultiplied.

@@ -22,12 +22,11 @@ const HOST: u32 = 2;
 crate::kernel!(lightness {
     cpu: run,
     cost: |_| 80.0,
-    tolerance: Tolerance {
-        absolute: 1e-3,
-        relative: 2e-5,
-        outliers: 0.0,
-        reason: "powers exact to a few units in the last place, and the slope of L near black is 900",
-    },
+    tolerance: Tolerance::of_rounding(
+        1e-3,
+        2e-5,
+        "powers exact to a few units in the last place, and the slope of L near black is 900"
+    ),
 });
 
 /// (L alpha, alpha) of a working colour.

@@ -15,7 +15,7 @@ use isophote_engine::{Band, Class, CpuPass, ImageId, PlanBuilder, Support, Toler
 crate::kernel!(mix_by_mask {
     cpu: run,
     cost: |_| 16.0,
-    tolerance: Tolerance { absolute: 1e-6, relative: 2e-6, outliers: 0.0, reason: "a dozen roundings" },
+    tolerance: Tolerance::of_rounding(1e-6, 2e-6, "a dozen roundings"),
 });
 
 /// (1 - amount mask) first + amount mask second; `mask` has one channel, cut to 0..=1.

@@ -7,13 +7,13 @@
 pub use crate::kernels::shaders::paint_relief::Params;
 use crate::kernels::simd::line_buffer::{Row, STRIP, for_rows};
 use crate::kernels::simd::pixels::{BLOCK, Block, eight, write};
-use isophote_engine::fearless_simd::{Simd, dispatch, prelude::*};
+use isophote_engine::fearless_simd::{Simd, prelude::*};
 use isophote_engine::{Band, Class, CpuPass, ImageId, PlanBuilder, Support, Tolerance};
 
 crate::kernel!(paint_relief {
-    cpu: run,
+    cpu: |simd, pass, params, band| relief(simd, pass, &params, band),
     cost: |_| 25.0,
-    tolerance: Tolerance { absolute: 1e-3, relative: 1e-5, outliers: 0.0, reason: "a dozen roundings of L" },
+    tolerance: Tolerance::of_rounding(1e-3, 1e-5, "a dozen roundings of L"),
 });
 
 /// Appearance of the paint.
@@ -34,11 +34,6 @@ pub fn pass(plan: &mut PlanBuilder, lab: ImageId, heights: ImageId, relief: &Rel
     let light = [relief.shine * cos, -relief.shine * sin];
     let params = Params { light, bristle: relief.bristle, padding: Default::default() };
     plan.pass(&KERNEL, &[lab, heights], &params, Class::Colour, Support::Pixels(1))
-}
-
-fn run(pass: &CpuPass<'_>, band: &mut Band<'_>) {
-    let params: Params = pass.params();
-    dispatch!(pass.level, simd => relief(simd, pass, &params, band));
 }
 
 #[inline(always)]

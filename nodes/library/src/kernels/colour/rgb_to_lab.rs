@@ -12,12 +12,11 @@ use isophote_engine::{Band, Class, CpuPass, ImageId, PlanBuilder, Support, Toler
 crate::kernel!(rgb_to_lab {
     cpu: run,
     cost: |_| 130.0,
-    tolerance: Tolerance {
-        absolute: 2e-3,
-        relative: 2e-5,
-        outliers: 0.0,
-        reason: "the differences behind a and b magnify the last bits of three powers 500 times",
-    },
+    tolerance: Tolerance::of_rounding(
+        2e-3,
+        2e-5,
+        "the differences behind a and b magnify the last bits of three powers 500 times"
+    ),
 });
 
 /// Adds the pass; `chroma` is the factor on the colour axes a and b.

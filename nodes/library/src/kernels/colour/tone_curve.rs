@@ -11,7 +11,7 @@ use isophote_engine::{Band, Class, CpuPass, ImageId, PlanBuilder, Support, Toler
 crate::kernel!(tone_curve {
     cpu: run,
     cost: |_| 10.0,
-    tolerance: Tolerance { absolute: 5e-5, relative: 1e-6, outliers: 0.0, reason: "ten roundings of L" },
+    tolerance: Tolerance::of_rounding(5e-5, 1e-6, "ten roundings of L"),
 });
 
 /// L + 90 t (1 - t) (`darks` (1 - t) + `lights` t), t = L / 100 clamped to 0..=1: monotonic for

@@ -10,7 +10,7 @@ use isophote_engine::{Band, Class, CpuPass, ImageId, PlanBuilder, Support, Toler
 crate::kernel!(darken_by_lines {
     cpu: run,
     cost: |_| 3.0,
-    tolerance: Tolerance { absolute: 1e-6, relative: 1e-6, outliers: 0.0, reason: "one rounding of L" },
+    tolerance: Tolerance::of_rounding(1e-6, 1e-6, "one rounding of L"),
 });
 
 /// (L alpha, alpha) with L multiplied by the `edges` (1 = paper, 0 = line).

@@ -10,11 +10,11 @@ pub use crate::kernels::shaders::dog_columns::Params;
 use crate::kernels::shared::edge_threshold::{Xdog, dog_of_sums, edge_threshold, edge_uncovered};
 use crate::kernels::simd::pixels::{BLOCK, read, write};
 use crate::kernels::simd::window_sum::{RUN, flat, sum};
-use isophote_engine::fearless_simd::{Simd, dispatch, f32x8, f32x16, prelude::*};
+use isophote_engine::fearless_simd::{Simd, f32x8, f32x16, prelude::*};
 use isophote_engine::{Band, Class, CpuPass, ImageId, PlanBuilder, Support, Tolerance};
 
 crate::kernel!(dog_columns {
-    cpu: run,
+    cpu: |simd, pass, params, band| columns(simd, pass, &params, band),
     cost: |p| 4.0 * (f64::from(p.radius) + 1.0) + 25.0,
     tolerance: Tolerance {
         absolute: 2e-3,
@@ -54,11 +54,6 @@ pub fn pass(plan: &mut PlanBuilder, lightness: ImageId, options: &Options) -> Im
         wide,
     };
     plan.pass(&KERNEL, &[rows], &params, Class::Field, Support::Pixels(radius))
-}
-
-fn run(pass: &CpuPass<'_>, band: &mut Band<'_>) {
-    let params: Params = pass.params();
-    dispatch!(pass.level, simd => columns(simd, pass, &params, band));
 }
 
 #[inline(always)]

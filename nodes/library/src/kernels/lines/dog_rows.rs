@@ -6,18 +6,17 @@
 
 pub use crate::kernels::shaders::dog_rows::Params;
 use crate::kernels::simd::window_sum::{GaussianTable, flat, gaussian_radius, gaussian_table};
-use isophote_engine::fearless_simd::{Simd, dispatch, f32x16, f64x8, prelude::*};
+use isophote_engine::fearless_simd::{Simd, f32x16, f64x8, prelude::*};
 use isophote_engine::{Band, Class, CpuPass, ImageId, PlanBuilder, Support, Tolerance};
 
 crate::kernel!(dog_rows {
-    cpu: run,
+    cpu: |simd, pass, params, band| smooth(simd, pass, &params, band),
     cost: |p| 4.0 * (f64::from(p.radius) + 1.0),
-    tolerance: Tolerance {
-        absolute: 2e-5,
-        relative: 4e-6,
-        outliers: 0.0,
-        reason: "sums of up to 511 products in the same order; only fused multiply-adds differ",
-    },
+    tolerance: Tolerance::of_rounding(
+        2e-5,
+        4e-6,
+        "sums of up to 511 products in the same order; only fused multiply-adds differ"
+    ),
 });
 
 /// Cut-off of both windows, in standard deviations of the wider Gaussian.
@@ -35,11 +34,6 @@ pub fn pass(plan: &mut PlanBuilder, lightness: ImageId, sigma: f32, k: f32) -> I
     let (radius, narrow, wide) = tables(sigma, k);
     let params = Params { radius: radius as i32, padding: Default::default(), narrow, wide };
     plan.pass(&KERNEL, &[lightness], &params, Class::Field, Support::Pixels(radius))
-}
-
-fn run(pass: &CpuPass<'_>, band: &mut Band<'_>) {
-    let params: Params = pass.params();
-    dispatch!(pass.level, simd => smooth(simd, pass, &params, band));
 }
 
 /// Values that are summed at once: sixteen pixels.

@@ -7,11 +7,11 @@
 pub use crate::kernels::shaders::edge_area::Params;
 use crate::kernels::shared::edge_threshold::{NOT_COVERED, Xdog, edge_threshold};
 use crate::kernels::simd::pixels::{BLOCK, Block, read, write};
-use isophote_engine::fearless_simd::{Simd, dispatch, f32x8, prelude::*};
+use isophote_engine::fearless_simd::{Simd, f32x8, prelude::*};
 use isophote_engine::{Band, Class, CpuPass, ImageId, PlanBuilder, Support, Tolerance};
 
 crate::kernel!(edge_area {
-    cpu: run,
+    cpu: |simd, pass, params, band| areas(simd, pass, &params, band),
     cost: |_| 250.0,
     tolerance: Tolerance {
         absolute: 2e-3,
@@ -51,11 +51,6 @@ pub fn pass(plan: &mut PlanBuilder, response: ImageId, shares: Shares, xdog: &Xd
         phi: xdog.phi,
     };
     plan.pass(&KERNEL, &[response, shares.image, shares.motion], &params, Class::Field, Support::Pixels(1))
-}
-
-fn run(pass: &CpuPass<'_>, band: &mut Band<'_>) {
-    let params: Params = pass.params();
-    dispatch!(pass.level, simd => areas(simd, pass, &params, band));
 }
 
 #[inline(always)]

@@ -7,11 +7,11 @@
 pub use crate::kernels::shaders::edge_candidates::Params;
 use crate::kernels::simd::line_buffer::{Row, STRIP, for_rows};
 use crate::kernels::simd::pixels::{BLOCK, eight, write};
-use isophote_engine::fearless_simd::{Simd, dispatch, f32x8, mask32x8, prelude::*};
+use isophote_engine::fearless_simd::{Simd, f32x8, mask32x8, prelude::*};
 use isophote_engine::{Band, Class, CpuPass, ImageId, PlanBuilder, Support, Tolerance};
 
 crate::kernel!(edge_candidates {
-    cpu: run,
+    cpu: |simd, pass, params, band| candidates(simd, pass, &params, band),
     cost: |_| 40.0,
     tolerance: Tolerance {
         absolute: 1e-3,
@@ -53,11 +53,6 @@ pub fn pass(plan: &mut PlanBuilder, gradient: ImageId, options: &Options) -> Ima
     let Options { method, low, high } = *options;
     let params = Params { method: method as u32, low, high: high.max(low) };
     plan.pass(&KERNEL, &[gradient], &params, Class::Field, Support::Pixels(1))
-}
-
-fn run(pass: &CpuPass<'_>, band: &mut Band<'_>) {
-    let params: Params = pass.params();
-    dispatch!(pass.level, simd => candidates(simd, pass, &params, band));
 }
 
 /// The rows around one, of one value.

@@ -11,11 +11,11 @@ use crate::kernels::simd::line_buffer::{Row, STRIP, for_rows};
 use crate::kernels::simd::pixels::{BLOCK, eight, write};
 use crate::kernels::simd::window_sum::{gaussian_radius, gaussian_table};
 use crate::kernels::smoothing::gaussian_blur;
-use isophote_engine::fearless_simd::{Simd, dispatch, f32x8, prelude::*};
+use isophote_engine::fearless_simd::{Simd, f32x8, prelude::*};
 use isophote_engine::{Band, Class, CpuPass, ImageId, PlanBuilder, Support, Tolerance};
 
 crate::kernel!(edge_gradient {
-    cpu: run,
+    cpu: |simd, pass, params, band| derivatives(simd, pass, &params, band),
     cost: |_| 40.0,
     tolerance: Tolerance {
         absolute: 1e-3,
@@ -34,11 +34,6 @@ pub fn pass(plan: &mut PlanBuilder, lab: ImageId, sigma: f32, sobel: bool) -> Im
     // On both sides of a step between two pixels, the central difference is half the two middle weights.
     let scale = 2.0 / (table[0][0] + table[0][1]);
     plan.pass(&KERNEL, &[smooth], &Params { centre, side, scale }, Class::Field, Support::Pixels(1))
-}
-
-fn run(pass: &CpuPass<'_>, band: &mut Band<'_>) {
-    let params: Params = pass.params();
-    dispatch!(pass.level, simd => derivatives(simd, pass, &params, band));
 }
 
 #[inline(always)]

@@ -12,12 +12,7 @@ use isophote_engine::{Band, Class, CpuPass, ImageId, PlanBuilder, Rect, Support,
 crate::kernel!(edge_hysteresis {
     cpu: run,
     cost: |p| 6.0 + 0.1 * f64::from(p.steps),
-    tolerance: Tolerance {
-        absolute: 0.0,
-        relative: 0.0,
-        outliers: 0.0,
-        reason: "bits, and constants to write"
-    },
+    tolerance: Tolerance::of_rounding(0.0, 0.0, "bits, and constants to write"),
 });
 
 /// Pixels by which one pass grows edges at most: then the eight pixels of a workgroup and what they depend

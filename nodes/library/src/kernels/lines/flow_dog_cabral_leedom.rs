@@ -11,11 +11,11 @@ use crate::kernels::shared::pixel_line::GaussianLines;
 use crate::kernels::shared::stream::half_length;
 use crate::kernels::shared::tensor::tangent;
 use crate::kernels::simd::pixels::{fetch1, for_blocks, offsets, write};
-use isophote_engine::fearless_simd::{Simd, dispatch, f32x8, i32x8, prelude::*};
+use isophote_engine::fearless_simd::{Simd, f32x8, i32x8, prelude::*};
 use isophote_engine::{Band, Class, CpuPass, ImageId, PlanBuilder, Support, Tolerance};
 
 crate::kernel!(flow_dog_cabral_leedom {
-    cpu: run,
+    cpu: |simd, pass, params, band| smooth(simd, pass, &params, band),
     cost: |p| 2.0 * 1.3 * f64::from(half_length(p.sigma)) * 100.0 + 50.0,
     tolerance: Tolerance {
         absolute: 2e-3,
@@ -33,11 +33,6 @@ pub fn pass(plan: &mut PlanBuilder, response: ImageId, field: ImageId, sigma: f3
     // No pixel lies farther than the line is long.
     let support = Support::Pixels(half_length(sigma) as u32 + 1);
     plan.pass(&KERNEL, &[response, field], &params, Class::Field, support)
-}
-
-fn run(pass: &CpuPass<'_>, band: &mut Band<'_>) {
-    let params: Params = pass.params();
-    dispatch!(pass.level, simd => smooth(simd, pass, &params, band));
 }
 
 #[inline(always)]

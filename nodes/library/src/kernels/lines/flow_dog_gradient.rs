@@ -10,12 +10,12 @@ use crate::kernels::shared::edge_threshold::{Xdog, dog_of_sums};
 use crate::kernels::shared::tensor::tangent;
 use crate::kernels::simd::line_taps::{LineTaps, strips};
 use crate::kernels::simd::pixels::{BLOCK, Block, write};
-use isophote_engine::fearless_simd::{Simd, dispatch, f32x8, i32x8, mask32x8, prelude::*};
+use isophote_engine::fearless_simd::{Simd, f32x8, i32x8, mask32x8, prelude::*};
 use isophote_engine::math::Elementary;
 use isophote_engine::{Band, Class, CpuPass, ImageId, PlanBuilder, Support, Tolerance};
 
 crate::kernel!(flow_dog_gradient {
-    cpu: run,
+    cpu: |simd, pass, params, band| gradient(simd, pass, &params, band),
     cost: |p| f64::from(p.halfwidth) * 0.88 * 50.0 + 40.0,
     tolerance: Tolerance {
         absolute: 2e-3,
@@ -144,11 +144,6 @@ impl<S: Simd> Falloff<S> {
         self.ratio *= self.growth;
         self.value
     }
-}
-
-fn run(pass: &CpuPass<'_>, band: &mut Band<'_>) {
-    let params: Params = pass.params();
-    dispatch!(pass.level, simd => gradient(simd, pass, &params, band));
 }
 
 #[inline(always)]

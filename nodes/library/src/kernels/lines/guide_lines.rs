@@ -16,12 +16,12 @@
 use crate::kernels::lines::flow_dog_gradient::Across;
 pub use crate::kernels::shaders::guide_lines::Params;
 use crate::kernels::simd::pixels::{fetch1, fetch4, for_blocks, offsets, write};
-use isophote_engine::fearless_simd::{Simd, dispatch, f32x8, i32x8, mask32x8, prelude::*};
+use isophote_engine::fearless_simd::{Simd, f32x8, i32x8, mask32x8, prelude::*};
 use isophote_engine::math::Elementary;
 use isophote_engine::{Band, Class, CpuPass, ImageId, PlanBuilder, Support, Tolerance, View};
 
 crate::kernel!(guide_lines {
-    cpu: run,
+    cpu: |simd, pass, params, band| breaks(simd, pass, &params, band),
     cost: |p| f64::from(p.steps) * 2.0 * 60.0 + 60.0,
     tolerance: Tolerance {
         absolute: 1e-3,
@@ -92,11 +92,6 @@ pub fn pass(
     // The bend of depth at the last pixel looks at one more.
     let support = Support::Pixels(steps as u32 + 1);
     plan.pass(&KERNEL, &[response, field, normal, depth, id], &params, Class::Field, support)
-}
-
-fn run(pass: &CpuPass<'_>, band: &mut Band<'_>) {
-    let params: Params = pass.params();
-    dispatch!(pass.level, simd => breaks(simd, pass, &params, band));
 }
 
 #[inline(always)]

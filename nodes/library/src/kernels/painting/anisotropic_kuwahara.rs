@@ -15,12 +15,12 @@ use crate::kernels::shared::sectors::{INSIDE, MIN_RADIUS, Polynomial, Response, 
 use crate::kernels::shared::tensor::{anisotropy, tangent};
 use crate::kernels::simd::moment_buffer::{CHANNELS, MomentBuffer, for_rows};
 use crate::kernels::simd::pixels::{Block, eight, write};
-use isophote_engine::fearless_simd::{Simd, dispatch, f32x8, prelude::*};
+use isophote_engine::fearless_simd::{Simd, f32x8, prelude::*};
 use isophote_engine::{Band, Class, CpuPass, ImageId, PlanBuilder, Support, Tolerance};
 use std::f32::consts::FRAC_1_SQRT_2;
 
 crate::kernel!(anisotropic_kuwahara {
-    cpu: run,
+    cpu: |simd, pass, params, band| filter(simd, pass, &params, band),
     cost: |p| {
         let sums = if p.sectors == 8 { 55.0 } else { 32.0 };
         60.0 + std::f64::consts::PI * f64::from(p.radius).powi(2) * sums
@@ -96,11 +96,6 @@ const SUM: usize = 8;
 const DIFFERENCE: usize = 13;
 const NORM: usize = 18;
 const TOTAL: usize = 19;
-
-fn run(pass: &CpuPass<'_>, band: &mut Band<'_>) {
-    let params: Params = pass.params();
-    dispatch!(pass.level, simd => filter(simd, pass, &params, band));
-}
 
 #[inline(always)]
 fn filter<S: Simd>(simd: S, pass: &CpuPass<'_>, params: &Params, band: &mut Band<'_>) {

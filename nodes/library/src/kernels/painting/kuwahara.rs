@@ -11,11 +11,11 @@
 use crate::kernels::painting::kuwahara_rows::{self, Side};
 pub use crate::kernels::shaders::kuwahara::Params;
 use crate::kernels::simd::pixels::{Block, read, write};
-use isophote_engine::fearless_simd::{Simd, dispatch, f32x8, prelude::*};
+use isophote_engine::fearless_simd::{Simd, f32x8, prelude::*};
 use isophote_engine::{Band, Class, CpuPass, ImageId, PlanBuilder, Support, Tolerance, View, memory};
 
 crate::kernel!(kuwahara {
-    cpu: run,
+    cpu: |simd, pass, params, band| columns(simd, pass, &params, band),
     cost: |p| 60.0 + if p.flat_weights != 0 { 30.0 } else { 20.0 * f64::from(p.count) },
     tolerance: Tolerance {
         absolute: 1e-4,
@@ -50,11 +50,6 @@ pub fn pass(plan: &mut PlanBuilder, color: ImageId, side: &Side) -> ImageId {
     let support = Support::Pixels(side.reach() as u32);
     let level = plan.desc(color).level;
     plan.pass_at(&KERNEL, &[left, right, squares, color], &params, &[Class::Colour], support, level)
-}
-
-fn run(pass: &CpuPass<'_>, band: &mut Band<'_>) {
-    let params: Params = pass.params();
-    dispatch!(pass.level, simd => columns(simd, pass, &params, band));
 }
 
 /// A strip of columns of the sums over rows: ten values a pixel, four of the left, four of the right and

@@ -11,20 +11,15 @@ pub use crate::kernels::shaders::kuwahara_rows::Params;
 use crate::kernels::simd::line_buffer::strips;
 use crate::kernels::simd::moment_buffer::{CHANNELS, MomentBuffer};
 use crate::kernels::simd::pixels::write;
-use isophote_engine::fearless_simd::{Simd, dispatch, f32x8, prelude::*};
+use isophote_engine::fearless_simd::{Simd, f32x8, prelude::*};
 use isophote_engine::{Band, Class, CpuPass, ImageId, PlanBuilder, Support, Tolerance};
 
 crate::kernel!(kuwahara_rows {
-    cpu: run,
+    cpu: |simd, pass, params, band| rows(simd, pass, &params, band),
     cost: |p| {
         if p.flat_weights != 0 { 30.0 + 10.0 * f64::from(p.count).log2() } else { 10.0 * f64::from(p.count) }
     },
-    tolerance: Tolerance {
-        absolute: 2e-6,
-        relative: 1e-5,
-        outliers: 0.0,
-        reason: "sums of up to 107 products in another order",
-    },
+    tolerance: Tolerance::of_rounding(2e-6, 1e-5, "sums of up to 107 products in another order"),
 });
 
 /// Most weights of one side of a subregion.
@@ -95,11 +90,6 @@ pub fn pass(plan: &mut PlanBuilder, color: ImageId, side: &Side) -> ImageId {
     };
     let level = plan.desc(color).level;
     plan.pass_at(&KERNEL, &[color], &params, &[Class::Field; 3], Support::Pixels(side.reach() as u32), level)
-}
-
-fn run(pass: &CpuPass<'_>, band: &mut Band<'_>) {
-    let params: Params = pass.params();
-    dispatch!(pass.level, simd => rows(simd, pass, &params, band));
 }
 
 #[inline(always)]

@@ -9,19 +9,14 @@
 //! 144 multiply-adds, through workgroup memory: 11 loads.
 
 pub use crate::kernels::shaders::lanczos_half::Params;
-use isophote_engine::fearless_simd::{Simd, dispatch, f32x4, prelude::*};
+use isophote_engine::fearless_simd::{Simd, f32x4, prelude::*};
 use isophote_engine::{Band, Class, CpuPass, ImageId, PlanBuilder, Support, Tolerance};
 use std::f64::consts::PI;
 
 crate::kernel!(lanczos_half {
-    cpu: run,
+    cpu: |simd, pass, params, band| resample(simd, pass, &params, band),
     cost: |_| 400.0,
-    tolerance: Tolerance {
-        absolute: 1e-5,
-        relative: 2e-5,
-        outliers: 0.0,
-        reason: "sums of 144 products of either sign in another order",
-    },
+    tolerance: Tolerance::of_rounding(1e-5, 2e-5, "sums of 144 products of either sign in another order"),
 });
 
 /// Adds the pass: from the image's level to the next coarser one; `limited` to the range of the pixels under the
@@ -45,11 +40,6 @@ pub fn pass(plan: &mut PlanBuilder, color: ImageId, limited: bool) -> ImageId {
 /// A row of the finer level, resampled: per pixel of the coarser one the sum, least and greatest colour
 /// under the main lobe, and the sum of the two pixels below.
 type Row = Vec<[[f32; 4]; 4]>;
-
-fn run(pass: &CpuPass<'_>, band: &mut Band<'_>) {
-    let params: Params = pass.params();
-    dispatch!(pass.level, simd => resample(simd, pass, &params, band));
-}
 
 #[inline(always)]
 fn resample<S: Simd>(simd: S, pass: &CpuPass<'_>, params: &Params, band: &mut Band<'_>) {

@@ -7,18 +7,17 @@
 pub use crate::kernels::shaders::propagate_colour::Params;
 use crate::kernels::simd::pixels::{eight, for_blocks, read, write};
 use crate::kernels::simd::upsampling::Upsampling;
-use isophote_engine::fearless_simd::{Simd, dispatch, f32x8, prelude::*};
+use isophote_engine::fearless_simd::{Simd, f32x8, prelude::*};
 use isophote_engine::{Band, Class, CpuPass, ImageId, PlanBuilder, Support, Tolerance};
 
 crate::kernel!(propagate_colour {
-    cpu: run,
+    cpu: |simd, pass, params, band| merge(simd, pass, &params, band),
     cost: |_| 50.0,
-    tolerance: Tolerance {
-        absolute: 2e-5,
-        relative: 2e-5,
-        outliers: 0.0,
-        reason: "interpolations in the same order, and a product with the deviation",
-    },
+    tolerance: Tolerance::of_rounding(
+        2e-5,
+        2e-5,
+        "interpolations in the same order, and a product with the deviation"
+    ),
 });
 
 /// Options that say how much of a level is kept.
@@ -50,11 +49,6 @@ pub fn pass(
     // Where edges count for nothing, any image may stand for their tensor.
     let inputs = [color, coarse, deviations, edges.unwrap_or(color)];
     plan.pass(&KERNEL, &inputs, &params, Class::Colour, Support::Pixels(1))
-}
-
-fn run(pass: &CpuPass<'_>, band: &mut Band<'_>) {
-    let params: Params = pass.params();
-    dispatch!(pass.level, simd => merge(simd, pass, &params, band));
 }
 
 #[inline(always)]

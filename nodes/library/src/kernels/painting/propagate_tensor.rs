@@ -6,31 +6,26 @@
 use crate::kernels::shared::tensor::anisotropy;
 use crate::kernels::simd::pixels::{for_blocks, read, write};
 use crate::kernels::simd::upsampling::Upsampling;
-use isophote_engine::fearless_simd::{Simd, dispatch, f32x8, prelude::*};
+use isophote_engine::fearless_simd::{Simd, f32x8, prelude::*};
 use isophote_engine::{Band, Class, CpuPass, ImageId, PlanBuilder, Support, Tolerance};
 
 /// Least anisotropy that counts.
 const FLOOR: f32 = 1e-3;
 
 crate::kernel!(propagate_tensor {
-    cpu: run,
+    cpu: |simd, pass, band| merge(simd, pass, band),
     cost: |_| 90.0,
-    tolerance: Tolerance {
-        absolute: 1e-6,
-        relative: 1e-4,
-        outliers: 0.0,
-        reason: "interpolations in the same order, and a quotient of anisotropies of at least 1e-3",
-    },
+    tolerance: Tolerance::of_rounding(
+        1e-6,
+        1e-4,
+        "interpolations in the same order, and a quotient of anisotropies of at least 1e-3"
+    ),
 });
 
 /// Adds the pass; `coarse` lies one level above `fine`.
 pub fn pass(plan: &mut PlanBuilder, fine: ImageId, coarse: ImageId) -> ImageId {
     // Without a floor two isotropic tensors would have no weight, and rounding would decide.
     plan.pass(&KERNEL, &[fine, coarse], &(), Class::Field, Support::Pixels(1))
-}
-
-fn run(pass: &CpuPass<'_>, band: &mut Band<'_>) {
-    dispatch!(pass.level, simd => merge(simd, pass, band));
 }
 
 #[inline(always)]

@@ -8,28 +8,18 @@
 pub use crate::kernels::shaders::diffusion_step::Params;
 use crate::kernels::simd::line_buffer::{LineBuffer, strips};
 use crate::kernels::simd::pixels::{eight, write};
-use isophote_engine::fearless_simd::{Simd, dispatch, f32x8, prelude::*};
+use isophote_engine::fearless_simd::{Simd, f32x8, prelude::*};
 use isophote_engine::{Band, Class, CpuPass, ImageId, PlanBuilder, Support, Tolerance};
 
 crate::kernel!(diffusion_step {
-    cpu: run,
+    cpu: |simd, pass, params, band| diffused(simd, pass, params.time_step, band),
     cost: |_| 70.0,
-    tolerance: Tolerance {
-        absolute: 1e-6,
-        relative: 2e-6,
-        outliers: 0.0,
-        reason: "a weighted mean of nine pixels",
-    },
+    tolerance: Tolerance::of_rounding(1e-6, 2e-6, "a weighted mean of nine pixels"),
 });
 
 /// A step by `time_step`.
 pub fn pass(plan: &mut PlanBuilder, color: ImageId, weights: ImageId, time_step: f32) -> ImageId {
     plan.pass(&KERNEL, &[color, weights], &Params { time_step }, Class::Colour, Support::Pixels(1))
-}
-
-fn run(pass: &CpuPass<'_>, band: &mut Band<'_>) {
-    let params: Params = pass.params();
-    dispatch!(pass.level, simd => diffused(simd, pass, params.time_step, band));
 }
 
 #[inline(always)]

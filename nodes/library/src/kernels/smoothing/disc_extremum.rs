@@ -10,13 +10,13 @@
 
 pub use crate::kernels::shaders::disc_extremum::Params;
 use crate::kernels::simd::pixels::eight;
-use isophote_engine::fearless_simd::{Simd, dispatch, f32x8, prelude::*};
+use isophote_engine::fearless_simd::{Simd, f32x8, prelude::*};
 use isophote_engine::{Band, Class, CpuPass, ImageId, PlanBuilder, Support, Tolerance, memory};
 
 crate::kernel!(disc_extremum {
-    cpu: run,
+    cpu: |simd, pass, params, band| extrema(simd, pass, &params, band),
     cost: |p| 3.0 * 3.2 * f64::from(p.limit) + 12.0,
-    tolerance: Tolerance { absolute: 0.0, relative: 0.0, outliers: 0.0, reason: "comparisons are exact" },
+    tolerance: Tolerance::of_rounding(0.0, 0.0, "comparisons are exact"),
 });
 
 /// End of the range of values.
@@ -43,11 +43,6 @@ const STRIP: usize = 128;
 
 /// Least coverage of a pixel that lends its colour.
 const COVERED: f32 = 0.5;
-
-fn run(pass: &CpuPass<'_>, band: &mut Band<'_>) {
-    let params: Params = pass.params();
-    dispatch!(pass.level, simd => extrema(simd, pass, &params, band));
-}
 
 /// Rows of a disc that are equally long.
 struct Chord {

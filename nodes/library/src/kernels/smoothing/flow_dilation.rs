@@ -55,19 +55,15 @@ fn reach(params: &Params) -> i32 {
 fn run(pass: &CpuPass<'_>, band: &mut Band<'_>) {
     let params: Params = pass.params();
     let field = FieldView::new(pass.inputs[1]);
-    dispatch!(pass.level, simd => for_blocks::<4>(
-        band,
-        #[inline(always)]
-        |block, target| {
-            let own: [_; 4] = block.read(simd, &pass.inputs[0]);
-            let at = brightest(simd, &params, &field, &pass.inputs[2], &block);
-            let [x, y] = at.map(|v| v.floor().to_int());
-            let [r, g, b, alpha] = fetch4(simd, &pass.inputs[0], x, y);
-            let seen = alpha.simd_ge(f32x8::splat(simd, 0.5));
-            let values = [seen.select(r, own[0]), seen.select(g, own[1]), seen.select(b, own[2]), own[3]];
-            write(values, target);
-        },
-    ));
+    dispatch!(pass.level, simd => for_blocks::<4>(band, #[inline(always)] |block, target| {
+        let own: [_; 4] = block.read(simd, &pass.inputs[0]);
+        let at = brightest(simd, &params, &field, &pass.inputs[2], &block);
+        let [x, y] = at.map(|v| v.floor().to_int());
+        let [r, g, b, alpha] = fetch4(simd, &pass.inputs[0], x, y);
+        let seen = alpha.simd_ge(f32x8::splat(simd, 0.5));
+        let values = [seen.select(r, own[0]), seen.select(g, own[1]), seen.select(b, own[2]), own[3]];
+        write(values, target);
+    }));
 }
 
 /// The places of the greatest noise along the lines through a block: the pixel itself, then the side

@@ -13,12 +13,11 @@ use isophote_engine::{Band, Class, CpuPass, ImageId, PlanBuilder, Support, Toler
 crate::kernel!(gaussian_blur {
     cpu: run,
     cost: |p| 4.0 * (f64::from(p.radius) + 1.0),
-    tolerance: Tolerance {
-        absolute: 1e-6,
-        relative: 4e-6,
-        outliers: 0.0,
-        reason: "sums of up to 511 products in the same order; only fused multiply-adds differ",
-    },
+    tolerance: Tolerance::of_rounding(
+        1e-6,
+        4e-6,
+        "sums of up to 511 products in the same order; only fused multiply-adds differ"
+    ),
     pair: is_window,
 });
 

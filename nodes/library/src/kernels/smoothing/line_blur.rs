@@ -8,18 +8,13 @@
 
 pub use crate::kernels::shaders::line_blur::Params;
 use crate::kernels::simd::pixels::{for_blocks, pixels_beside, write};
-use isophote_engine::fearless_simd::{Simd, dispatch, f32x8, prelude::*};
+use isophote_engine::fearless_simd::{Simd, f32x8, prelude::*};
 use isophote_engine::{Band, Class, CpuPass, ImageId, PlanBuilder, Support, Tolerance};
 
 crate::kernel!(line_blur {
-    cpu: run,
+    cpu: |simd, pass, params, band| hatched(simd, pass, &params, band),
     cost: |p| f64::from(2 * p.count + 1) * 30.0,
-    tolerance: Tolerance {
-        absolute: 1e-4,
-        relative: 0.0,
-        outliers: 0.0,
-        reason: "a mean of some dozens of values up to 1, times the gain",
-    },
+    tolerance: Tolerance::of_rounding(1e-4, 0.0, "a mean of some dozens of values up to 1, times the gain"),
 });
 
 /// Lines that noise is smoothed along.
@@ -52,11 +47,6 @@ pub fn pass(plan: &mut PlanBuilder, noise: ImageId, lines: &Lines) -> ImageId {
 fn reach(params: &Params) -> u32 {
     let [x, y] = params.step.map(|s| (s.abs() * params.count as f32).ceil() as u32 + 1);
     x.max(y)
-}
-
-fn run(pass: &CpuPass<'_>, band: &mut Band<'_>) {
-    let params: Params = pass.params();
-    dispatch!(pass.level, simd => hatched(simd, pass, &params, band));
 }
 
 /// Offset of a sample from a pixel, the shares of the four pixels around it, and its weight.

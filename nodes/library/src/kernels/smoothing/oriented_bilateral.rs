@@ -15,12 +15,12 @@ use crate::kernels::shared::tensor::{anisotropy, tangent};
 use crate::kernels::simd::line_taps::{LineTaps, Lines, STEPS, strips};
 use crate::kernels::simd::pixels::{read, read_tensors, write};
 use isophote_engine::fearless_simd::prelude::*;
-use isophote_engine::fearless_simd::{Simd, dispatch, f32x8};
+use isophote_engine::fearless_simd::{Simd, f32x8};
 use isophote_engine::math::Elementary;
 use isophote_engine::{Band, Class, CpuPass, ImageId, PlanBuilder, Rect, Support, Tolerance, View};
 
 crate::kernel!(oriented_bilateral {
-    cpu: run,
+    cpu: |simd, pass, params, band| filter(simd, pass, &params, band),
     cost: |p| 1.8 * f64::from(p.cutoff) * if p.sampling == Sampling::Linear as u32 { 35.0 } else { 50.0 },
     tolerance: Tolerance {
         absolute: 2e-3,
@@ -95,11 +95,6 @@ pub fn pass(
 fn reach(params: &Params) -> i32 {
     let stretch = if params.tangential != 0 { 1.0 + params.elongation } else { 1.0 };
     (params.cutoff * stretch).ceil() as i32
-}
-
-fn run(pass: &CpuPass<'_>, band: &mut Band<'_>) {
-    let params: Params = pass.params();
-    dispatch!(pass.level, simd => filter(simd, pass, &params, band));
 }
 
 #[inline(always)]

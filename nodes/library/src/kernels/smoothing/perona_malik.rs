@@ -18,12 +18,7 @@ use isophote_engine::{Band, Class, CpuPass, ImageId, PlanBuilder, Support, Toler
 crate::kernel!(perona_malik {
     cpu: run,
     cost: |p| if p.diffusivity == Diffusivity::Exponential as u32 { 100.0 } else { 60.0 },
-    tolerance: Tolerance {
-        absolute: 1e-6,
-        relative: 2e-6,
-        outliers: 0.0,
-        reason: "a weighted mean of five pixels",
-    },
+    tolerance: Tolerance::of_rounding(1e-6, 2e-6, "a weighted mean of five pixels"),
 });
 
 crate::declare::choice::choice! {

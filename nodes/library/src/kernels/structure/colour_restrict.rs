@@ -4,28 +4,19 @@
 //! Cost: 4 additions and a division on four channels.
 
 use crate::kernels::shared::coverage::LEAST_COVERAGE;
-use isophote_engine::fearless_simd::{Simd, dispatch, f32x4, prelude::*};
+use isophote_engine::fearless_simd::{Simd, f32x4, prelude::*};
 use isophote_engine::{Band, Class, CpuPass, ImageId, PlanBuilder, Support, Tolerance};
 
 crate::kernel!(colour_restrict {
-    cpu: run,
+    cpu: |simd, pass, band| means(simd, pass, band),
     cost: |_| 24.0,
-    tolerance: Tolerance {
-        absolute: 1e-7,
-        relative: 2e-6,
-        outliers: 0.0,
-        reason: "three additions in the same order and a division",
-    },
+    tolerance: Tolerance::of_rounding(1e-7, 2e-6, "three additions in the same order and a division"),
 });
 
 /// Adds the pass: from the image's level to the next coarser one, ceil(n / 2) pixels on a side.
 pub fn pass(plan: &mut PlanBuilder, color: ImageId) -> ImageId {
     let level = plan.desc(color).level + 1;
     plan.pass_at(&KERNEL, &[color], &(), &[Class::Colour], Support::Pixels(0), level)
-}
-
-fn run(pass: &CpuPass<'_>, band: &mut Band<'_>) {
-    dispatch!(pass.level, simd => means(simd, pass, band));
 }
 
 #[inline(always)]

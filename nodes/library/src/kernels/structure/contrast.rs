@@ -11,12 +11,7 @@ use isophote_engine::{Band, Class, CpuPass, ImageId, PlanBuilder, Support, Toler
 crate::kernel!(contrast {
     cpu: run,
     cost: |_| 4.0,
-    tolerance: Tolerance {
-        absolute: 2e-6,
-        relative: 0.0,
-        outliers: 0.0,
-        reason: "three roundings of values up to 1"
-    },
+    tolerance: Tolerance::of_rounding(2e-6, 0.0, "three roundings of values up to 1"),
 });
 
 /// Adds the pass: 0.5 + gain (colour - 0.5), clamped.
@@ -26,18 +21,12 @@ pub fn pass(plan: &mut PlanBuilder, color: ImageId, gain: f32) -> ImageId {
 
 fn run(pass: &CpuPass<'_>, band: &mut Band<'_>) {
     let params: Params = pass.params();
-    dispatch!(pass.level, simd => map_pixels(
-        simd,
-        pass,
-        band,
-        #[inline(always)]
-        |[r, g, b, a]| {
-            let (zero, one) = (f32x8::splat(simd, 0.0), f32x8::splat(simd, 1.0));
-            let mut rgb = [r, g, b];
-            for v in &mut rgb {
-                *v = ((*v - 0.5) * params.gain + 0.5).within(zero, one);
-            }
-            [rgb[0], rgb[1], rgb[2], a]
-        },
-    ));
+    dispatch!(pass.level, simd => map_pixels(simd, pass, band, #[inline(always)] |[r, g, b, a]| {
+        let (zero, one) = (f32x8::splat(simd, 0.0), f32x8::splat(simd, 1.0));
+        let mut rgb = [r, g, b];
+        for v in &mut rgb {
+            *v = ((*v - 0.5) * params.gain + 0.5).within(zero, one);
+        }
+        [rgb[0], rgb[1], rgb[2], a]
+    }));
 }

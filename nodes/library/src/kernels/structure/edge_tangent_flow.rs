@@ -16,7 +16,7 @@ pub use crate::kernels::shaders::edge_tangent_flow::Params;
 use crate::kernels::shared::tensor::axis;
 use crate::kernels::simd::line_buffer::{self, LineBuffer, Row, STRIP, for_rows};
 use crate::kernels::simd::pixels::{BLOCK, eight, write};
-use isophote_engine::fearless_simd::{Simd, dispatch, f32x8, prelude::*};
+use isophote_engine::fearless_simd::{Simd, f32x8, prelude::*};
 use isophote_engine::{Band, Class, CpuPass, ImageId, PlanBuilder, Support, Tolerance};
 
 /// Entries of the table, the centre included.
@@ -25,7 +25,7 @@ const TAPS: usize = 24;
 const MAX_REACH: i32 = TAPS as i32 - 1;
 
 crate::kernel!(edge_tangent_flow {
-    cpu: run,
+    cpu: |simd, pass, params, band| rows(simd, pass, &params, band),
     cost: |p| {
         let [x, y] = p.reach.map(f64::from);
         7.0 * (2.0 * x + 1.0) * (2.0 * y + 1.0) + 50.0
@@ -98,11 +98,6 @@ pub fn pass(plan: &mut PlanBuilder, flow: ImageId, largest: ImageId, options: &O
         weights,
     };
     plan.pass(&KERNEL, &[flow, largest], &params, Class::Field, Support::Pixels(reach as u32))
-}
-
-fn run(pass: &CpuPass<'_>, band: &mut Band<'_>) {
-    let params: Params = pass.params();
-    dispatch!(pass.level, simd => rows(simd, pass, &params, band));
 }
 
 impl Params {

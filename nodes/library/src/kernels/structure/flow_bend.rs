@@ -10,7 +10,7 @@ use isophote_engine::{Band, Class, CpuPass, ImageId, PlanBuilder, Support, Toler
 crate::kernel!(flow_bend {
     cpu: run,
     cost: |_| 15.0,
-    tolerance: Tolerance { absolute: 1e-7, relative: 2e-6, outliers: 0.0, reason: "a handful of roundings" },
+    tolerance: Tolerance::of_rounding(1e-7, 2e-6, "a handful of roundings"),
 });
 
 /// Trace that painted orientation has where the picture has none: (1/255)^2, one step of eight bits a pixel.

@@ -9,7 +9,7 @@ use isophote_engine::{Band, Class, CpuPass, ImageId, PlanBuilder, Support, Toler
 crate::kernel!(flow_maximum {
     cpu: run,
     cost: |_| 4.0,
-    tolerance: Tolerance { absolute: 0.0, relative: 0.0, outliers: 0.0, reason: "comparisons only" },
+    tolerance: Tolerance::of_rounding(0.0, 0.0, "comparisons only"),
 });
 
 /// Adds passes up to an image of one pixel, the largest value of the last channel of `image`.

@@ -12,12 +12,11 @@ use isophote_engine::{Band, Class, CpuPass, ImageId, PlanBuilder, Support, Toler
 crate::kernel!(flow_start {
     cpu: run,
     cost: |_| 20.0,
-    tolerance: Tolerance {
-        absolute: 4e-6,
-        relative: 1e-5,
-        outliers: 0.0,
-        reason: "two square roots and a division, on a difference of squares",
-    },
+    tolerance: Tolerance::of_rounding(
+        4e-6,
+        1e-5,
+        "two square roots and a division, on a difference of squares"
+    ),
 });
 
 /// Below this magnitude a gradient is what rounding left of a flat part.
@@ -29,18 +28,12 @@ pub fn pass(plan: &mut PlanBuilder, tensor: ImageId) -> ImageId {
 }
 
 fn run(pass: &CpuPass<'_>, band: &mut Band<'_>) {
-    dispatch!(pass.level, simd => map_pixels(
-        simd,
-        pass,
-        band,
-        #[inline(always)]
-        |[e, f, g, _]| {
-            let zero = f32x8::splat(simd, 0.0);
-            let (radius, [x, y]) = axis((e - g) * 0.5, f);
-            let magnitude = ((e + g) * 0.5 + radius).at_least(zero).sqrt();
-            let none = magnitude.simd_lt(f32x8::splat(simd, LEAST));
-            let (xx, xy, yy) = (x * x, x * y, y * y);
-            [none.select(zero, xx), none.select(zero, xy), none.select(zero, yy), none.select(zero, magnitude)]
-        },
-    ));
+    dispatch!(pass.level, simd => map_pixels(simd, pass, band, #[inline(always)] |[e, f, g, _]| {
+        let zero = f32x8::splat(simd, 0.0);
+        let (radius, [x, y]) = axis((e - g) * 0.5, f);
+        let magnitude = ((e + g) * 0.5 + radius).at_least(zero).sqrt();
+        let none = magnitude.simd_lt(f32x8::splat(simd, LEAST));
+        let (xx, xy, yy) = (x * x, x * y, y * y);
+        [none.select(zero, xx), none.select(zero, xy), none.select(zero, yy), none.select(zero, magnitude)]
+    }));
 }

@@ -5,18 +5,13 @@
 //! Cost: 4 additions on four channels where a tensor is not valid.
 
 use super::{tensor_interpolate, tensor_restrict};
-use isophote_engine::fearless_simd::{Simd, dispatch, f32x4, prelude::*};
+use isophote_engine::fearless_simd::{Simd, f32x4, prelude::*};
 use isophote_engine::{Band, Class, CpuPass, ImageId, PlanBuilder, Support, Tolerance};
 
 crate::kernel!(jacobi_step {
-    cpu: run,
+    cpu: |simd, pass, band| average(simd, pass, band),
     cost: |_| 16.0,
-    tolerance: Tolerance {
-        absolute: 1e-6,
-        relative: 2e-6,
-        outliers: 0.0,
-        reason: "three additions in the same order",
-    },
+    tolerance: Tolerance::of_rounding(1e-6, 2e-6, "three additions in the same order"),
 });
 
 /// Adds the pass.
@@ -38,10 +33,6 @@ pub fn relax(plan: &mut PlanBuilder, tensor: ImageId, steps: i32) -> ImageId {
         filled = pass(plan, filled);
     }
     filled
-}
-
-fn run(pass: &CpuPass<'_>, band: &mut Band<'_>) {
-    dispatch!(pass.level, simd => average(simd, pass, band));
 }
 
 #[inline(always)]

@@ -9,18 +9,17 @@
 
 pub use crate::kernels::shaders::noise::Params;
 use crate::kernels::simd::pixels::write;
-use isophote_engine::fearless_simd::{Simd, dispatch, f32x8, i32x8, prelude::*, u32x8};
-use isophote_engine::{Band, Class, CpuPass, ImageId, PlanBuilder, Support, Tolerance};
+use isophote_engine::fearless_simd::{Simd, f32x8, i32x8, prelude::*, u32x8};
+use isophote_engine::{Band, Class, ImageId, PlanBuilder, Support, Tolerance};
 
 crate::kernel!(noise {
-    cpu: run,
+    cpu: |simd, pass, params, band| rows(simd, &params, band),
     cost: |p| 15.0 * f64::from(p.count * p.count),
-    tolerance: Tolerance {
-        absolute: 1e-6,
-        relative: 0.0,
-        outliers: 0.0,
-        reason: "integers and exact divisions at full size; means of them on proxies",
-    },
+    tolerance: Tolerance::of_rounding(
+        1e-6,
+        0.0,
+        "integers and exact divisions at full size; means of them on proxies"
+    ),
 });
 
 /// Most grains along a side of a pixel.
@@ -41,11 +40,6 @@ pub fn pass_at(plan: &mut PlanBuilder, scale: f32, origin: [f32; 2], seed: u32, 
     let count = if pixel_size.fract() == 0.0 { pixel_size } else { pixel_size.ceil() + 1.0 } as i32;
     let params = Params { pixel_size, grain, count, seed, origin };
     plan.pass_at(&KERNEL, &[], &params, &[Class::Colour], Support::Pixels(0), level)
-}
-
-fn run(pass: &CpuPass<'_>, band: &mut Band<'_>) {
-    let params: Params = pass.params();
-    dispatch!(pass.level, simd => rows(simd, &params, band));
 }
 
 const LANES: [f32; 8] = [0.0, 1.0, 2.0, 3.0, 4.0, 5.0, 6.0, 7.0];

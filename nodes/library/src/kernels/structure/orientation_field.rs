@@ -11,7 +11,7 @@ use isophote_engine::{Band, Class, CpuPass, ImageId, PlanBuilder, Support, Toler
 crate::kernel!(orientation_field {
     cpu: run,
     cost: |_| 1.0,
-    tolerance: Tolerance { absolute: 1e-7, relative: 1e-6, outliers: 0.0, reason: "two roundings" },
+    tolerance: Tolerance::of_rounding(1e-7, 1e-6, "two roundings"),
 });
 
 /// (E - G, F) of a tensor image.
@@ -21,12 +21,8 @@ pub fn pass(plan: &mut PlanBuilder, tensor: ImageId) -> ImageId {
 
 fn run(pass: &CpuPass<'_>, band: &mut Band<'_>) {
     let view = &pass.inputs[0];
-    dispatch!(pass.level, simd => for_blocks::<2>(
-        band,
-        #[inline(always)]
-        |block, target| {
-            let [e, f, g, _] = block.read(simd, view);
-            write([e - g, f], target);
-        },
-    ));
+    dispatch!(pass.level, simd => for_blocks::<2>(band, #[inline(always)] |block, target| {
+        let [e, f, g, _] = block.read(simd, view);
+        write([e - g, f], target);
+    }));
 }

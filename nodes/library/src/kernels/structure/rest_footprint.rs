@@ -10,13 +10,17 @@
 
 use crate::kernels::shared::rest_position::{NO_FOOTPRINT, is_at_rest};
 use crate::kernels::simd::pixels::{Block, for_blocks, pixels_beside, write};
-use isophote_engine::fearless_simd::{Simd, dispatch, f32x8, mask32x8, prelude::*};
+use isophote_engine::fearless_simd::{Simd, f32x8, mask32x8, prelude::*};
 use isophote_engine::math::Elementary;
-use isophote_engine::{Band, Class, CpuPass, ImageId, PlanBuilder, Support, Tolerance};
+use isophote_engine::{Class, CpuPass, ImageId, PlanBuilder, Support, Tolerance};
 use std::f32::consts::LOG2_E;
 
 crate::kernel!(rest_footprint {
-    cpu: run,
+    cpu: |simd, pass, band| for_blocks::<2>(
+        band,
+        #[inline(always)]
+        |block, target| { write(footprint(simd, pass, block), target) }
+    ),
     cost: |_| 90.0,
     tolerance: Tolerance {
         absolute: 1e-3,
@@ -31,12 +35,6 @@ crate::kernel!(rest_footprint {
 /// [`NO_FOOTPRINT`] where there is no object or no neighbour on it.
 pub fn pass(plan: &mut PlanBuilder, points: ImageId) -> ImageId {
     plan.pass(&KERNEL, &[points], &(), Class::Field, Support::Pixels(1))
-}
-
-fn run(pass: &CpuPass<'_>, band: &mut Band<'_>) {
-    dispatch!(pass.level, simd => for_blocks::<2>(band, #[inline(always)] |block, target| {
-        write(footprint(simd, pass, block), target);
-    }));
 }
 
 /// Change of the points per pixel along an axis, and where it is known.

@@ -7,12 +7,16 @@
 use crate::kernels::shared::motion::beside;
 use crate::kernels::shared::rest_position::{NO_FOOTPRINT, has_footprint, is_at_rest};
 use crate::kernels::simd::pixels::{Block, for_blocks, pixels_beside, write};
-use isophote_engine::fearless_simd::{Simd, dispatch, f32x8, prelude::*};
+use isophote_engine::fearless_simd::{Simd, f32x8, prelude::*};
 use isophote_engine::math::Elementary;
-use isophote_engine::{Band, Class, CpuPass, ImageId, PlanBuilder, Support, Tolerance};
+use isophote_engine::{Class, CpuPass, ImageId, PlanBuilder, Support, Tolerance};
 
 crate::kernel!(rest_scale {
-    cpu: run,
+    cpu: |simd, pass, band| for_blocks::<1>(
+        band,
+        #[inline(always)]
+        |block, target| { write([smoothed(simd, pass, block)], target) }
+    ),
     cost: |_| 260.0,
     tolerance: Tolerance {
         absolute: 1e-4,
@@ -29,12 +33,6 @@ const SHARES: [f32; 5] = [1.0, 0.8007, 0.6412, 0.0, 0.4111];
 /// [footprints](super::rest_footprint); [`NO_FOOTPRINT`] where there is no object.
 pub fn pass(plan: &mut PlanBuilder, points: ImageId, footprints: ImageId) -> ImageId {
     plan.pass(&KERNEL, &[points, footprints], &(), Class::Field, Support::Pixels(2))
-}
-
-fn run(pass: &CpuPass<'_>, band: &mut Band<'_>) {
-    dispatch!(pass.level, simd => for_blocks::<1>(band, #[inline(always)] |block, target| {
-        write([smoothed(simd, pass, block)], target);
-    }));
 }
 
 #[inline(always)]

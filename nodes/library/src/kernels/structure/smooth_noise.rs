@@ -6,11 +6,11 @@
 pub use crate::kernels::shaders::smooth_noise::Params;
 use crate::kernels::shared::value_noise;
 use crate::kernels::simd::pixels::{for_blocks, write};
-use isophote_engine::fearless_simd::{Simd, dispatch, f32x8, prelude::*};
-use isophote_engine::{Band, Class, CpuPass, ImageId, PlanBuilder, Support, Tolerance};
+use isophote_engine::fearless_simd::{Simd, f32x8, prelude::*};
+use isophote_engine::{Band, Class, ImageId, PlanBuilder, Support, Tolerance};
 
 crate::kernel!(smooth_noise {
-    cpu: run,
+    cpu: |simd, pass, params, band| clouded(simd, &params, band),
     cost: |_| 130.0,
     tolerance: Tolerance {
         absolute: 5e-5,
@@ -35,11 +35,6 @@ pub fn pass(plan: &mut PlanBuilder, layers: [Layer; 2], scale: f32, origin: [f32
         padding: Default::default(),
     };
     plan.pass_at(&KERNEL, &[], &params, &[Class::Colour], Support::Pixels(0), 0)
-}
-
-fn run(pass: &CpuPass<'_>, band: &mut Band<'_>) {
-    let params: Params = pass.params();
-    dispatch!(pass.level, simd => clouded(simd, &params, band));
 }
 
 #[inline(always)]

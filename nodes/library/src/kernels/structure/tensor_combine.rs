@@ -11,14 +11,14 @@
 use crate::kernels::shared::sampling::fetch4;
 use crate::kernels::shared::tensor::anisotropy;
 use crate::kernels::simd::pixels::{for_blocks, write};
-use isophote_engine::fearless_simd::{Simd, dispatch, f32x8, i32x8, prelude::*};
+use isophote_engine::fearless_simd::{Simd, f32x8, i32x8, prelude::*};
 use isophote_engine::{Band, Class, CpuPass, ImageId, PlanBuilder, Support, Tolerance, View};
 
 /// Sum of both anisotropies up to which the finer tensor stays.
 const LEAST: f32 = 1e-6;
 
 crate::kernel!(tensor_combine {
-    cpu: run,
+    cpu: |simd, pass, band| weighted(simd, pass, band),
     cost: |_| 120.0,
     tolerance: Tolerance {
         absolute: 1e-6,
@@ -32,10 +32,6 @@ crate::kernel!(tensor_combine {
 /// Adds the pass; `coarse` lies one level above `fine`.
 pub fn pass(plan: &mut PlanBuilder, fine: ImageId, coarse: ImageId) -> ImageId {
     plan.pass(&KERNEL, &[fine, coarse], &(), Class::Field, Support::Pixels(1))
-}
-
-fn run(pass: &CpuPass<'_>, band: &mut Band<'_>) {
-    dispatch!(pass.level, simd => weighted(simd, pass, band));
 }
 
 #[inline(always)]

@@ -90,19 +90,13 @@ pub fn pass(plan: &mut PlanBuilder, tensor: ImageId, options: &Options) -> Image
 fn run(pass: &CpuPass<'_>, band: &mut Band<'_>) {
     let params: Params = pass.params();
     let show = Show::of(params.show);
-    dispatch!(pass.level, simd => map_pixels(
-        simd,
-        pass,
-        band,
-        #[inline(always)]
-        |[e, f, g, _]| {
-            let [r, g, b] = match show {
-                Show::Orientation => orientation(simd, e, f, g),
-                grey => [measure(simd, grey, &params, [e, f, g]); 3],
-            };
-            [r, g, b, f32x8::splat(simd, 1.0)]
-        },
-    ));
+    dispatch!(pass.level, simd => map_pixels(simd, pass, band, #[inline(always)] |[e, f, g, _]| {
+        let [r, g, b] = match show {
+            Show::Orientation => orientation(simd, e, f, g),
+            grey => [measure(simd, grey, &params, [e, f, g]); 3],
+        };
+        [r, g, b, f32x8::splat(simd, 1.0)]
+    }));
 }
 
 #[inline(always)]

@@ -4,18 +4,17 @@
 //! Cost: 3 multiply-adds on four channels, one of them shared by the pixels between two coarse ones.
 
 pub use crate::kernels::shaders::tensor_interpolate::Params;
-use isophote_engine::fearless_simd::{Simd, dispatch, f32x4, prelude::*};
+use isophote_engine::fearless_simd::{Simd, f32x4, prelude::*};
 use isophote_engine::{Band, Class, CpuPass, ImageId, PlanBuilder, Support, Tolerance};
 
 crate::kernel!(tensor_interpolate {
-    cpu: run,
+    cpu: |simd, pass, params, band| fill(simd, pass, &params, band),
     cost: |_| 16.0,
-    tolerance: Tolerance {
-        absolute: 1e-6,
-        relative: 4e-6,
-        outliers: 0.0,
-        reason: "three interpolations with exact weights, along y and along x first",
-    },
+    tolerance: Tolerance::of_rounding(
+        1e-6,
+        4e-6,
+        "three interpolations with exact weights, along y and along x first"
+    ),
 });
 
 /// Adds the pass; `coarse` lies one level above `fine`.
@@ -27,11 +26,6 @@ pub fn pass(plan: &mut PlanBuilder, fine: ImageId, coarse: ImageId) -> ImageId {
 pub fn pass_to(plan: &mut PlanBuilder, fine: ImageId, coarse: ImageId) -> ImageId {
     let params = Params { kept: f32::MAX };
     plan.pass(&KERNEL, &[fine, coarse], &params, Class::Field, Support::Pixels(1))
-}
-
-fn run(pass: &CpuPass<'_>, band: &mut Band<'_>) {
-    let params: Params = pass.params();
-    dispatch!(pass.level, simd => fill(simd, pass, &params, band));
 }
 
 #[inline(always)]

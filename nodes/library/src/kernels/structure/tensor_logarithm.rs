@@ -15,13 +15,12 @@ use isophote_engine::{Band, Class, CpuPass, ImageId, PlanBuilder, Support, Toler
 crate::kernel!(tensor_logarithm {
     cpu: run,
     cost: |_| 60.0,
-    tolerance: Tolerance {
-        absolute: 2e-4,
-        relative: 2e-5,
-        outliers: 0.0,
-        reason: "the smaller eigenvalue of a tensor of nearly one direction is a small difference of large \
-                 numbers, and its logarithm has that relative error",
-    },
+    tolerance: Tolerance::of_rounding(
+        2e-4,
+        2e-5,
+        "the smaller eigenvalue of a tensor of nearly one direction is a small difference of large \
+                 numbers, and its logarithm has that relative error"
+    ),
 });
 
 /// A gradient of 1e-6 a pixel: what is below has no direction.
@@ -46,16 +45,10 @@ fn convert(plan: &mut PlanBuilder, image: ImageId, inverse: u32) -> ImageId {
 
 fn run(pass: &CpuPass<'_>, band: &mut Band<'_>) {
     let params: Params = pass.params();
-    dispatch!(pass.level, simd => map_pixels(
-        simd,
-        pass,
-        band,
-        #[inline(always)]
-        |[e, f, g, w]| {
-            let [e, f, g] = if params.inverse != 0 { back(e, f, g) } else { forth(&params, e, f, g) };
-            [e, f, g, w]
-        },
-    ));
+    dispatch!(pass.level, simd => map_pixels(simd, pass, band, #[inline(always)] |[e, f, g, w]| {
+        let [e, f, g] = if params.inverse != 0 { back(e, f, g) } else { forth(&params, e, f, g) };
+        [e, f, g, w]
+    }));
 }
 
 #[inline(always)]

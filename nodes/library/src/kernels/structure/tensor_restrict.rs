@@ -5,18 +5,13 @@
 //! Cost: 4 additions and a division on four channels.
 
 pub use crate::kernels::shaders::tensor_restrict::Params;
-use isophote_engine::fearless_simd::{Simd, dispatch, f32x4, prelude::*};
+use isophote_engine::fearless_simd::{Simd, f32x4, prelude::*};
 use isophote_engine::{Band, Class, CpuPass, ImageId, PlanBuilder, Support, Tolerance};
 
 crate::kernel!(tensor_restrict {
-    cpu: run,
+    cpu: |simd, pass, params, band| means(simd, pass, &params, band),
     cost: |_| 24.0,
-    tolerance: Tolerance {
-        absolute: 1e-7,
-        relative: 2e-6,
-        outliers: 0.0,
-        reason: "three additions in the same order and a division",
-    },
+    tolerance: Tolerance::of_rounding(1e-7, 2e-6, "three additions in the same order and a division"),
 });
 
 /// Adds the pass: from the image's level to the next coarser one, ceil(n / 2) pixels on a side.
@@ -32,11 +27,6 @@ pub fn pass_mean(plan: &mut PlanBuilder, tensor: ImageId) -> ImageId {
 fn coarser(plan: &mut PlanBuilder, tensor: ImageId, kept: f32) -> ImageId {
     let level = plan.desc(tensor).level + 1;
     plan.pass_at(&KERNEL, &[tensor], &Params { kept }, &[Class::Field], Support::Pixels(0), level)
-}
-
-fn run(pass: &CpuPass<'_>, band: &mut Band<'_>) {
-    let params: Params = pass.params();
-    dispatch!(pass.level, simd => means(simd, pass, &params, band));
 }
 
 #[inline(always)]

@@ -12,7 +12,7 @@ const BRIGHTEST: f32 = 4.0;
 crate::kernel!(brightness {
     cpu: run,
     cost: |_| 6.0,
-    tolerance: Tolerance { absolute: 1e-6, relative: 1e-6, outliers: 0.0, reason: "a sum of three products" },
+    tolerance: Tolerance::of_rounding(1e-6, 1e-6, "a sum of three products"),
 });
 
 /// Adds the pass.

@@ -4,21 +4,20 @@
 //! Cost: 25 operations.
 
 use crate::kernels::simd::pixels::{BLOCK, Block, read};
-use isophote_engine::fearless_simd::{Simd, dispatch, f32x8};
+use isophote_engine::fearless_simd::{Simd, f32x8};
 use isophote_engine::{Band, Class, CpuPass, ImageId, PlanBuilder, Support, Tolerance};
 
 /// Levels of brightness to 1.
 const LEVELS: f32 = 255.0;
 
 crate::kernel!(brightness_derivatives {
-    cpu: run,
+    cpu: |simd, pass, band| derivatives(simd, pass, band),
     cost: |_| 25.0,
-    tolerance: Tolerance {
-        absolute: 1e-3,
-        relative: 1e-6,
-        outliers: 0.0,
-        reason: "differences in the same order, of brightness up to 4 in levels of 1/255: one in its last bit",
-    },
+    tolerance: Tolerance::of_rounding(
+        1e-3,
+        1e-6,
+        "differences in the same order, of brightness up to 4 in levels of 1/255: one in its last bit"
+    ),
 });
 
 /// The derivatives x, y, z and xx, and xy, yy, xz and yz, in levels of brightness; of what
@@ -27,10 +26,6 @@ pub fn pass(plan: &mut PlanBuilder, warped: [ImageId; 2]) -> [ImageId; 2] {
     let level = plan.desc(warped[0]).level;
     let first = plan.pass_at(&KERNEL, &warped, &(), &[Class::Field; 2], Support::Pixels(1), level);
     [first, plan.sibling(first, 1)]
-}
-
-fn run(pass: &CpuPass<'_>, band: &mut Band<'_>) {
-    dispatch!(pass.level, simd => derivatives(simd, pass, band));
 }
 
 #[inline(always)]

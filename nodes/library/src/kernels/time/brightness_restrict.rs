@@ -4,28 +4,19 @@
 //! Cost: 4 operations.
 
 use crate::kernels::simd::pixels::{BLOCK, read, write};
-use isophote_engine::fearless_simd::{Simd, dispatch};
+use isophote_engine::fearless_simd::Simd;
 use isophote_engine::{Band, Class, CpuPass, ImageId, PlanBuilder, Support, Tolerance};
 
 crate::kernel!(brightness_restrict {
-    cpu: run,
+    cpu: |simd, pass, band| means(simd, pass, band),
     cost: |_| 4.0,
-    tolerance: Tolerance {
-        absolute: 1e-7,
-        relative: 1e-6,
-        outliers: 0.0,
-        reason: "a sum of four in the same order",
-    },
+    tolerance: Tolerance::of_rounding(1e-7, 1e-6, "a sum of four in the same order"),
 });
 
 /// Adds the pass: from the image's level to the next coarser one, ceil(n / 2) pixels on a side.
 pub fn pass(plan: &mut PlanBuilder, brightness: ImageId) -> ImageId {
     let level = plan.desc(brightness).level + 1;
     plan.pass_at(&KERNEL, &[brightness], &(), &[Class::Field], Support::Pixels(0), level)
-}
-
-fn run(pass: &CpuPass<'_>, band: &mut Band<'_>) {
-    dispatch!(pass.level, simd => means(simd, pass, band));
 }
 
 #[inline(always)]

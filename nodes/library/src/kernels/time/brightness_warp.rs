@@ -5,11 +5,11 @@
 
 use crate::kernels::shared::sampling::sample_linear1;
 use crate::kernels::simd::pixels::{BLOCK, Block};
-use isophote_engine::fearless_simd::{Simd, dispatch};
+use isophote_engine::fearless_simd::Simd;
 use isophote_engine::{Band, Class, CpuPass, ImageId, PlanBuilder, Support, Tolerance};
 
 crate::kernel!(brightness_warp {
-    cpu: run,
+    cpu: |simd, pass, band| warp(simd, pass, band),
     cost: |_| 20.0,
     tolerance: Tolerance {
         absolute: 2e-5,
@@ -33,10 +33,6 @@ pub fn pass(
     let classes = [Class::Field; 2];
     let mean = plan.pass_at(&KERNEL, &[here, there, motion], &(), &classes, support, level);
     [mean, plan.sibling(mean, 1)]
-}
-
-fn run(pass: &CpuPass<'_>, band: &mut Band<'_>) {
-    dispatch!(pass.level, simd => warp(simd, pass, band));
 }
 
 #[inline(always)]

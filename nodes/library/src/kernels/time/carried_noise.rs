@@ -12,12 +12,16 @@
 pub use crate::kernels::shaders::carried_noise::Params;
 use crate::kernels::shared::motion::sample_sharp_covered4;
 use crate::kernels::simd::pixels::{Block, for_blocks, write};
-use isophote_engine::fearless_simd::{Simd, dispatch, f32x8, prelude::*};
+use isophote_engine::fearless_simd::{Simd, f32x8, prelude::*};
 use isophote_engine::math::Elementary;
-use isophote_engine::{Band, Class, CpuPass, ImageId, PlanBuilder, Support, Tolerance, View};
+use isophote_engine::{Class, CpuPass, ImageId, PlanBuilder, Support, Tolerance, View};
 
 crate::kernel!(carried_noise {
-    cpu: run,
+    cpu: |simd, pass, params, band| for_blocks::<4>(
+        band,
+        #[inline(always)]
+        |block, target| { write(faded(simd, pass, block, &params), target) }
+    ),
     cost: |_| 800.0,
     tolerance: Tolerance {
         absolute: 1e-3,
@@ -57,13 +61,6 @@ pub fn pass(
 /// Distance of places, in standard deviations of the smoothing of the noise, from which on the layers have nothing in
 /// common.
 const APART: f32 = 0.5;
-
-fn run(pass: &CpuPass<'_>, band: &mut Band<'_>) {
-    let params: Params = pass.params();
-    dispatch!(pass.level, simd => for_blocks::<4>(band, #[inline(always)] |block, target| {
-        write(faded(simd, pass, block, &params), target);
-    }));
-}
 
 #[inline(always)]
 fn faded<S: Simd>(simd: S, pass: &CpuPass<'_>, block: Block, params: &Params) -> [f32x8<S>; 4] {

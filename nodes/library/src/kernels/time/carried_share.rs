@@ -10,12 +10,16 @@ use crate::kernels::shared::coverage::unpremultiply;
 use crate::kernels::shared::motion::{is_inside, is_known, sample_linear_covered4};
 use crate::kernels::simd::pixels::{Block, for_blocks, write};
 use isophote_engine::fearless_simd::prelude::*;
-use isophote_engine::fearless_simd::{Simd, dispatch, f32x8};
+use isophote_engine::fearless_simd::{Simd, f32x8};
 use isophote_engine::math::Elementary;
-use isophote_engine::{Band, Class, CpuPass, ImageId, PlanBuilder, Support, Tolerance};
+use isophote_engine::{Class, CpuPass, ImageId, PlanBuilder, Support, Tolerance};
 
 crate::kernel!(carried_share {
-    cpu: run,
+    cpu: |simd, pass, params, band| for_blocks::<2>(
+        band,
+        #[inline(always)]
+        |block, target| { write(shares(simd, pass, &params, block), target) }
+    ),
     cost: |_| 100.0,
     tolerance: Tolerance {
         absolute: 2e-4,
@@ -62,13 +66,6 @@ pub fn pass(
     let here = Support::Pixels(0);
     let supports = [here, here, here, here, Support::Pixels(reach + 1)];
     plan.pass_reaching(&KERNEL, &inputs, &params, &[Class::Field], &supports, 0)
-}
-
-fn run(pass: &CpuPass<'_>, band: &mut Band<'_>) {
-    let params: Params = pass.params();
-    dispatch!(pass.level, simd => for_blocks::<2>(band, #[inline(always)] |block, target| {
-        write(shares(simd, pass, &params, block), target);
-    }));
 }
 
 #[inline(always)]

@@ -6,11 +6,15 @@
 pub use crate::kernels::shaders::guide_agreement::Params;
 use crate::kernels::shared::motion::is_known;
 use crate::kernels::simd::pixels::{Block, fetch1, for_blocks, offsets, write};
-use isophote_engine::fearless_simd::{Simd, dispatch, f32x8, i32x8, prelude::*};
-use isophote_engine::{Band, Class, CpuPass, ImageId, PlanBuilder, Support, Tolerance};
+use isophote_engine::fearless_simd::{Simd, f32x8, i32x8, prelude::*};
+use isophote_engine::{Class, CpuPass, ImageId, PlanBuilder, Support, Tolerance};
 
 crate::kernel!(guide_agreement {
-    cpu: run,
+    cpu: |simd, pass, params, band| for_blocks::<1>(
+        band,
+        #[inline(always)]
+        |block, target| { write([agreement(simd, pass, &params, block)], target) }
+    ),
     cost: |_| 50.0,
     tolerance: Tolerance {
         absolute: 1e-3,
@@ -51,13 +55,6 @@ pub fn pass(
     let here = Support::Pixels(0);
     let supports = [here, here, here, Support::Pixels(way.reach + 1)];
     plan.pass_reaching(&KERNEL, &inputs, &params, &[Class::Field], &supports, 0)
-}
-
-fn run(pass: &CpuPass<'_>, band: &mut Band<'_>) {
-    let params: Params = pass.params();
-    dispatch!(pass.level, simd => for_blocks::<1>(band, #[inline(always)] |block, target| {
-        write([agreement(simd, pass, &params, block)], target);
-    }));
 }
 
 #[inline(always)]

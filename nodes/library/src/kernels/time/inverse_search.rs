@@ -10,7 +10,7 @@
 
 pub use crate::kernels::shaders::inverse_search::Params;
 use crate::kernels::simd::pixels::eight;
-use isophote_engine::fearless_simd::{Simd, dispatch, f32x8, prelude::*};
+use isophote_engine::fearless_simd::{Simd, f32x8, prelude::*};
 use isophote_engine::{Band, Class, CpuPass, ImageId, PlanBuilder, Support, Tolerance, View};
 
 /// Levels between a picture and its patches, of which there is one for every 2^2 pixels.
@@ -36,7 +36,7 @@ const FARTHEST: f32 = SIDE as f32;
 const COPY: usize = 10 * 10;
 
 crate::kernel!(inverse_search {
-    cpu: run,
+    cpu: |simd, pass, params, band| patches(simd, pass, &params, band),
     cost: |p| 1000.0 + 700.0 * f64::from(p.starts.max(1) + p.rest + p.steps),
     tolerance: Tolerance {
         absolute: 2e-3,
@@ -83,11 +83,6 @@ pub fn pass(plan: &mut PlanBuilder, [here, there]: [ImageId; 2], options: &Optio
     // A patch and one pixel around it.
     let support = Support::Pixels(reach + MARGIN as u32 + 2);
     plan.pass_at(&KERNEL, &[here, there, start], &params, &[Class::Field], support, level)
-}
-
-fn run(pass: &CpuPass<'_>, band: &mut Band<'_>) {
-    let params: Params = pass.params();
-    dispatch!(pass.level, simd => patches(simd, pass, &params, band));
 }
 
 #[inline(always)]

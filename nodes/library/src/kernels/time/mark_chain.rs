@@ -9,11 +9,15 @@
 pub use crate::kernels::shaders::mark_chain::Params;
 use crate::kernels::shared::motion::{is_known, motion_at};
 use crate::kernels::simd::pixels::{Block, for_blocks, write};
-use isophote_engine::fearless_simd::{Simd, dispatch, f32x8, prelude::*};
-use isophote_engine::{Band, Class, CpuPass, ImageId, PlanBuilder, Support, Tolerance};
+use isophote_engine::fearless_simd::{Simd, f32x8, prelude::*};
+use isophote_engine::{Class, CpuPass, ImageId, PlanBuilder, Support, Tolerance};
 
 crate::kernel!(mark_chain {
-    cpu: run,
+    cpu: |simd, pass, params, band| for_blocks::<4>(
+        band,
+        #[inline(always)]
+        |block, target| { write(chained(simd, pass, block, &params), target) }
+    ),
     cost: |_| 110.0,
     tolerance: Tolerance {
         absolute: 1e-4,
@@ -51,13 +55,6 @@ pub fn pass(plan: &mut PlanBuilder, so_far: Option<ImageId>, motion: ImageId, st
     let supports = [Support::Pixels(0), Support::Pixels(reach)];
     let inputs = [so_far.unwrap_or(motion), motion];
     plan.pass_reaching(&KERNEL, &inputs, &params, &[Class::Field], &supports, 0)
-}
-
-fn run(pass: &CpuPass<'_>, band: &mut Band<'_>) {
-    let params: Params = pass.params();
-    dispatch!(pass.level, simd => for_blocks::<4>(band, #[inline(always)] |block, target| {
-        write(chained(simd, pass, block, &params), target);
-    }));
 }
 
 #[inline(always)]

@@ -7,11 +7,15 @@
 pub use crate::kernels::shaders::motion_chain::Params;
 use crate::kernels::shared::motion::{UNKNOWN, bounded, is_inside, is_known, motion_at};
 use crate::kernels::simd::pixels::{Block, for_blocks, write};
-use isophote_engine::fearless_simd::{Simd, dispatch, f32x8, prelude::*};
-use isophote_engine::{Band, Class, CpuPass, ImageId, PlanBuilder, Support, Tolerance};
+use isophote_engine::fearless_simd::{Simd, f32x8, prelude::*};
+use isophote_engine::{Class, CpuPass, ImageId, PlanBuilder, Support, Tolerance};
 
 crate::kernel!(motion_chain {
-    cpu: run,
+    cpu: |simd, pass, params, band| for_blocks::<2>(
+        band,
+        #[inline(always)]
+        |block, target| { write(chained(simd, pass, block, &params), target) }
+    ),
     cost: |_| 60.0,
     tolerance: Tolerance {
         absolute: 1e-4,
@@ -29,13 +33,6 @@ pub fn pass(plan: &mut PlanBuilder, so_far: ImageId, steps: ImageId, longest: f3
     let params = Params { step: longest, limit: longest * count as f32 };
     let supports = [Support::Pixels(0), Support::Pixels(reach)];
     plan.pass_reaching(&KERNEL, &[so_far, steps], &params, &[Class::Field], &supports, 0)
-}
-
-fn run(pass: &CpuPass<'_>, band: &mut Band<'_>) {
-    let params: Params = pass.params();
-    dispatch!(pass.level, simd => for_blocks::<2>(band, #[inline(always)] |block, target| {
-        write(chained(simd, pass, block, &params), target);
-    }));
 }
 
 #[inline(always)]

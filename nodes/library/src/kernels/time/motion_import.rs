@@ -11,7 +11,7 @@ use isophote_engine::{Band, Class, CpuPass, ImageId, PlanBuilder, Support, Toler
 crate::kernel!(motion_import {
     cpu: run,
     cost: |_| 4.0,
-    tolerance: Tolerance { absolute: 0.0, relative: 0.0, outliers: 0.0, reason: "values pass or do not" },
+    tolerance: Tolerance::of_rounding(0.0, 0.0, "values pass or do not"),
 });
 
 /// Adds the pass; components longer than `limit` pixels make a motion unknown.

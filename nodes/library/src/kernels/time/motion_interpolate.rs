@@ -8,12 +8,11 @@ use isophote_engine::{Band, Class, CpuPass, ImageId, PlanBuilder, Support, Toler
 crate::kernel!(motion_interpolate {
     cpu: run,
     cost: |_| 8.0,
-    tolerance: Tolerance {
-        absolute: 1e-5,
-        relative: 1e-6,
-        outliers: 0.0,
-        reason: "three interpolations with exact weights in the same order",
-    },
+    tolerance: Tolerance::of_rounding(
+        1e-5,
+        1e-6,
+        "three interpolations with exact weights in the same order"
+    ),
 });
 
 /// Adds the pass: from the field's level to the next finer one.

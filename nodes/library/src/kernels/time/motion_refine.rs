@@ -11,7 +11,7 @@
 
 pub use crate::kernels::shaders::motion_refine::Params;
 use crate::kernels::simd::pixels::{BLOCK, Block, read, write};
-use isophote_engine::fearless_simd::{Simd, dispatch, f32x8, prelude::*};
+use isophote_engine::fearless_simd::{Simd, f32x8, prelude::*};
 use isophote_engine::{Band, Class, CpuPass, ImageId, PlanBuilder, Support, Tolerance};
 
 /// Weight of the gradient's constancy against that of the brightness.
@@ -26,7 +26,7 @@ const BREAK: f32 = 1e-4;
 const NOISE: f32 = 0.01;
 
 crate::kernel!(motion_refine {
-    cpu: run,
+    cpu: |simd, pass, params, band| steps(simd, pass, &params, band),
     cost: |_| 200.0,
     tolerance: Tolerance {
         absolute: 2e-3,
@@ -65,11 +65,6 @@ pub fn pass(plan: &mut PlanBuilder, options: &Options) -> ImageId {
         (before, now) = (now, next);
     }
     now
-}
-
-fn run(pass: &CpuPass<'_>, band: &mut Band<'_>) {
-    let params: Params = pass.params();
-    dispatch!(pass.level, simd => steps(simd, pass, &params, band));
 }
 
 #[inline(always)]

@@ -6,7 +6,7 @@
 //!
 //! Cost: 80 operations.
 
-use isophote_engine::fearless_simd::{Simd, dispatch, f32x4, prelude::*};
+use isophote_engine::fearless_simd::{Simd, f32x4, prelude::*};
 use isophote_engine::{Band, Class, CpuPass, ImageId, PlanBuilder, Support, Tolerance, View};
 
 /// Pixels from patch to patch.
@@ -15,14 +15,13 @@ const STRIDE: i32 = 4;
 const LEVELS: f32 = 255.0;
 
 crate::kernel!(patch_vote {
-    cpu: run,
+    cpu: |simd, pass, band| votes(simd, pass, band),
     cost: |_| 80.0,
-    tolerance: Tolerance {
-        absolute: 1e-4,
-        relative: 1e-5,
-        outliers: 0.0,
-        reason: "a mean of four by weights that grow with differences of brightness in levels of 1/255",
-    },
+    tolerance: Tolerance::of_rounding(
+        1e-4,
+        1e-5,
+        "a mean of four by weights that grow with differences of brightness in levels of 1/255"
+    ),
 });
 
 /// The motion of every pixel of `here`, from those of patches ([`inverse_search`](super::inverse_search)) that are at
@@ -31,10 +30,6 @@ pub fn pass(plan: &mut PlanBuilder, [here, there]: [ImageId; 2], patches: ImageI
     // The four pixels that are computed together, and one for the interpolation.
     let support = Support::Pixels(reach + STRIDE as u32 + 1);
     plan.pass(&KERNEL, &[here, there, patches], &(), Class::Field, support)
-}
-
-fn run(pass: &CpuPass<'_>, band: &mut Band<'_>) {
-    dispatch!(pass.level, simd => votes(simd, pass, band));
 }
 
 #[inline(always)]
