@@ -53,6 +53,27 @@ pub trait Object: Send + Sync + Sized + 'static {
     fn message(&self) -> &Mutex<String>;
 }
 
+/// Makes a type with a field `message` an [`Object`]: its handles, the number of its kind and its name for messages.
+macro_rules! object {
+    ($object:ident, $handle:ident, $kind:literal, $name:literal) => {
+        impl $crate::abi::handles::Object for $object {
+            type Handle = $handle;
+
+            fn slots() -> &'static $crate::abi::handles::Slots<Self> {
+                static SLOTS: $crate::abi::handles::Slots<$object> =
+                    $crate::abi::handles::Slots::new($kind, $name);
+                &SLOTS
+            }
+
+            fn message(&self) -> &std::sync::Mutex<String> {
+                &self.message
+            }
+        }
+    };
+}
+
+pub(super) use object;
+
 /// All objects of one kind.
 #[derive(Debug)]
 pub struct Slots<T> {

@@ -2,7 +2,7 @@
 
 use super::failure::Outcome;
 use super::guard::lock;
-use super::handles::{Object, Slots};
+use super::handles::{Object, object};
 use super::warm::Warm;
 use isophote::engine::gpu::Device;
 use isophote::{Graph, Request};
@@ -18,18 +18,7 @@ pub struct GraphObject {
     warm: Mutex<Option<Warm>>,
 }
 
-impl Object for GraphObject {
-    type Handle = IsophoteGraph;
-
-    fn slots() -> &'static Slots<Self> {
-        static SLOTS: Slots<GraphObject> = Slots::new(1, "graph");
-        &SLOTS
-    }
-
-    fn message(&self) -> &Mutex<String> {
-        &self.message
-    }
-}
+object!(GraphObject, IsophoteGraph, 1, "graph");
 
 impl GraphObject {
     /// An object that holds `graph`.
@@ -72,18 +61,7 @@ pub struct DeviceObject {
     message: Mutex<String>,
 }
 
-impl Object for DeviceObject {
-    type Handle = IsophoteDevice;
-
-    fn slots() -> &'static Slots<Self> {
-        static SLOTS: Slots<DeviceObject> = Slots::new(3, "device");
-        &SLOTS
-    }
-
-    fn message(&self) -> &Mutex<String> {
-        &self.message
-    }
-}
+object!(DeviceObject, IsophoteDevice, 3, "device");
 
 impl DeviceObject {
     /// An object that holds `device`.

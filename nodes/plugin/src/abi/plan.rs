@@ -3,7 +3,7 @@
 use super::args;
 use super::failure::{Failure, Outcome};
 use super::guard::{self, lock};
-use super::handles::{Object, Slots};
+use super::handles::{Object, object};
 use super::objects::GraphObject;
 use super::request;
 use super::shader;
@@ -24,18 +24,7 @@ pub struct PlanObject {
     message: Mutex<String>,
 }
 
-impl Object for PlanObject {
-    type Handle = IsophotePlan;
-
-    fn slots() -> &'static Slots<Self> {
-        static SLOTS: Slots<PlanObject> = Slots::new(2, "plan");
-        &SLOTS
-    }
-
-    fn message(&self) -> &Mutex<String> {
-        &self.message
-    }
-}
+object!(PlanObject, IsophotePlan, 2, "plan");
 
 impl PlanObject {
     /// The plan of `region`.

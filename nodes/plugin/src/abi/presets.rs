@@ -4,7 +4,7 @@ use super::args;
 use super::catalogue::lasting;
 use super::failure::{Failure, Outcome, one_line};
 use super::guard::{self, lock};
-use super::handles::{Handle, Object, Slots};
+use super::handles::{Handle, Object, object};
 use super::objects::GraphObject;
 use isophote::preset::{self, Fault, Lengths, Preset, Settings};
 use isophote::value::color_from_text;
@@ -47,18 +47,7 @@ pub struct StyleObject {
     message: Mutex<String>,
 }
 
-impl Object for StyleObject {
-    type Handle = IsophoteStyle;
-
-    fn slots() -> &'static Slots<Self> {
-        static SLOTS: Slots<StyleObject> = Slots::new(7, "style");
-        &SLOTS
-    }
-
-    fn message(&self) -> &Mutex<String> {
-        &self.message
-    }
-}
+object!(StyleObject, IsophoteStyle, 7, "style");
 
 /// Why a call of this extension failed.
 enum Wrong {

@@ -3,7 +3,7 @@
 use super::args;
 use super::failure::{Failure, Outcome};
 use super::guard::{self, lock};
-use super::handles::{Object, Slots};
+use super::handles::{Object, object};
 use super::images::Checked;
 use super::objects::{DeviceObject, GraphObject};
 use super::plan;
@@ -55,18 +55,7 @@ struct State {
     gpu: Option<Executor>,
 }
 
-impl Object for SequenceObject {
-    type Handle = IsophoteSequence;
-
-    fn slots() -> &'static Slots<Self> {
-        static SLOTS: Slots<SequenceObject> = Slots::new(4, "sequence");
-        &SLOTS
-    }
-
-    fn message(&self) -> &Mutex<String> {
-        &self.message
-    }
-}
+object!(SequenceObject, IsophoteSequence, 4, "sequence");
 
 unsafe extern "C" fn frames(graph: IsophoteGraph, past: *mut u32, future: *mut u32) -> IsophoteStatus {
     guard::on::<GraphObject>(graph, |object| {

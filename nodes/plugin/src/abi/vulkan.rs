@@ -15,7 +15,7 @@ mod record;
 use super::args;
 use super::failure::{Failure, Outcome};
 use super::guard::{self, lock};
-use super::handles::{Object, Slots};
+use super::handles::{Object, object};
 use super::objects::GraphObject;
 use super::plan;
 use super::request;
@@ -57,18 +57,7 @@ pub struct VulkanObject {
     message: Mutex<String>,
 }
 
-impl Object for VulkanObject {
-    type Handle = IsophoteVulkan;
-
-    fn slots() -> &'static Slots<Self> {
-        static SLOTS: Slots<VulkanObject> = Slots::new(5, "Vulkan object");
-        &SLOTS
-    }
-
-    fn message(&self) -> &Mutex<String> {
-        &self.message
-    }
-}
+object!(VulkanObject, IsophoteVulkan, 5, "Vulkan object");
 
 /// An effect of a host's.
 pub struct EffectObject {
@@ -77,18 +66,7 @@ pub struct EffectObject {
     message: Mutex<String>,
 }
 
-impl Object for EffectObject {
-    type Handle = IsophoteVulkanEffect;
-
-    fn slots() -> &'static Slots<Self> {
-        static SLOTS: Slots<EffectObject> = Slots::new(6, "Vulkan effect");
-        &SLOTS
-    }
-
-    fn message(&self) -> &Mutex<String> {
-        &self.message
-    }
-}
+object!(EffectObject, IsophoteVulkanEffect, 6, "Vulkan effect");
 
 impl EffectObject {
     /// Does something with the effect, while its device's object cannot be destroyed.
