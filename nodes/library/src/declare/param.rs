@@ -80,6 +80,11 @@ impl Param {
         Self::new(id, label, Value::Float(default), range)
     }
 
+    /// A length in pixels of the full-size picture.
+    pub const fn length(id: &'static str, label: &'static str, default: f32, range: [f32; 2]) -> Self {
+        Self { unit: Unit::Pixels, ..Self::float(id, label, default, range) }
+    }
+
     /// A whole number.
     pub const fn int(id: &'static str, label: &'static str, default: i32, range: [i32; 2]) -> Self {
         Self::new(id, label, Value::Int(default), [range[0] as f32, range[1] as f32])
@@ -117,12 +122,6 @@ impl Param {
     /// Another default of the same type.
     pub const fn with_default(mut self, default: Value) -> Self {
         self.default = default;
-        self
-    }
-
-    /// Measured in pixels of the full-size picture.
-    pub const fn pixels(mut self) -> Self {
-        self.unit = Unit::Pixels;
         self
     }
 

@@ -17,9 +17,8 @@ pub(crate) const ABSTRACTION: Param =
          own scales then grow with `sigma_d` / 3 and `sigma_r` / 4.25; or without regard to it, by the full \
          window (3.2) or along rows and then columns (3.3).",
     );
-pub(crate) const SIGMA_D: Param = Param::float("sigma_d", "Sigma d", 3.0, [0.1, 20.0])
+pub(crate) const SIGMA_D: Param = Param::length("sigma_d", "Sigma d", 3.0, [0.1, 20.0])
     .slider(0.5, 10.0)
-    .pixels()
     .group(ADVANCED)
     .doc("Spatial standard deviation of the bilateral filter.");
 pub(crate) const SIGMA_R: Param = Param::float("sigma_r", "Sigma r", 4.25, [0.1, 200.0])

@@ -11,10 +11,9 @@ use crate::stages::structure_tensor::{self, of_color_and_guides};
 use crate::stages::tensor_options::{Guides, TensorOptions};
 use isophote_engine::{ImageId, PlanBuilder};
 
-pub(crate) const RADIUS: Param = Param::float("radius", "Radius", 6.0, [0.0, 40.0])
-    .slider(1.0, 16.0)
-    .pixels()
-    .doc("Radius of the disc that is stretched to an ellipse (r); at every level the same number of its pixels.");
+pub(crate) const RADIUS: Param = Param::length("radius", "Radius", 6.0, [0.0, 40.0]).slider(1.0, 16.0).doc(
+    "Radius of the disc that is stretched to an ellipse (r); at every level the same number of its pixels.",
+);
 pub(crate) const ALPHA: Param = Param::float("alpha", "Roundness", 1.0, [0.25, 100.0]).slider(0.25, 4.0).doc(
     "Tunes the ellipse (alpha of 5.22): up to ((1 + alpha) / alpha)^2 times as long as wide, 4 by default.",
 );

@@ -20,9 +20,8 @@ pub(crate) const STEPPING: Param = Param::choice("stepping", "Stepping", Steppin
     "Steps along stream lines: of one pixel, as the published filter's, or up to 2.5 times as long where lines are, \
      which takes less time and smooths less.",
 );
-pub(crate) const RHO: Param = Param::float("rho", "Rho", 1.0, [0.0, 20.0])
+pub(crate) const RHO: Param = Param::length("rho", "Rho", 1.0, [0.0, 20.0])
     .slider(0.0, 6.0)
-    .pixels()
     .structural()
     .doc("Standard deviation of the Gaussian that smooths the structure tensor.");
 pub(crate) const RELAX_THRESHOLD: Param = Param::float(
@@ -37,9 +36,8 @@ pub(crate) const RELAX_THRESHOLD: Param = Param::float(
     "Where sqrt(lambda1) is not above this, the orientation is filled in from around it at first, and \
              from the step before later on (2.7.3); 0 trusts every gradient.",
 );
-pub(crate) const SIGMA_T: Param = Param::float("sigma_t", "Sigma t", 6.0, [0.0, 40.0])
+pub(crate) const SIGMA_T: Param = Param::length("sigma_t", "Sigma t", 6.0, [0.0, 40.0])
     .slider(0.0, 15.0)
-    .pixels()
     .doc("Standard deviation of the smoothing along stream lines (sigma_s of 6.3.1).");
 pub(crate) const MAX_ANGLE: Param = Param::float("max_angle", "Largest turn", 22.5, [0.0, 90.0])
     .degrees()
@@ -49,9 +47,8 @@ pub(crate) const ADAPT: Param = Param::choice("adapt", "Adapt length", Adaption:
     .doc("Shortens stream lines where the orientation is uncertain (6.3.1), or as they turn (6.3.2).");
 pub(crate) const SHOCK: Param = Param::choice("shock", "Shock filter", Shock::GradientDirected.selected())
 .doc("What sharpens: the local filter (6.4.3), or three steps of Weickert's equation (6.4.2), which only `sigma_i` controls.");
-pub(crate) const SIGMA_A: Param = Param::float("sigma_a", "Edge smoothing", 1.5, [0.0, 20.0])
+pub(crate) const SIGMA_A: Param = Param::length("sigma_a", "Edge smoothing", 1.5, [0.0, 20.0])
     .slider(0.0, 5.0)
-    .pixels()
     .structural()
     .doc("Standard deviation of the last smoothing along the edges, against the jagged steps of the shocks; 0 for none.");
 

@@ -12,9 +12,8 @@ pub(crate) const EDGES: Port = Port {
     doc: "The edge image, 1 = paper and 0 = line; with threshold `none` the response in units of L.",
 };
 
-pub(crate) const SIGMA_E: Param = Param::float("sigma_e", "Sigma e", 1.0, [0.1, 20.0])
+pub(crate) const SIGMA_E: Param = Param::length("sigma_e", "Sigma e", 1.0, [0.1, 20.0])
     .slider(0.3, 5.0)
-    .pixels()
     .doc("Standard deviation of the narrower Gaussian; sets the width of lines (4.5).");
 pub(crate) const K: Param = Param::float("k", "k", 1.6, [1.01, 4.0])
     .slider(1.1, 3.0)

@@ -8,13 +8,11 @@ use crate::kernels::smoothing::oriented_bilateral::{self, Direction};
 use crate::stages::oriented_bilateral::SAMPLING;
 use isophote_engine::{ImageId, PlanBuilder};
 
-pub(crate) const SIGMA_DG: Param = Param::float("sigma_dg", "Sigma along gradient", 3.0, [0.0, 40.0])
+pub(crate) const SIGMA_DG: Param = Param::length("sigma_dg", "Sigma along gradient", 3.0, [0.0, 40.0])
     .slider(0.0, 10.0)
-    .pixels()
     .doc("Standard deviation of the domain weight across edges, cut at 3 sigma.");
-pub(crate) const SIGMA_DT: Param = Param::float("sigma_dt", "Sigma along flow", 8.0, [0.0, 40.0])
+pub(crate) const SIGMA_DT: Param = Param::length("sigma_dt", "Sigma along flow", 8.0, [0.0, 40.0])
     .slider(0.0, 20.0)
-    .pixels()
     .doc("Standard deviation of the domain weight along stream lines, cut at 2 sigma.");
 pub(crate) const SIGMA_RG: Param = Param::float("sigma_rg", "Range across", 2.0, [0.01, 200.0])
     .slider(0.5, 30.0)

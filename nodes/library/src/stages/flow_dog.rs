@@ -31,9 +31,8 @@ pub(crate) const OBJECT_ID: Port = Port {
     optional: true,
     doc: "Object numbers; borders between objects draw lines.",
 };
-pub(crate) const SIGMA_M: Param = Param::float("sigma_m", "Sigma m", 3.0, [0.0, 60.0])
+pub(crate) const SIGMA_M: Param = Param::length("sigma_m", "Sigma m", 3.0, [0.0, 60.0])
     .slider(0.0, 15.0)
-    .pixels()
     .doc("Standard deviation of the smoothing along the edges; longer lines and less noise.");
 
 choice! {

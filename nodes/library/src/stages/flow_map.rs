@@ -7,10 +7,10 @@ use isophote_engine::{Class, ImageId, PlanBuilder};
 
 pub(crate) const STRENGTH: Param = Param::float("strength", "Strength", 1.0, [0.0, 1.0])
     .doc("How far the field gives way where alpha is 1.");
-pub(crate) const SOFTNESS: Param =
-    Param::float("softness", "Softness", 8.0, [0.0, 64.0]).slider(0.0, 32.0).pixels().structural().doc(
-        "Standard deviation of the Gaussian that smooths what was painted, so that directions turn gently.",
-    );
+pub(crate) const SOFTNESS: Param = Param::length("softness", "Softness", 8.0, [0.0, 64.0])
+    .slider(0.0, 32.0)
+    .structural()
+    .doc("Standard deviation of the Gaussian that smooths what was painted, so that directions turn gently.");
 pub(crate) const INVERT_Y: Param = Param::bool("invert_y", "Invert y", false)
     .doc("For maps whose green grows upwards, as OpenGL has it; off where it grows downwards.");
 

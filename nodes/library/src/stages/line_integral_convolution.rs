@@ -4,10 +4,9 @@ use crate::declare::spec::Param;
 use crate::kernels::shared::stream::Integrator;
 use crate::kernels::smoothing::line_integral_convolution::{Adapt, Options};
 
-pub(crate) const SIGMA: Param = Param::float("sigma", "Sigma", 6.0, [0.0, 40.0])
+pub(crate) const SIGMA: Param = Param::length("sigma", "Sigma", 6.0, [0.0, 40.0])
     .neutral_at_zero()
     .slider(0.0, 20.0)
-    .pixels()
     .doc("Standard deviation of the Gaussian along the line, sigma_s of 6.3.1; cut at 2 sigma.");
 pub(crate) const ADAPT: Param = Param::choice("adapt", "Adapt length", Adapt::Anisotropy.selected())
     .uniform()
@@ -15,10 +14,8 @@ pub(crate) const ADAPT: Param = Param::choice("adapt", "Adapt length", Adapt::An
 pub(crate) const MAX_ANGLE: Param = Param::float("max_angle", "Largest turn", 0.0, [0.0, 90.0])
     .degrees()
     .doc("A line ends where it turns by more in one step; 0 for never. 22.5 is the published filter's.");
-pub(crate) const STEP: Param = Param::float("step", "Step", 1.0, [0.25, 4.0])
-    .slider(0.25, 2.0)
-    .pixels()
-    .doc("Step size h of the integration.");
+pub(crate) const STEP: Param =
+    Param::length("step", "Step", 1.0, [0.25, 4.0]).slider(0.25, 2.0).doc("Step size h of the integration.");
 
 /// Options by which other nodes convolve unless they need something else: the defaults of the parameters, of
 /// second order, which long lines need (§ 6.3).

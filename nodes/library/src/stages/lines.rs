@@ -7,9 +7,8 @@ use crate::kernels::shared::stream::Integrator;
 use crate::stages::flow_dog::{FlowDog, Kernel};
 use crate::stages::{ADVANCED, LOOK};
 
-pub(crate) const LINE_WIDTH: Param = Param::float("line_width", "Line width", 2.0, [0.2, 40.0])
+pub(crate) const LINE_WIDTH: Param = Param::length("line_width", "Line width", 2.0, [0.2, 40.0])
     .slider(0.8, 10.0)
-    .pixels()
     .group(LOOK)
     .doc("Width of lines: scales `sigma_e` by width / 2 and, above 2, `sigma_m` by its root, so that wide lines do not break.");
 pub(crate) const LINE_AMOUNT: Param = Param::float("line_amount", "Line amount", 0.5, [0.0, 1.0])

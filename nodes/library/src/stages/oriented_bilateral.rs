@@ -5,13 +5,11 @@ use crate::declare::spec::Param;
 use crate::kernels::smoothing::oriented_bilateral::{self, Direction, Options, Sampling};
 use isophote_engine::{ImageId, PlanBuilder};
 
-pub(crate) const SIGMA_DG: Param = Param::float("sigma_dg", "Sigma along gradient", 3.0, [0.0, 40.0])
+pub(crate) const SIGMA_DG: Param = Param::length("sigma_dg", "Sigma along gradient", 3.0, [0.0, 40.0])
     .slider(0.0, 10.0)
-    .pixels()
     .doc("Standard deviation of the domain weight across edges, cut at 3 sigma.");
-pub(crate) const SIGMA_DT: Param = Param::float("sigma_dt", "Sigma along tangent", 3.0, [0.0, 40.0])
+pub(crate) const SIGMA_DT: Param = Param::length("sigma_dt", "Sigma along tangent", 3.0, [0.0, 40.0])
     .slider(0.0, 20.0)
-    .pixels()
     .doc("Standard deviation of the domain weight along edges, cut at 3 sigma.");
 pub(crate) const SIGMA_RG: Param = Param::float("sigma_rg", "Range across", 4.25, [0.01, 200.0])
     .slider(0.5, 30.0)

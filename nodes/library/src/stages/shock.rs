@@ -6,18 +6,15 @@ use crate::kernels::coherence::{laplacian, second_derivative, shock_step};
 use crate::kernels::smoothing::gaussian_blur;
 use isophote_engine::{ImageId, PlanBuilder};
 
-pub(crate) const SIGMA_G: Param = Param::float("sigma_g", "Sigma g", 1.5, [0.2, 20.0])
-    .slider(0.3, 6.0)
-    .pixels()
-    .doc("Standard deviation of the second derivative along the gradient: larger ones pass over small features.");
-pub(crate) const SIGMA_I: Param = Param::float("sigma_i", "Sigma i", 0.0, [0.0, 20.0])
+pub(crate) const SIGMA_G: Param = Param::length("sigma_g", "Sigma g", 1.5, [0.2, 20.0]).slider(0.3, 6.0).doc(
+    "Standard deviation of the second derivative along the gradient: larger ones pass over small features.",
+);
+pub(crate) const SIGMA_I: Param = Param::length("sigma_i", "Sigma i", 0.0, [0.0, 20.0])
     .slider(0.0, 6.0)
-    .pixels()
     .structural()
     .doc("Standard deviation of the Gaussian before the second derivative, for stronger abstraction; 0 for none.");
-pub(crate) const RADIUS: Param = Param::float("radius", "Radius", 2.0, [0.0, 20.0])
+pub(crate) const RADIUS: Param = Param::length("radius", "Radius", 2.0, [0.0, 20.0])
     .slider(0.0, 6.0)
-    .pixels()
     .doc("How far along the gradient the least or greatest pixel is looked for.");
 pub(crate) const THRESHOLD: Param = Param::float("threshold", "Threshold", 0.005, [0.0, 1.0])
     .slider(0.0, 0.05)

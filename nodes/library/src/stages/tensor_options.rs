@@ -37,13 +37,11 @@ choice! {
 pub(crate) const DERIVATIVE: Param = Param::choice("derivative", "Derivative", Operator::Scharr3.selected())
     .uniform()
     .doc("Derivative operator: (2.18), (2.23), (2.27), (2.29) or (2.22).");
-pub(crate) const SIGMA_G: Param = Param::float("sigma_g", "Sigma of the derivative", 0.867, [0.2, 6.0])
+pub(crate) const SIGMA_G: Param = Param::length("sigma_g", "Sigma of the derivative", 0.867, [0.2, 6.0])
     .slider(0.4, 3.0)
-    .pixels()
     .doc("Standard deviation of the Gaussian derivative (2.22); the other operators ignore it unless oversampled.");
-pub(crate) const RHO: Param = Param::float("rho", "Rho", 2.0, [0.0, 40.0])
+pub(crate) const RHO: Param = Param::length("rho", "Rho", 2.0, [0.0, 40.0])
     .slider(0.0, 10.0)
-    .pixels()
     .doc("Standard deviation of the Gaussian that smooths the tensor.");
 pub(crate) const SPACE: Param = Param::choice("space", "Space", Space::Rgb.selected()).doc(
     "What the gradient is taken of: gamma-encoded RGB, its Rec. 709 luma, or CIELAB divided by 100, so that \

@@ -6,10 +6,9 @@ use crate::kernels::colour::warp::{self, Params};
 use crate::kernels::smoothing::gaussian_blur;
 use isophote_engine::{Class, ImageId, PlanBuilder};
 
-pub(crate) const SIGMA_W: Param = Param::float("sigma_w", "Sigma w", 1.5, [0.1, 20.0])
-    .slider(0.5, 6.0)
-    .pixels()
-    .doc("Standard deviation of the Gaussian on the gradient magnitude: the width of the edges that are narrowed.");
+pub(crate) const SIGMA_W: Param = Param::length("sigma_w", "Sigma w", 1.5, [0.1, 20.0]).slider(0.5, 6.0).doc(
+    "Standard deviation of the Gaussian on the gradient magnitude: the width of the edges that are narrowed.",
+);
 
 /// sqrt(2 pi e): sigma^2 times the greatest slope of a Gaussian is 1 over this.
 const SLOPE: f32 = 4.132_731;

@@ -18,9 +18,8 @@ pub static NODE: NodeSpec = NodeSpec {
     output: ports::color_output("The sharpened picture."),
     own_params: &[
         SIGMA_W,
-        Param::float("phi_w", "Phi w", 2.7, [0.0, 20.0]).neutral_at_zero()
+        Param::length("phi_w", "Phi w", 2.7, [0.0, 20.0]).neutral_at_zero()
             .slider(0.0, 10.0)
-            .pixels()
             .doc("How far a sharp edge from black to white moves what is beside it, which is also the farthest move."),
     ],
     build,

@@ -26,9 +26,8 @@ pub static NODE: NodeSpec = NodeSpec {
              `low` (paper) to `high` (line). Zero crossings: where the Laplacian of Gaussian changes its \
              sign (4.3), joined like Canny's.",
         ),
-        Param::float("sigma", "Sigma", 1.4, [0.0, 20.0])
+        Param::length("sigma", "Sigma", 1.4, [0.0, 20.0])
             .slider(0.0, 5.0)
-            .pixels()
             .doc("Standard deviation of the smoothing before differentiation; 0 for none."),
         Param::float("low", "Low", 10.0, [0.0, 200.0])
             .slider(0.0, 100.0)
@@ -36,9 +35,8 @@ pub static NODE: NodeSpec = NodeSpec {
         Param::float("high", "High", 30.0, [0.0, 200.0])
             .slider(0.0, 100.0)
             .doc("Height, in L per pixel of an unsmoothed step, from which on an edge is drawn by itself."),
-        Param::float("reach", "Reach", 120.0, [0.0, 600.0])
+        Param::length("reach", "Reach", 120.0, [0.0, 600.0])
             .slider(0.0, 240.0)
-            .pixels()
             .structural()
             .doc(
                 "Hysteresis: how far, along a chain of edges above `low`, the nearest one above `high` may be. \

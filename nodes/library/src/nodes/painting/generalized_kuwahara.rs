@@ -19,10 +19,9 @@ pub static NODE: NodeSpec = NodeSpec {
     inputs: &[ports::COLOR],
     output: ports::color_output("The flattened picture."),
     own_params: &[
-        Param::float("radius", "Radius", 6.0, [0.0, 40.0])
+        Param::length("radius", "Radius", 6.0, [0.0, 40.0])
             .neutral_at_zero()
             .slider(0.0, 20.0)
-            .pixels()
             .doc("Radius of the disc, 2.5 standard deviations of its Gaussian (r)."),
         SECTORS,
         Q,

@@ -20,10 +20,9 @@ pub static NODE: NodeSpec = NodeSpec {
     inputs: &[ports::COLOR],
     output: ports::color_output("The flattened picture."),
     own_params: &[
-        Param::float("radius", "Radius", 3.0, [0.0, 60.0])
+        Param::length("radius", "Radius", 3.0, [0.0, 60.0])
             .neutral_at_zero()
             .slider(0.0, 20.0)
-            .pixels()
             .doc("Reach of the regions from the pixel (r); squares take the nearest whole number."),
         Param::choice("regions", "Regions", Regions::Squares.selected()).uniform().doc(
             "Squares that share the pixel as a corner (5.1), or Gaussians with the squares' means and \

@@ -39,13 +39,11 @@ pub static NODE: NodeSpec = NodeSpec {
             "Perona-Malik only: 1 / (1 + s^2 / lambda^2), which favours wide regions, or exp(-s^2 / K^2), \
              which favours strong edges (3.2).",
         ),
-        Param::float("sigma", "Sigma", 1.0, [0.0, 10.0])
+        Param::length("sigma", "Sigma", 1.0, [0.0, 10.0])
             .slider(0.0, 4.0)
-            .pixels()
             .doc("Smoothing before gradients are taken, against noise; not used by Perona-Malik."),
-        Param::float("rho", "Rho", 3.0, [0.0, 20.0])
+        Param::length("rho", "Rho", 3.0, [0.0, 20.0])
             .slider(0.0, 8.0)
-            .pixels()
             .doc("Smoothing of the structure tensor, the scale of lines; of the coherence-enhancing scheme only."),
     ],
     build,

@@ -23,9 +23,8 @@ pub static NODE: NodeSpec = NodeSpec {
     own_params: &[
         Param::choice("kernel", "Kernel", Kernel::Full.selected())
             .doc("The full window (3.2), or rows and then columns (3.3)."),
-        Param::float("sigma_d", "Sigma d", 3.0, [0.0, 20.0])
+        Param::length("sigma_d", "Sigma d", 3.0, [0.0, 20.0])
             .slider(0.0, 10.0)
-            .pixels()
             .doc("Standard deviation of the domain weight."),
         Param::float("sigma_r", "Sigma r", 4.25, [0.01, 200.0])
             .slider(0.5, 30.0)

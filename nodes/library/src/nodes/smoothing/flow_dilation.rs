@@ -19,16 +19,15 @@ pub static NODE: NodeSpec = NodeSpec {
     inputs: &[ports::COLOR, ports::TENSOR],
     output: ports::color_output("The picture in strokes."),
     own_params: &[
-        Param::float("length", "Length", 12.0, [0.0, 60.0]).neutral_at_zero().slider(0.0, 30.0).pixels().doc(
+        Param::length("length", "Length", 12.0, [0.0, 60.0]).neutral_at_zero().slider(0.0, 30.0).doc(
             "Arc length that is searched on each side; strokes are up to twice as long.",
         ),
         Param::bool("adapt", "Adapt length", false).doc(
             "Searches less far where the orientation is uncertain, (1 + A)^2 / 4 times the length (6.3.1), which keeps \
              strokes from crossing corners.",
         ),
-        Param::float("width", "Width", 1.2, [0.0, 10.0])
+        Param::length("width", "Width", 1.2, [0.0, 10.0])
             .slider(0.0, 4.0)
-            .pixels()
             .doc("Standard deviation of the smoothing of the noise: strokes are about three times as wide."),
         Param::int("seed", "Seed", 1, [0, 9999]).slider(0.0, 100.0).doc("Another number, other strokes."),
         HOLD,

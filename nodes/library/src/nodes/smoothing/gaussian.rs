@@ -15,10 +15,9 @@ pub static NODE: NodeSpec = NodeSpec {
     section: "2.2.2",
     inputs: &[ports::COLOR],
     output: ports::color_output("The smoothed picture."),
-    own_params: &[Param::float("sigma", "Sigma", 2.0, [0.0, 80.0])
+    own_params: &[Param::length("sigma", "Sigma", 2.0, [0.0, 80.0])
         .neutral_at_zero()
         .slider(0.0, 20.0)
-        .pixels()
         .doc("Standard deviation of the Gaussian.")],
     build,
 };

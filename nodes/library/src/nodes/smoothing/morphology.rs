@@ -27,10 +27,9 @@ pub static NODE: NodeSpec = NodeSpec {
     own_params: &[
         Param::choice("operator", "Operator", Operator::OpenClose.selected())
             .doc("Dilation and erosion, opening (erosion, then dilation), closing (the reverse), or both."),
-        Param::float("radius", "Radius", 3.0, [0.0, 30.0])
+        Param::length("radius", "Radius", 3.0, [0.0, 30.0])
             .neutral_at_zero()
             .slider(0.0, 12.0)
-            .pixels()
             .doc("Radius of the disc; its pixels are those with x^2 + y^2 <= radius (radius + 1)."),
     ],
     build,

@@ -27,9 +27,8 @@ pub static NODE: NodeSpec = NodeSpec {
         doc: "Tensors of rank one and trace 1, whose minor eigenvector is the tangent; w is 0 where there is none.",
     },
     own_params: &[
-        Param::float("radius", "Radius", 5.0, [1.0, 20.0])
+        Param::length("radius", "Radius", 5.0, [1.0, 20.0])
             .slider(2.0, 12.0)
-            .pixels()
             .doc("Neighbours lie nearer than this."),
         Param::choice("kernel", "Kernel", Window::Box.selected())
             .uniform()

@@ -37,9 +37,8 @@ pub static NODE: NodeSpec = NodeSpec {
              (2.139), sqrt(lambda1), the condition number c (2.140) as c / (1 + c), the corner measure (2.159), (2.160), (2.161) or det, or the anisotropy \
              where it is significant (2.154) and else black.",
         ),
-        Param::float("sigma", "Sigma", 6.0, [0.5, 40.0])
+        Param::length("sigma", "Sigma", 6.0, [0.5, 40.0])
             .slider(1.0, 20.0)
-            .pixels()
             .doc("Standard deviation of the convolution along the stream lines."),
         Param::float("k", "Harris k", 0.04, [0.0, 0.25])
             .slider(0.0, 0.1)
@@ -47,9 +46,8 @@ pub static NODE: NodeSpec = NodeSpec {
         Param::float("alpha", "Significance level", 0.05, [0.0001, 0.5])
             .slider(0.001, 0.2)
             .doc("Share of pure noise that passes for structure, alpha of (2.154)."),
-        Param::float("rho", "Rho of the tensor", tensor_options::RHO.default_float(), [0.0, 40.0])
+        Param::length("rho", "Rho of the tensor", tensor_options::RHO.default_float(), [0.0, 40.0])
             .slider(0.5, 10.0)
-            .pixels()
             .doc("Standard deviation that the tensor was smoothed by: significance counts 4 pi rho^2 samples (2.158)."),
     ],
     build,

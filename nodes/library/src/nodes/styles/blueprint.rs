@@ -33,9 +33,8 @@ pub static NODE: NodeSpec = NodeSpec {
         Param::color("paper_color", "Paper colour", [0.0706, 0.251, 0.4824, 1.0])
             .group(LOOK)
             .doc("Colour of the paper."),
-        Param::float("grid", "Grid", 32.0, [0.0, 4096.0])
+        Param::length("grid", "Grid", 32.0, [0.0, 4096.0])
             .slider(0.0, 128.0)
-            .pixels()
             .group(LOOK)
             .doc("Spacing of the grid, every fifth line stronger; 0 for none."),
         Param::float("paper_texture", "Paper texture", 0.12, [0.0, 1.0])

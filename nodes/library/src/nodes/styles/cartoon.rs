@@ -82,9 +82,8 @@ pub static NODE: NodeSpec = NodeSpec {
 const LINE_COLOR: Param = Param::color("line_color", "Line colour", [0.0, 0.0, 0.0, 1.0])
     .group(LOOK)
     .doc("Colour of the lines; its alpha is their opacity.");
-const SIGMA_A: Param = Param::float("sigma_a", "Edge smoothing", 1.5, [0.0, 20.0])
+const SIGMA_A: Param = Param::length("sigma_a", "Edge smoothing", 1.5, [0.0, 20.0])
     .slider(0.0, 5.0)
-    .pixels()
     .structural()
     .group(ADVANCED)
     .doc("Standard deviation of the final smoothing along the edges, against jagged steps and lines; 0 for none.");
@@ -95,9 +94,8 @@ const LINE_FILTER: Param = Param::choice("line_filter", "Line filter", LineFilte
         "How lines are found: across and along the local orientation (4.5), or in all directions alike (4.2), where \
          `sigma_m` has no part and guides draw no lines.",
     );
-const WARP: Param = Param::float("warp", "Warp", 0.0, [0.0, 20.0])
+const WARP: Param = Param::length("warp", "Warp", 0.0, [0.0, 20.0])
     .slider(0.0, 6.0)
-    .pixels()
     .structural()
     .group(ADVANCED)
     .doc("How far the colours beside sharp edges are pulled towards them before lines are drawn, which narrows blurred edges (phi_w of `warp_sharpen`); 0 for not at all.");

@@ -51,33 +51,28 @@ pub static NODE: NodeSpec = NodeSpec {
             .doc("Bilateral iterations before the strokes."),
         abstraction::SIGMA_D,
         abstraction::SIGMA_R,
-        Param::float("rho", "Rho", 3.0, [0.0, 20.0])
+        Param::length("rho", "Rho", 3.0, [0.0, 20.0])
             .slider(0.0, 8.0)
-            .pixels()
             .group(ADVANCED)
             .doc("Standard deviation of the smoothing of the structure tensor: strokes turn no faster."),
         Param::int("levels", "Levels", 5, [1, 8])
             .structural()
             .group(ADVANCED)
             .doc("Scales at which the orientation is found (2.8): strokes in flat parts follow what is around them."),
-        Param::float("dilation_length", "Dilation length", 8.0, [0.0, 60.0])
+        Param::length("dilation_length", "Dilation length", 8.0, [0.0, 60.0])
             .slider(0.0, 30.0)
-            .pixels()
             .group(ADVANCED)
             .doc("Arc length on each side over which strokes take one colour (5.1)."),
-        Param::float("sigma_t", "Sigma t", 3.0, [0.0, 40.0])
+        Param::length("sigma_t", "Sigma t", 3.0, [0.0, 40.0])
             .slider(0.0, 20.0)
-            .pixels()
             .group(ADVANCED)
             .doc("Standard deviation of the smoothing of colours along the flow."),
-        Param::float("sigma_n", "Sigma n", 1.0, [0.0, 10.0])
+        Param::length("sigma_n", "Sigma n", 1.0, [0.0, 10.0])
             .slider(0.0, 4.0)
-            .pixels()
             .group(ADVANCED)
             .doc("Standard deviation of the smoothing of the noise: how wide strokes and marks are."),
-        Param::float("sigma_b", "Sigma b", 10.0, [0.0, 40.0])
+        Param::length("sigma_b", "Sigma b", 10.0, [0.0, 40.0])
             .slider(0.0, 20.0)
-            .pixels()
             .group(ADVANCED)
             .doc("Standard deviation of the smoothing of the noise along the flow: how long marks are."),
         Param::int("seed", "Seed", 1, [0, 9999])
@@ -92,14 +87,12 @@ pub static NODE: NodeSpec = NodeSpec {
     build,
 };
 
-const STROKE_LENGTH: Param = Param::float("stroke_length", "Stroke length", 20.0, [0.0, 80.0])
+const STROKE_LENGTH: Param = Param::length("stroke_length", "Stroke length", 20.0, [0.0, 80.0])
     .slider(2.0, 50.0)
-    .pixels()
     .group(LOOK)
     .doc("Length of strokes: scales `dilation_length`, `sigma_t` and `sigma_b` by length / 20.");
-const STROKE_WIDTH: Param = Param::float("stroke_width", "Stroke width", 4.0, [0.5, 20.0])
+const STROKE_WIDTH: Param = Param::length("stroke_width", "Stroke width", 4.0, [0.5, 20.0])
     .slider(1.0, 12.0)
-    .pixels()
     .group(LOOK)
     .doc("Width of strokes: scales `sigma_n` and `rho` by width / 4.");
 

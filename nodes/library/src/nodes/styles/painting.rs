@@ -55,9 +55,8 @@ pub static NODE: NodeSpec = NodeSpec {
 const NORMAL: Port = Port { doc: "View-space normals; strokes end at creases.", ..flow_dog::NORMAL };
 const DEPTH: Port = Port { doc: "Distance from the camera; strokes end where it jumps.", ..flow_dog::DEPTH };
 const OBJECT_ID: Port = Port { doc: "Object numbers; strokes end at borders.", ..flow_dog::OBJECT_ID };
-const BRUSH_SIZE: Param = Param::float("brush_size", "Brush size", 12.0, [0.0, 64.0])
+const BRUSH_SIZE: Param = Param::length("brush_size", "Brush size", 12.0, [0.0, 64.0])
     .slider(2.0, 32.0)
-    .pixels()
     .group(LOOK)
     .doc("Width of round strokes where the picture varies: scales `radius` by size / 12.");
 const STROKE_LENGTH: Param = Param::float("stroke_length", "Stroke length", 0.5, [0.0, 1.0])

@@ -27,9 +27,8 @@ pub static NODE: NodeSpec = NodeSpec {
     inputs: &[ports::COLOR, ports::REST_POSITION],
     output: ports::color_output("The watercolour."),
     own_params: &[
-        Param::float("wash_size", "Wash size", 1.5, [0.0, 30.0])
+        Param::length("wash_size", "Wash size", 1.5, [0.0, 30.0])
             .slider(0.0, 12.0)
-            .pixels()
             .group(LOOK)
             .doc("Radius of the smallest patches of colour that are painted."),
         abstraction::DETAIL,
@@ -46,9 +45,8 @@ pub static NODE: NodeSpec = NodeSpec {
         Param::float("granulation", "Granulation", 0.5, [0.0, 1.0])
             .group(LOOK)
             .doc("How much pigment settles in the grain of the paper."),
-        Param::float("wobble", "Wobble", 2.0, [0.0, 20.0])
+        Param::length("wobble", "Wobble", 2.0, [0.0, 20.0])
             .slider(0.0, 6.0)
-            .pixels()
             .group(LOOK)
             .doc("How far outlines waver; far ones in waves that are longer than `wavelength`, so that none folds."),
         tone::SATURATION,
@@ -62,14 +60,12 @@ pub static NODE: NodeSpec = NodeSpec {
             .doc("Bilateral iterations."),
         abstraction::SIGMA_D,
         abstraction::SIGMA_R,
-        Param::float("sigma_a", "Edge smoothing", 2.0, [0.0, 20.0])
+        Param::length("sigma_a", "Edge smoothing", 2.0, [0.0, 20.0])
             .slider(0.0, 5.0)
-            .pixels()
             .group(ADVANCED)
             .doc("Standard deviation of the smoothing of the patches along their outlines."),
-        Param::float("edge_width", "Edge width", 2.0, [0.0, 30.0])
+        Param::length("edge_width", "Edge width", 2.0, [0.0, 30.0])
             .slider(0.0, 10.0)
-            .pixels()
             .group(ADVANCED)
             .doc("Width of the dark borders, the standard deviation of a Gaussian."),
         Param::float("wavelength", "Wavelength", 24.0, [2.0, 400.0])
