@@ -59,7 +59,6 @@ fn tensor_at(p: vec2i) -> vec3f {
     return fetch(earlier, 1u, p).xyz;
 }
 
-@compute @workgroup_size(8, 8)
 fn main(
     @builtin(global_invocation_id) id: vec3u,
     @builtin(workgroup_id) group: vec3u,

@@ -118,7 +118,6 @@ fn look_beside(found: ptr<function, Found>, line: Line, along: i32, sign: f32, l
     look_at(found, line, along, across + 0.001, sign, least);
 }
 
-@compute @workgroup_size(8, 8)
 fn main(@builtin(global_invocation_id) id: vec3u) {
     if outside(id) {
         return;

@@ -12,7 +12,6 @@ fn excess(p: vec2i, centre: vec3f) -> vec3f {
     return (v.rgb - centre) * v.a;
 }
 
-@compute @workgroup_size(8, 8)
 fn main(@builtin(global_invocation_id) id: vec3u) {
     if outside(id) {
         return;

@@ -22,7 +22,6 @@ fn pull(p: vec2i, centre: vec3f, side: vec3f) -> vec3f {
     return max(side * (v.rgb - centre) * v.a, vec3f(0.0));
 }
 
-@compute @workgroup_size(8, 8)
 fn main(@builtin(global_invocation_id) id: vec3u) {
     if outside(id) {
         return;

@@ -15,7 +15,6 @@ fn excess(p: vec2i, centre: f32) -> f32 {
     return (luma(v) - centre) * v.a;
 }
 
-@compute @workgroup_size(8, 8)
 fn main(@builtin(global_invocation_id) id: vec3u) {
     if outside(id) {
         return;

@@ -18,7 +18,6 @@ fn height(p: vec2i) -> f32 {
     return fetch(heights, 1u, p).x;
 }
 
-@compute @workgroup_size(8, 8)
 fn main(@builtin(global_invocation_id) id: vec3u) {
     if outside(id) {
         return;

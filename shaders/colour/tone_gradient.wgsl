@@ -64,7 +64,6 @@ fn at_place(p: vec2i) -> vec4f {
     return vec4f((upper + select(vec2f(0.0), lower, both.y)) / count, 0.0, 1.0);
 }
 
-@compute @workgroup_size(8, 8)
 fn main(@builtin(global_invocation_id) id: vec3u) {
     if !outside(id) {
         textureStore(target_image, vec2i(id.xy), at_place(pixel(id)));

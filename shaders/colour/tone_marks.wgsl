@@ -101,7 +101,6 @@ fn border_gain(p: vec2f, t: vec2f) -> f32 {
     return 1.0 / sqrt((1.0 + along.x) * (1.0 + along.y) * (1.0 + beside.x) * (1.0 + beside.y));
 }
 
-@compute @workgroup_size(8, 8)
 fn main(@builtin(global_invocation_id) id: vec3u) {
     if outside(id) {
         return;

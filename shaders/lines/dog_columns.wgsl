@@ -37,7 +37,6 @@ fn window_tap(p: vec2i) -> vec4f {
     return fetch(source, 0u, p);
 }
 
-@compute @workgroup_size(8, 8)
 fn main(@builtin(global_invocation_id) id: vec3u) {
     var sum = weights(0) * window_tap(group_pixel(id));
     let step = window_step(vec2i(1, params.radius)).y;

@@ -23,7 +23,6 @@ fn window_tap(p: vec2i) -> vec4f {
     return fetch(source, 0u, p);
 }
 
-@compute @workgroup_size(8, 8)
 fn main(@builtin(global_invocation_id) id: vec3u) {
     let middle = window_tap(group_pixel(id)).xy;
     var narrow = params.narrow[0].x * middle;

@@ -42,7 +42,6 @@ fn samples(before: f32, own: f32, behind: f32, reach: f32) -> vec4f {
     return own + vec4f(far.x, far.x / 3.0, far.y / 3.0, far.y);
 }
 
-@compute @workgroup_size(8, 8)
 fn main(@builtin(global_invocation_id) id: vec3u) {
     if outside(id) {
         return;

@@ -52,7 +52,6 @@ fn is_crossing(p: vec2i, own: f32) -> bool {
     return false;
 }
 
-@compute @workgroup_size(8, 8)
 fn main(@builtin(global_invocation_id) id: vec3u) {
     if outside(id) {
         return;

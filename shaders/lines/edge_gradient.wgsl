@@ -23,7 +23,6 @@ fn rise(p: vec2i, own: f32) -> f32 {
     return (v.x - own) * v.w;
 }
 
-@compute @workgroup_size(8, 8)
 fn main(@builtin(global_invocation_id) id: vec3u) {
     if outside(id) {
         return;

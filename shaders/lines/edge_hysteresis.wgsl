@@ -25,7 +25,6 @@ var<workgroup> candidate_halves: array<u32, 64>;
 var<workgroup> strong_halves: array<u32, 64>;
 var<workgroup> strong_rows: array<u32, 32>;
 
-@compute @workgroup_size(8, 8)
 fn main(
     @builtin(global_invocation_id) id: vec3u,
     @builtin(workgroup_id) group: vec3u,

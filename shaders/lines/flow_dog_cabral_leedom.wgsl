@@ -22,7 +22,6 @@ struct Params {
 #input field
 #output target_image r32float
 
-@compute @workgroup_size(8, 8)
 fn main(@builtin(global_invocation_id) id: vec3u) {
     if outside(id) {
         return;

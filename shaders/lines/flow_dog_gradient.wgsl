@@ -57,7 +57,6 @@ fn gather(line: Line, middle: vec2f, inside: bool) -> Sums {
     return sums;
 }
 
-@compute @workgroup_size(8, 8)
 fn main(@builtin(global_invocation_id) id: vec3u) {
     if outside(id) {
         return;

@@ -61,7 +61,6 @@ fn across(p: vec2f, t: vec2f) -> vec2f {
     return vec2f(u * middle.y + lines, middle.y);
 }
 
-@compute @workgroup_size(8, 8)
 fn main(@builtin(global_invocation_id) id: vec3u) {
     if outside(id) {
         return;

@@ -98,7 +98,6 @@ fn place(p: vec2i, upright: bool, k: i32, slope: f32) -> vec2i {
     return p + select(vec2i(k, i), vec2i(i, k), upright);
 }
 
-@compute @workgroup_size(8, 8)
 fn main(@builtin(global_invocation_id) id: vec3u) {
     if outside(id) {
         return;

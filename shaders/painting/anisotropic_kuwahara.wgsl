@@ -42,7 +42,6 @@ fn window_tap(p: vec2i) -> vec4f {
     return fetch(source, 0u, p);
 }
 
-@compute @workgroup_size(8, 8)
 fn main(@builtin(global_invocation_id) id: vec3u) {
     let p = group_pixel(id);
     let tensor = fetch(tensors, 1u, p);

@@ -73,7 +73,6 @@ fn columns(id: vec3u, input: u32) -> Columns {
     return sums;
 }
 
-@compute @workgroup_size(8, 8)
 fn main(@builtin(global_invocation_id) id: vec3u) {
     let left = columns(id, 0u);
     let right = columns(id, 1u);

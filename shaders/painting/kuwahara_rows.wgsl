@@ -26,7 +26,6 @@ fn window_tap(p: vec2i) -> vec4f {
     return fetch(source, 0u, p);
 }
 
-@compute @workgroup_size(8, 8)
 fn main(@builtin(global_invocation_id) id: vec3u) {
     var left = vec4f(0.0);
     var right = vec4f(0.0);

@@ -38,7 +38,6 @@ fn tap(id: vec3u, offset: vec2i) -> vec4f {
     return fetch(source, 0u, 2 * group_pixel(id) + 1 + offset);
 }
 
-@compute @workgroup_size(8, 8)
 fn main(@builtin(global_invocation_id) id: vec3u) {
     if shared_windows {
         let local = group_local(id);

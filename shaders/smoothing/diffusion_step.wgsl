@@ -53,7 +53,6 @@ fn axis(id: vec3u, o: vec2i, origin: vec3f, own: f32, channel: u32) -> vec3f {
     return wa * (a.colour.rgb - origin) + wb * (b.colour.rgb - origin);
 }
 
-@compute @workgroup_size(8, 8)
 fn main(@builtin(global_invocation_id) id: vec3u) {
     if shared_windows {
         share_pixels(id);

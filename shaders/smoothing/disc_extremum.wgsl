@@ -25,7 +25,6 @@ fn window_tap(p: vec2i) -> vec4f {
     return fetch(source, 0u, p);
 }
 
-@compute @workgroup_size(8, 8)
 fn main(@builtin(global_invocation_id) id: vec3u) {
     let p = group_pixel(id);
     let origin = fetch(source, 0u, p);

@@ -70,7 +70,6 @@ fn distance_back(p: vec2f, t: vec2f) -> f32 {
     return min(back.x, back.y);
 }
 
-@compute @workgroup_size(8, 8)
 fn main(@builtin(global_invocation_id) id: vec3u) {
     if outside(id) {
         return;

@@ -41,7 +41,6 @@ fn greatest(origin: vec2f, tangent: vec2f, limit: f32, first: f32, inside: bool)
     return place;
 }
 
-@compute @workgroup_size(8, 8)
 fn main(@builtin(global_invocation_id) id: vec3u) {
     if outside(id) {
         return;

@@ -28,7 +28,6 @@ fn window_tap(p: vec2i) -> vec4f {
     return v;
 }
 
-@compute @workgroup_size(8, 8)
 fn main(@builtin(global_invocation_id) id: vec3u) {
     var sum = params.weights[0].x * window_tap(group_pixel(id));
     let fitting = window_step((params.radius - 1) * params.axis + 1);

@@ -84,7 +84,6 @@ fn gather(origin: vec2f, tangent: vec2f, sigma: f32, first: Sum, inside: bool) -
     return sum;
 }
 
-@compute @workgroup_size(8, 8)
 fn main(@builtin(global_invocation_id) id: vec3u) {
     if outside(id) {
         return;

@@ -39,7 +39,6 @@ fn magnitude(part: WindowPart, o: vec2i) -> f32 {
     return sqrt(dot(x, x) + dot(y, y) + EPSILON2);
 }
 
-@compute @workgroup_size(8, 8)
 fn main(@builtin(global_invocation_id) id: vec3u) {
     let p = group_pixel(id);
     let part = window_load(id, vec2i(-2), vec2i(2));

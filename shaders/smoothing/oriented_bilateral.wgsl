@@ -72,7 +72,6 @@ fn gather(line: Line, steps: i32, w: Weighting, first: vec4f, inside: bool) -> v
     return sum;
 }
 
-@compute @workgroup_size(8, 8)
 fn main(@builtin(global_invocation_id) id: vec3u) {
     if outside(id) {
         return;

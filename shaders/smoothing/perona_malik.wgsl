@@ -17,7 +17,6 @@ struct Params {
 
 const DIFFUSIVITY_EXPONENTIAL = 1u;
 
-@compute @workgroup_size(8, 8)
 fn main(@builtin(global_invocation_id) id: vec3u) {
     if outside(id) {
         return;

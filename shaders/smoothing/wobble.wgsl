@@ -23,7 +23,6 @@ fn offset(q: vec2f, seed: u32) -> f32 {
     return params.amount * (1.3 * value_noise(q, seed) + 0.7 * value_noise(q * 2.7, seed + 97u) - 1.0);
 }
 
-@compute @workgroup_size(8, 8)
 fn main(@builtin(global_invocation_id) id: vec3u) {
     if outside(id) {
         return;

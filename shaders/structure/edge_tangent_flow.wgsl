@@ -32,7 +32,6 @@ fn window_tap(p: vec2i) -> vec4f {
     return fetch(source, 0u, p);
 }
 
-@compute @workgroup_size(8, 8)
 fn main(@builtin(global_invocation_id) id: vec3u) {
     let p = group_pixel(id);
     // Loops take no parameter from memory that they can hold.

@@ -9,7 +9,6 @@
 // Trace that painted orientation has where the picture has none: (1/255)^2, one step of eight bits a pixel.
 const LEAST_TRACE: f32 = 1.5378701e-5;
 
-@compute @workgroup_size(8, 8)
 fn main(@builtin(global_invocation_id) id: vec3u) {
     if outside(id) {
         return;

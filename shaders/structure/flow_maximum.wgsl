@@ -14,7 +14,6 @@ fn value(p: vec2i) -> f32 {
     return fetch(source, 0u, p)[params.channel];
 }
 
-@compute @workgroup_size(8, 8)
 fn main(@builtin(global_invocation_id) id: vec3u) {
     if outside(id) {
         return;

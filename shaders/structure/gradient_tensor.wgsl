@@ -109,7 +109,6 @@ fn shared_tensor(id: vec3u) -> vec4f {
     return tensor_of(tap(group_pixel(id)), g);
 }
 
-@compute @workgroup_size(8, 8)
 fn main(@builtin(global_invocation_id) id: vec3u) {
     var t: vec4f;
     if shared_windows {

@@ -53,7 +53,6 @@ fn tap(p: vec2i, centre: vec4f) -> vec4f {
     return vec4f(select(0.0, 1.0, abs(v.x - centre.x) > 0.5), 0.0, 0.0, 0.0);
 }
 
-@compute @workgroup_size(8, 8)
 fn main(@builtin(global_invocation_id) id: vec3u) {
     if outside(id) {
         return;

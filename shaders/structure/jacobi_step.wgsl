@@ -5,7 +5,6 @@
 #input source
 #output target_image rgba32float
 
-@compute @workgroup_size(8, 8)
 fn main(@builtin(global_invocation_id) id: vec3u) {
     if outside(id) {
         return;

@@ -26,7 +26,6 @@ fn mixed(v: u32) -> u32 {
     return h ^ (h >> 16u);
 }
 
-@compute @workgroup_size(8, 8)
 fn main(@builtin(global_invocation_id) id: vec3u) {
     if outside(id) {
         return;

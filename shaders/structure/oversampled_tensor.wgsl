@@ -92,7 +92,6 @@ fn column_beside(id: vec3u, i: i32) -> Column {
     return column((p >> vec2u(1u)) + vec2i(i, 0), p.y & 1);
 }
 
-@compute @workgroup_size(8, 8)
 fn main(@builtin(global_invocation_id) id: vec3u) {
     if shared_windows {
         share_columns(id);

@@ -20,7 +20,6 @@ fn change(p: vec2i, here: vec3f, axis: vec2i) -> vec4f {
     return vec4f(select(back, ahead, takes_ahead), select(0.0, 1.0, has_before || has_after));
 }
 
-@compute @workgroup_size(8, 8)
 fn main(@builtin(global_invocation_id) id: vec3u) {
     if outside(id) {
         return;

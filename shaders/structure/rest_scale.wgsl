@@ -7,7 +7,6 @@
 #input footprints
 #output target_image r32float
 
-@compute @workgroup_size(8, 8)
 fn main(@builtin(global_invocation_id) id: vec3u) {
     if outside(id) {
         return;

@@ -66,7 +66,6 @@ fn noise(p: vec3f, octave: i32) -> f32 {
 // keep more of it.
 const COARSE: f32 = 0.7071;
 
-@compute @workgroup_size(8, 8)
 fn main(@builtin(global_invocation_id) id: vec3u) {
     if outside(id) {
         return;

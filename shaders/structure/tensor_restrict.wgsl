@@ -11,7 +11,6 @@ struct Params {
 #input source
 #output target_image rgba32float
 
-@compute @workgroup_size(8, 8)
 fn main(@builtin(global_invocation_id) id: vec3u) {
     if outside(id) {
         return;

@@ -10,7 +10,6 @@
 // Levels of brightness to 1.
 const LEVELS = 255.0;
 
-@compute @workgroup_size(8, 8)
 fn main(@builtin(global_invocation_id) id: vec3u) {
     if outside(id) {
         return;

@@ -8,7 +8,6 @@
 #output mean_image r32float
 #output difference_image r32float
 
-@compute @workgroup_size(8, 8)
 fn main(@builtin(global_invocation_id) id: vec3u) {
     if outside(id) {
         return;

@@ -24,7 +24,6 @@ fn noise_at(image: texture_2d<f32>, slot: u32, p: vec2f) -> f32 {
     return sample_sharp_covered(image, slot, full - abs(full - abs(p))).x - 0.5;
 }
 
-@compute @workgroup_size(8, 8)
 fn main(@builtin(global_invocation_id) id: vec3u) {
     if outside(id) {
         return;

@@ -8,7 +8,6 @@
 #input theirs
 #output target_image rgba32float
 
-@compute @workgroup_size(8, 8)
 fn main(@builtin(global_invocation_id) id: vec3u) {
     if outside(id) {
         return;

@@ -17,7 +17,6 @@ fn derivative(before: vec2f, at: vec2f, after: vec2f) -> vec2f {
     return select(vec2f(0.0), smaller, abs(smaller) < vec2f(0.5));
 }
 
-@compute @workgroup_size(8, 8)
 fn main(@builtin(global_invocation_id) id: vec3u) {
     if outside(id) {
         return;

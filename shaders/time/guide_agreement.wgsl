@@ -26,7 +26,6 @@ fn agreement(here: f32, there: f32) -> f32 {
     return select(clamp(2.0 - 20.0 * far, 0.0, 1.0), 1.0, nothing && there <= 0.0);
 }
 
-@compute @workgroup_size(8, 8)
 fn main(@builtin(global_invocation_id) id: vec3u) {
     if outside(id) {
         return;

@@ -140,7 +140,6 @@ fn within_reach(motion: vec2f) -> vec2f {
     return clamp(motion, vec2f(-params.reach), vec2f(params.reach));
 }
 
-@compute @workgroup_size(8, 8)
 fn main(@builtin(global_invocation_id) id: vec3u) {
     let p = group_pixel(id);
     let corner = 4 * p - 2;

@@ -27,7 +27,6 @@ fn onward(found: vec2f, here: vec2f, advance: u32) -> vec2f {
     return select(found, whole, goes);
 }
 
-@compute @workgroup_size(8, 8)
 fn main(@builtin(global_invocation_id) id: vec3u) {
     if outside(id) {
         return;

@@ -14,7 +14,6 @@ struct Params {
 #input steps
 #output target_image rg32float
 
-@compute @workgroup_size(8, 8)
 fn main(@builtin(global_invocation_id) id: vec3u) {
     if outside(id) {
         return;

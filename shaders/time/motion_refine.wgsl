@@ -36,7 +36,6 @@ fn across(difference: vec2f, along: vec2f) -> f32 {
     return SMOOTHNESS / sqrt(dot(difference, difference) + dot(slope, slope) + BREAK);
 }
 
-@compute @workgroup_size(8, 8)
 fn main(@builtin(global_invocation_id) id: vec3u) {
     if outside(id) {
         return;

@@ -23,7 +23,6 @@ fn brightness(p: vec2i, motion: vec2f) -> f32 {
     return top + (bottom - top) * share.y;
 }
 
-@compute @workgroup_size(8, 8)
 fn main(@builtin(global_invocation_id) id: vec3u) {
     if outside(id) {
         return;

@@ -15,7 +15,6 @@ struct Params {
 #input back
 #output target_image r32float
 
-@compute @workgroup_size(8, 8)
 fn main(@builtin(global_invocation_id) id: vec3u) {
     if outside(id) {
         return;

@@ -21,6 +21,9 @@ pub const OF_PIXEL: &str = "of_pixel";
 /// The function of a shader that can be computed anywhere for the window of another kernel.
 pub const AT_PLACE: &str = "at_place";
 
+/// Attribute of entry points: the engine decides on the sides of workgroups, so that kernels need not.
+pub const ENTRY: &str = "@compute @workgroup_size(8, 8)\n";
+
 /// How a result is stored by shaders that others can follow in the same pass.
 pub const STORE: &str = "textureStore(target_image, vec2i(id.xy), ";
 
@@ -37,7 +40,8 @@ pub struct Text {
 
 impl Text {
     /// Reads the shader at `path`, with what its directives stand for: `#import folder/name` for the file
-    /// `folder/name.wgsl` of the folder `shaders`, the others for what is bound.
+    /// `folder/name.wgsl` of the folder `shaders`, the others for what is bound. The function `main` becomes the entry
+    /// point where it has no attribute of its own.
     ///
     /// # Errors
     /// Which file cannot be read, and on which line a directive is malformed or out of order.
@@ -50,8 +54,11 @@ impl Text {
                 Some(Directive::Import(name)) => text.import(shaders, name)?,
                 Some(directive) => text.own.push_str(&bindings.declare(directive).map_err(at_line)?),
                 None => {
-                    text.own.push_str(line);
-                    text.own.push('\n');
+                    let has_attribute = || text.own.lines().last().is_some_and(|line| line.starts_with('@'));
+                    if line.starts_with("fn main(") && !has_attribute() {
+                        text.own.push_str(ENTRY);
+                    }
+                    text.own.extend([line, "\n"]);
                 }
             }
         }

@@ -1,7 +1,7 @@
 //! One shader: its text put together, validated, and what it says about itself.
 
 use crate::filtered::filtered_inputs;
-use crate::imports::{AT_PLACE, OF_PIXEL, STORE, Text};
+use crate::imports::{AT_PLACE, ENTRY, OF_PIXEL, STORE, Text};
 use crate::pieces::{self, Cut, Own};
 use crate::uniform::Block;
 use naga::front::wgsl::{Frontend, Options};
@@ -154,7 +154,7 @@ fn entry_point(text: &Text, textures: &[&str], around: &[usize]) -> Result<Strin
         let _ = write!(arguments, ", fetch({name}, {slot}u, pixel(id))");
     }
     Ok(format!(
-        "\n@compute @workgroup_size(8, 8)\nfn main(@builtin(global_invocation_id) id: vec3u) {{\n    \
+        "\n{ENTRY}fn main(@builtin(global_invocation_id) id: vec3u) {{\n    \
          if outside(id) {{\n        return;\n    }}\n    \
          {STORE}{OF_PIXEL}(id{arguments}));\n}}\n"
     ))
