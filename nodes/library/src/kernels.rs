@@ -21,7 +21,8 @@ include!(concat!(env!("OUT_DIR"), "/kernels.rs"));
 
 /// Declares `pub static KERNEL` from the CPU twin, the cost for given parameters and the tolerance; the rest comes from
 /// the shader of the same stem. The twin is a function, or what a closure of a SIMD token, the pass, its parameters, if it
-/// has some, and the band does, compiled for each instruction set. Where 16-bit floats cost more than the rounding of the result, or a sampler interpolates,
+/// has some, and the band does, compiled for each instruction set; as `block` it is a closure of the same, but for the band,
+/// and one that gives the pixels of a block. Where 16-bit floats cost more than the rounding of the result, or a sampler interpolates,
 /// `fast` is the tolerance of that. `pair` says of uniform blocks whether their passes are the rows and the columns of a
 /// window, which `shaders/gpu/<kernel>_pair.wgsl` runs in one dispatch.
 #[macro_export]
@@ -38,6 +39,19 @@ macro_rules! kernel {
     ($kernel:ident { cpu: |$simd:ident, $pass:ident, $band:ident| $twin:expr, $($rest:tt)* }) => {
         $crate::kernel!($kernel {
             cpu: |$pass, $band| isophote_engine::fearless_simd::dispatch!($pass.level, $simd => $twin),
+            $($rest)*
+        });
+    };
+    ($kernel:ident { block: |$simd:ident, $pass:ident $(, $params:ident)?| |$block:ident| $result:expr, $($rest:tt)* }) => {
+        $crate::kernel!($kernel {
+            cpu: |$simd, $pass $(, $params)?, band| {
+                const CHANNELS: usize = $crate::kernels::shaders::$kernel::OUTPUTS[0] as usize;
+                $crate::kernels::simd::pixels::for_blocks::<CHANNELS>(
+                    band,
+                    #[inline(always)]
+                    |$block, target| $crate::kernels::simd::pixels::write($result, target),
+                )
+            },
             $($rest)*
         });
     };

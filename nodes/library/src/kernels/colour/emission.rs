@@ -8,11 +8,11 @@
 
 use crate::kernels::shared::host_colour::{beyond_coverage, finite_pixels};
 use crate::kernels::simd::pixels::map_pixels;
-use isophote_engine::fearless_simd::{dispatch, f32x8, prelude::*};
-use isophote_engine::{Band, Class, CpuPass, ImageId, PlanBuilder, Support, Tolerance};
+use isophote_engine::fearless_simd::{Simd, f32x8, prelude::*};
+use isophote_engine::{Class, ImageId, PlanBuilder, Support, Tolerance};
 
 crate::kernel!(emission {
-    cpu: run,
+    cpu: |simd, pass, band| map_pixels(simd, pass, band, light),
     cost: |_| 10.0,
     tolerance: Tolerance::of_rounding(1e-6, 1e-6, "a fourth power and a quotient of a few roundings"),
 });
@@ -22,9 +22,8 @@ pub fn pass(plan: &mut PlanBuilder, image: ImageId) -> ImageId {
     plan.pass(&KERNEL, &[image], &(), Class::Colour, Support::Pixels(0))
 }
 
-fn run(pass: &CpuPass<'_>, band: &mut Band<'_>) {
-    dispatch!(pass.level, simd => map_pixels(simd, pass, band, #[inline(always)] |pixels| {
-        let [r, g, b] = beyond_coverage(finite_pixels(pixels));
-        [r, g, b, f32x8::splat(simd, 1.0)]
-    }));
+#[inline(always)]
+fn light<S: Simd>(pixels: [f32x8<S>; 4]) -> [f32x8<S>; 4] {
+    let [r, g, b] = beyond_coverage(finite_pixels(pixels));
+    [r, g, b, f32x8::splat(r.simd, 1.0)]
 }

@@ -3,12 +3,14 @@
 //!
 //! Cost: a multiplication per pixel.
 
-use crate::kernels::simd::pixels::{for_blocks, write};
-use isophote_engine::fearless_simd::{dispatch, f32x8, prelude::*};
-use isophote_engine::{Band, Class, CpuPass, ImageId, PlanBuilder, Support, Tolerance};
+use isophote_engine::fearless_simd::{Simd, f32x8, prelude::*};
+use isophote_engine::{Class, ImageId, PlanBuilder, Support, Tolerance};
 
 crate::kernel!(darken_by_lines {
-    cpu: run,
+    block: |simd, pass| |block| darkened(
+        block.read(simd, &pass.inputs[0]),
+        block.read(simd, &pass.inputs[1])
+    ),
     cost: |_| 3.0,
     tolerance: Tolerance::of_rounding(1e-6, 1e-6, "one rounding of L"),
 });
@@ -18,11 +20,7 @@ pub fn pass(plan: &mut PlanBuilder, lightness: ImageId, edges: ImageId) -> Image
     plan.pass(&KERNEL, &[lightness, edges], &(), Class::Field, Support::Pixels(0))
 }
 
-fn run(pass: &CpuPass<'_>, band: &mut Band<'_>) {
-    let (lightness, edges) = (&pass.inputs[0], &pass.inputs[1]);
-    dispatch!(pass.level, simd => for_blocks::<2>(band, #[inline(always)] |block, target| {
-        let [l, alpha] = block.read(simd, lightness);
-        let [edge]: [f32x8<_>; 1] = block.read(simd, edges);
-        write([l * edge.within(0.0, 1.0), alpha], target);
-    }));
+#[inline(always)]
+fn darkened<S: Simd>([l, alpha]: [f32x8<S>; 2], [edge]: [f32x8<S>; 1]) -> [f32x8<S>; 2] {
+    [l * edge.within(0.0, 1.0), alpha]
 }

@@ -6,6 +6,7 @@
 
 pub use crate::kernels::shaders::edge_area::Params;
 use crate::kernels::shared::edge_threshold::{NOT_COVERED, Xdog, edge_threshold};
+use crate::kernels::simd::around::rows;
 use crate::kernels::simd::pixels::{BLOCK, Block, read, write};
 use isophote_engine::fearless_simd::{Simd, f32x8, prelude::*};
 use isophote_engine::{Band, Class, CpuPass, ImageId, PlanBuilder, Support, Tolerance};
@@ -56,12 +57,9 @@ pub fn pass(plan: &mut PlanBuilder, response: ImageId, shares: Shares, xdog: &Xd
 #[inline(always)]
 fn areas<S: Simd>(simd: S, pass: &CpuPass<'_>, params: &Params, band: &mut Band<'_>) {
     let window = band.window;
-    let (first, last) = (window.x0 - 1, window.x1 + 1);
     let mut scratch: [Vec<f32>; 3] = Default::default();
     for y in window.y0..window.y1 {
-        let [s0, s1, s2] = &mut scratch;
-        let response = &pass.inputs[0];
-        let rows = [(y - 1, s0), (y, s1), (y + 1, s2)].map(|(y, s)| response.padded_row(y, first, last, s));
+        let rows = rows(&pass.inputs[0], y, window, &mut scratch);
         let row = band.row_mut(0, y);
         for x in (window.x0..window.x1).step_by(BLOCK) {
             let block = Block::until(window.x1, x, y);

@@ -4,6 +4,7 @@
 //! Cost: 4 additions and a division on four channels.
 
 use crate::kernels::shared::coverage::LEAST_COVERAGE;
+use crate::kernels::simd::children::for_children;
 use isophote_engine::fearless_simd::{Simd, f32x4, prelude::*};
 use isophote_engine::{Band, Class, CpuPass, ImageId, PlanBuilder, Support, Tolerance};
 
@@ -21,22 +22,11 @@ pub fn pass(plan: &mut PlanBuilder, color: ImageId) -> ImageId {
 
 #[inline(always)]
 fn means<S: Simd>(simd: S, pass: &CpuPass<'_>, band: &mut Band<'_>) {
-    let window = band.window;
-    let view = &pass.inputs[0];
-    let [width, height] = view.full();
-    let len = 4 * ((2 * window.x1).min(width) - 2 * window.x0) as usize;
-    for y in window.y0..window.y1 {
-        let at = view.offset(2 * window.x0, 2 * y);
-        let upper = view.data()[at..at + len].chunks(8);
-        // The row below the last of an odd picture is no row: its pixels are left out.
-        let lower = if 2 * y + 1 < height {
-            let at = view.offset(2 * window.x0, 2 * y + 1);
-            &view.data()[at..at + len]
-        } else {
-            &[]
-        };
-        let lower = lower.chunks(8).chain(std::iter::repeat(&[][..]));
-        for ((upper, lower), target) in upper.zip(lower).zip(band.row_mut(0, y).chunks_exact_mut(4)) {
+    for_children(
+        &pass.inputs[0],
+        band,
+        #[inline(always)]
+        |upper, lower, target| {
             let (mut sum, mut coverage, mut count) = (f32x4::splat(simd, 0.0), 0.0, 0.0);
             for p in upper.chunks_exact(4).chain(lower.chunks_exact(4)) {
                 sum += f32x4::from_slice(simd, p) * p[3];
@@ -46,6 +36,6 @@ fn means<S: Simd>(simd: S, pass: &CpuPass<'_>, band: &mut Band<'_>) {
             let color = if coverage > LEAST_COVERAGE { sum / coverage } else { f32x4::splat(simd, 0.0) };
             color.store_slice(target);
             target[3] = coverage / count;
-        }
-    }
+        },
+    );
 }

@@ -4,12 +4,11 @@
 //!
 //! Cost: a subtraction per pixel.
 
-use crate::kernels::simd::pixels::{for_blocks, write};
-use isophote_engine::fearless_simd::dispatch;
-use isophote_engine::{Band, Class, CpuPass, ImageId, PlanBuilder, Support, Tolerance};
+use isophote_engine::fearless_simd::{Simd, f32x8};
+use isophote_engine::{Class, ImageId, PlanBuilder, Support, Tolerance};
 
 crate::kernel!(orientation_field {
-    cpu: run,
+    block: |simd, pass| |block| orientation(block.read(simd, &pass.inputs[0])),
     cost: |_| 1.0,
     tolerance: Tolerance::of_rounding(1e-7, 1e-6, "two roundings"),
 });
@@ -19,10 +18,7 @@ pub fn pass(plan: &mut PlanBuilder, tensor: ImageId) -> ImageId {
     plan.pass(&KERNEL, &[tensor], &(), Class::Field, Support::Pixels(0))
 }
 
-fn run(pass: &CpuPass<'_>, band: &mut Band<'_>) {
-    let view = &pass.inputs[0];
-    dispatch!(pass.level, simd => for_blocks::<2>(band, #[inline(always)] |block, target| {
-        let [e, f, g, _] = block.read(simd, view);
-        write([e - g, f], target);
-    }));
+#[inline(always)]
+fn orientation<S: Simd>([e, f, g, _]: [f32x8<S>; 4]) -> [f32x8<S>; 2] {
+    [e - g, f]
 }

@@ -9,18 +9,14 @@
 //! Cost: five loads and about 60 operations.
 
 use crate::kernels::shared::rest_position::{NO_FOOTPRINT, is_at_rest};
-use crate::kernels::simd::pixels::{Block, for_blocks, pixels_beside, write};
+use crate::kernels::simd::pixels::{Block, pixels_beside};
 use isophote_engine::fearless_simd::{Simd, f32x8, mask32x8, prelude::*};
 use isophote_engine::math::Elementary;
 use isophote_engine::{Class, CpuPass, ImageId, PlanBuilder, Support, Tolerance};
 use std::f32::consts::LOG2_E;
 
 crate::kernel!(rest_footprint {
-    cpu: |simd, pass, band| for_blocks::<2>(
-        band,
-        #[inline(always)]
-        |block, target| { write(footprint(simd, pass, block), target) }
-    ),
+    block: |simd, pass| |block| footprint(simd, pass, block),
     cost: |_| 90.0,
     tolerance: Tolerance {
         absolute: 1e-3,

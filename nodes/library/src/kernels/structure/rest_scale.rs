@@ -6,17 +6,13 @@
 
 use crate::kernels::shared::motion::beside;
 use crate::kernels::shared::rest_position::{NO_FOOTPRINT, has_footprint, is_at_rest};
-use crate::kernels::simd::pixels::{Block, for_blocks, pixels_beside, write};
+use crate::kernels::simd::pixels::{Block, pixels_beside};
 use isophote_engine::fearless_simd::{Simd, f32x8, prelude::*};
 use isophote_engine::math::Elementary;
 use isophote_engine::{Class, CpuPass, ImageId, PlanBuilder, Support, Tolerance};
 
 crate::kernel!(rest_scale {
-    cpu: |simd, pass, band| for_blocks::<1>(
-        band,
-        #[inline(always)]
-        |block, target| { write([smoothed(simd, pass, block)], target) }
-    ),
+    block: |simd, pass| |block| [smoothed(simd, pass, block)],
     cost: |_| 260.0,
     tolerance: Tolerance {
         absolute: 1e-4,

@@ -5,6 +5,7 @@
 //! Cost: 4 additions and a division on four channels.
 
 pub use crate::kernels::shaders::tensor_restrict::Params;
+use crate::kernels::simd::children::for_children;
 use isophote_engine::fearless_simd::{Simd, f32x4, prelude::*};
 use isophote_engine::{Band, Class, CpuPass, ImageId, PlanBuilder, Support, Tolerance};
 
@@ -31,20 +32,11 @@ fn coarser(plan: &mut PlanBuilder, tensor: ImageId, kept: f32) -> ImageId {
 
 #[inline(always)]
 fn means<S: Simd>(simd: S, pass: &CpuPass<'_>, params: &Params, band: &mut Band<'_>) {
-    let window = band.window;
-    let view = &pass.inputs[0];
-    let [width, height] = view.full();
-    for y in window.y0..window.y1 {
-        let row = |y: i32| {
-            let at = view.offset(2 * window.x0, y);
-            let len = (2 * window.x1).min(width) - 2 * window.x0;
-            &view.data()[at..at + 4 * len as usize]
-        };
-        let upper = row(2 * y).chunks(8);
-        // The row below the last of an odd picture is no row: its pixels are left out.
-        let lower = if 2 * y + 1 < height { row(2 * y + 1) } else { &[] };
-        let lower = lower.chunks(8).chain(std::iter::repeat(&[][..]));
-        for ((upper, lower), target) in upper.zip(lower).zip(band.row_mut(0, y).chunks_exact_mut(4)) {
+    for_children(
+        &pass.inputs[0],
+        band,
+        #[inline(always)]
+        |upper, lower, target| {
             let (mut sum, mut count) = (f32x4::splat(simd, 0.0), 0.0);
             for t in upper.chunks_exact(4).chain(lower.chunks_exact(4)) {
                 if t[3] >= params.kept {
@@ -53,6 +45,6 @@ fn means<S: Simd>(simd: S, pass: &CpuPass<'_>, params: &Params, band: &mut Band<
                 }
             }
             (sum / count.max(1.0)).store_slice(target);
-        }
-    }
+        },
+    );
 }

@@ -3,8 +3,9 @@
 //!
 //! Cost: 25 operations.
 
-use crate::kernels::simd::pixels::{BLOCK, Block, read};
-use isophote_engine::fearless_simd::{Simd, f32x8};
+use crate::kernels::simd::around::{Around, rows};
+use crate::kernels::simd::pixels::{BLOCK, Block};
+use isophote_engine::fearless_simd::Simd;
 use isophote_engine::{Band, Class, CpuPass, ImageId, PlanBuilder, Support, Tolerance};
 
 /// Levels of brightness to 1.
@@ -31,27 +32,24 @@ pub fn pass(plan: &mut PlanBuilder, warped: [ImageId; 2]) -> [ImageId; 2] {
 #[inline(always)]
 fn derivatives<S: Simd>(simd: S, pass: &CpuPass<'_>, band: &mut Band<'_>) {
     let window = band.window;
-    let (first, last) = (window.x0 - 1, window.x1 + 1);
-    let mut scratch: [Vec<f32>; 6] = Default::default();
+    let mut scratch: [[Vec<f32>; 3]; 2] = Default::default();
     for y in window.y0..window.y1 {
-        let [s0, s1, s2, s3, s4, s5] = &mut scratch;
-        let [mean, difference] = [&pass.inputs[0], &pass.inputs[1]];
-        let means = [(y - 1, s0), (y, s1), (y + 1, s2)].map(|(y, s)| mean.padded_row(y, first, last, s));
-        let differences =
-            [(y - 1, s3), (y, s4), (y + 1, s5)].map(|(y, s)| difference.padded_row(y, first, last, s));
+        let [of_mean, of_difference] = &mut scratch;
+        let means = rows(&pass.inputs[0], y, window, of_mean);
+        let differences = rows(&pass.inputs[1], y, window, of_difference);
         for x in (window.x0..window.x1).step_by(BLOCK) {
             let block = Block::until(window.x1, x, y);
-            let around = Around { rows: means, at: (x - window.x0) as usize, len: block.len };
+            let around = Around::<1> { rows: means, at: (x - window.x0) as usize, len: block.len };
             let other = Around { rows: differences, ..around };
-            let [left, right] = [around.value(simd, -1, 0), around.value(simd, 1, 0)];
-            let [up, down] = [around.value(simd, 0, -1), around.value(simd, 0, 1)];
-            let twice = around.value(simd, 0, 0) * 2.0;
-            let falling = around.value(simd, 1, 1) + around.value(simd, -1, -1);
-            let rising = around.value(simd, 1, -1) + around.value(simd, -1, 1);
-            let xz = other.value(simd, 1, 0) - other.value(simd, -1, 0);
-            let yz = other.value(simd, 0, 1) - other.value(simd, 0, -1);
+            let ([left], [right]) = (around.value(simd, -1, 0), around.value(simd, 1, 0));
+            let ([up], [down]) = (around.value(simd, 0, -1), around.value(simd, 0, 1));
+            let twice = around.value(simd, 0, 0)[0] * 2.0;
+            let falling = around.value(simd, 1, 1)[0] + around.value(simd, -1, -1)[0];
+            let rising = around.value(simd, 1, -1)[0] + around.value(simd, -1, 1)[0];
+            let xz = other.value(simd, 1, 0)[0] - other.value(simd, -1, 0)[0];
+            let yz = other.value(simd, 0, 1)[0] - other.value(simd, 0, -1)[0];
             let (xx, yy) = (right - twice + left, down - twice + up);
-            let z = other.value(simd, 0, 0);
+            let z = other.value(simd, 0, 0)[0];
             let first = [(right - left) * 0.5, (down - up) * 0.5, z, xx];
             let second = [(falling - rising) * 0.25, yy, xz * 0.5, yz * 0.5];
             block.write(
@@ -71,26 +69,5 @@ fn derivatives<S: Simd>(simd: S, pass: &CpuPass<'_>, band: &mut Band<'_>) {
                 1,
             );
         }
-    }
-}
-
-/// A block of a one-channel image and what surrounds it.
-#[derive(Clone, Copy)]
-struct Around<'a> {
-    /// The row above, its own and the one below, from the pixel to the left of the band's first.
-    rows: [&'a [f32]; 3],
-    /// Index of the pixel to the left of the block.
-    at: usize,
-    /// Pixels of the block.
-    len: usize,
-}
-
-impl Around<'_> {
-    /// The block's neighbours at (dx, dy), -1..=1.
-    #[inline(always)]
-    fn value<S: Simd>(&self, simd: S, dx: i32, dy: i32) -> f32x8<S> {
-        let at = (self.at as i32 + 1 + dx) as usize;
-        let [value] = read(simd, &self.rows[(dy + 1) as usize][at..at + self.len]);
-        value
     }
 }

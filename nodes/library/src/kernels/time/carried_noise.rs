@@ -11,17 +11,13 @@
 
 pub use crate::kernels::shaders::carried_noise::Params;
 use crate::kernels::shared::motion::sample_sharp_covered4;
-use crate::kernels::simd::pixels::{Block, for_blocks, write};
+use crate::kernels::simd::pixels::Block;
 use isophote_engine::fearless_simd::{Simd, f32x8, prelude::*};
 use isophote_engine::math::Elementary;
 use isophote_engine::{Class, CpuPass, ImageId, PlanBuilder, Support, Tolerance, View};
 
 crate::kernel!(carried_noise {
-    cpu: |simd, pass, params, band| for_blocks::<4>(
-        band,
-        #[inline(always)]
-        |block, target| { write(faded(simd, pass, block, &params), target) }
-    ),
+    block: |simd, pass, params| |block| faded(simd, pass, block, &params),
     cost: |_| 800.0,
     tolerance: Tolerance {
         absolute: 1e-3,

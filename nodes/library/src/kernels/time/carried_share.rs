@@ -8,18 +8,14 @@
 pub use crate::kernels::shaders::carried_share::Params;
 use crate::kernels::shared::coverage::unpremultiply;
 use crate::kernels::shared::motion::{is_inside, is_known, sample_linear_covered4};
-use crate::kernels::simd::pixels::{Block, for_blocks, write};
+use crate::kernels::simd::pixels::Block;
 use isophote_engine::fearless_simd::prelude::*;
 use isophote_engine::fearless_simd::{Simd, f32x8};
 use isophote_engine::math::Elementary;
 use isophote_engine::{Class, CpuPass, ImageId, PlanBuilder, Support, Tolerance};
 
 crate::kernel!(carried_share {
-    cpu: |simd, pass, params, band| for_blocks::<2>(
-        band,
-        #[inline(always)]
-        |block, target| { write(shares(simd, pass, &params, block), target) }
-    ),
+    block: |simd, pass, params| |block| shares(simd, pass, &params, block),
     cost: |_| 100.0,
     tolerance: Tolerance {
         absolute: 2e-4,

@@ -7,11 +7,11 @@ use crate::kernels::shared::coverage::{LEAST_COVERAGE, unpremultiply};
 use crate::kernels::shared::motion::sample_sharp_covered4;
 use crate::kernels::simd::carrying::{self, Carried, take_in};
 use isophote_engine::fearless_simd::prelude::*;
-use isophote_engine::fearless_simd::{Simd, dispatch, f32x8};
-use isophote_engine::{Band, Class, CpuPass, ImageId, PlanBuilder, Tolerance, View};
+use isophote_engine::fearless_simd::{Simd, f32x8};
+use isophote_engine::{Class, CpuPass, ImageId, PlanBuilder, Tolerance};
 
 crate::kernel!(carry_colour {
-    cpu: run,
+    cpu: |simd, pass, band| take_in(simd, pass, band, mixed),
     cost: |_| 180.0,
     tolerance: Tolerance {
         absolute: 1e-3,
@@ -27,17 +27,11 @@ pub fn pass(plan: &mut PlanBuilder, images: [ImageId; 2], by: [ImageId; 2], reac
     carrying::pass(plan, &KERNEL, images, by, Class::Colour, [0, reach + 2])
 }
 
-fn run(pass: &CpuPass<'_>, band: &mut Band<'_>) {
-    dispatch!(pass.level, simd => take_in(simd, pass, band, #[inline(always)] |carried| {
-        mixed(simd, &pass.inputs[3], carried)
-    }));
-}
-
 #[inline(always)]
-fn mixed<S: Simd>(simd: S, theirs: &View<'_>, carried: &Carried<S, 4>) -> [f32x8<S>; 4] {
+fn mixed<S: Simd>(simd: S, pass: &CpuPass<'_>, carried: &Carried<S, 4>) -> [f32x8<S>; 4] {
     let Carried { own, share, place: [x, y], .. } = *carried;
     let (zero, one) = (f32x8::splat(simd, 0.0), f32x8::splat(simd, 1.0));
-    let mut carried = sample_sharp_covered4(simd, theirs, x, y);
+    let mut carried = sample_sharp_covered4(simd, &pass.inputs[3], x, y);
     carried[3] = carried[3].within(zero, one);
     let carried = unpremultiply(carried);
     let alpha = (carried[3] - own[3]).mul_add(share, own[3]);

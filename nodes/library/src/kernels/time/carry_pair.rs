@@ -5,11 +5,11 @@
 
 use crate::kernels::shared::motion::sample_sharp2;
 use crate::kernels::simd::carrying::{self, Carried, take_in};
-use isophote_engine::fearless_simd::{Simd, dispatch, f32x8, prelude::*};
-use isophote_engine::{Band, CpuPass, ImageId, PlanBuilder, Tolerance, View};
+use isophote_engine::fearless_simd::{Simd, f32x8, prelude::*};
+use isophote_engine::{CpuPass, ImageId, PlanBuilder, Tolerance};
 
 crate::kernel!(carry_pair {
-    cpu: run,
+    cpu: |simd, pass, band| take_in(simd, pass, band, mixed),
     cost: |_| 120.0,
     tolerance: Tolerance {
         absolute: 1e-3,
@@ -26,16 +26,10 @@ pub fn pass(plan: &mut PlanBuilder, images: [ImageId; 2], by: [ImageId; 2], reac
     carrying::pass(plan, &KERNEL, images, by, class, [0, reach + 2])
 }
 
-fn run(pass: &CpuPass<'_>, band: &mut Band<'_>) {
-    dispatch!(pass.level, simd => take_in(simd, pass, band, #[inline(always)] |carried| {
-        mixed(simd, &pass.inputs[3], carried)
-    }));
-}
-
 #[inline(always)]
-fn mixed<S: Simd>(simd: S, theirs: &View<'_>, carried: &Carried<S, 2>) -> [f32x8<S>; 2] {
+fn mixed<S: Simd>(simd: S, pass: &CpuPass<'_>, carried: &Carried<S, 2>) -> [f32x8<S>; 2] {
     let Carried { own, share, place: [x, y], .. } = *carried;
-    let carried = sample_sharp2(simd, theirs, x, y);
+    let carried = sample_sharp2(simd, &pass.inputs[3], x, y);
     let mut mixed = own;
     for c in 0..2 {
         mixed[c] = (carried[c] - own[c]).mul_add(share, own[c]);

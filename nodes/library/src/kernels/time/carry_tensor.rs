@@ -8,11 +8,11 @@
 
 use crate::kernels::shared::motion::{beside, sample_linear_near4};
 use crate::kernels::simd::carrying::{self, Carried, take_in};
-use isophote_engine::fearless_simd::{Simd, dispatch, f32x8, prelude::*};
-use isophote_engine::{Band, Class, CpuPass, ImageId, PlanBuilder, Tolerance, View};
+use isophote_engine::fearless_simd::{Simd, f32x8, prelude::*};
+use isophote_engine::{Class, CpuPass, ImageId, PlanBuilder, Tolerance};
 
 crate::kernel!(carry_tensor {
-    cpu: run,
+    cpu: |simd, pass, band| take_in(simd, pass, band, mixed),
     cost: |_| 110.0,
     tolerance: Tolerance {
         absolute: 1e-6,
@@ -31,14 +31,9 @@ pub fn pass(plan: &mut PlanBuilder, images: [ImageId; 2], by: [ImageId; 2], reac
     carrying::pass(plan, &KERNEL, images, by, Class::Field, [1, reach + 1])
 }
 
-fn run(pass: &CpuPass<'_>, band: &mut Band<'_>) {
-    dispatch!(pass.level, simd => take_in(simd, pass, band, #[inline(always)] |carried| {
-        mixed(simd, [&pass.inputs[1], &pass.inputs[3]], carried)
-    }));
-}
-
 #[inline(always)]
-fn mixed<S: Simd>(simd: S, [motion, theirs]: [&View<'_>; 2], carried: &Carried<S, 4>) -> [f32x8<S>; 4] {
+fn mixed<S: Simd>(simd: S, pass: &CpuPass<'_>, carried: &Carried<S, 4>) -> [f32x8<S>; 4] {
+    let (motion, theirs) = (&pass.inputs[1], &pass.inputs[3]);
     let Carried { block, own, share, motion: at, place: [x, y] } = *carried;
     let (left, right) = (beside(simd, motion, block, [-1, 0]), beside(simd, motion, block, [1, 0]));
     let (above, below) = (beside(simd, motion, block, [0, -1]), beside(simd, motion, block, [0, 1]));

@@ -5,16 +5,12 @@
 
 pub use crate::kernels::shaders::guide_agreement::Params;
 use crate::kernels::shared::motion::is_known;
-use crate::kernels::simd::pixels::{Block, fetch1, for_blocks, offsets, write};
+use crate::kernels::simd::pixels::{Block, fetch1, offsets};
 use isophote_engine::fearless_simd::{Simd, f32x8, i32x8, prelude::*};
 use isophote_engine::{Class, CpuPass, ImageId, PlanBuilder, Support, Tolerance};
 
 crate::kernel!(guide_agreement {
-    cpu: |simd, pass, params, band| for_blocks::<1>(
-        band,
-        #[inline(always)]
-        |block, target| { write([agreement(simd, pass, &params, block)], target) }
-    ),
+    block: |simd, pass, params| |block| [agreement(simd, pass, &params, block)],
     cost: |_| 50.0,
     tolerance: Tolerance {
         absolute: 1e-3,

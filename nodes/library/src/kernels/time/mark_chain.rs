@@ -8,16 +8,12 @@
 
 pub use crate::kernels::shaders::mark_chain::Params;
 use crate::kernels::shared::motion::{is_known, motion_at};
-use crate::kernels::simd::pixels::{Block, for_blocks, write};
+use crate::kernels::simd::pixels::Block;
 use isophote_engine::fearless_simd::{Simd, f32x8, prelude::*};
 use isophote_engine::{Class, CpuPass, ImageId, PlanBuilder, Support, Tolerance};
 
 crate::kernel!(mark_chain {
-    cpu: |simd, pass, params, band| for_blocks::<4>(
-        band,
-        #[inline(always)]
-        |block, target| { write(chained(simd, pass, block, &params), target) }
-    ),
+    block: |simd, pass, params| |block| chained(simd, pass, block, &params),
     cost: |_| 110.0,
     tolerance: Tolerance {
         absolute: 1e-4,

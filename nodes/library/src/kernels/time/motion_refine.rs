@@ -10,7 +10,8 @@
 //! Cost: 200 operations, seven roots and seven divisions among them.
 
 pub use crate::kernels::shaders::motion_refine::Params;
-use crate::kernels::simd::pixels::{BLOCK, Block, read, write};
+use crate::kernels::simd::around::{Around, rows};
+use crate::kernels::simd::pixels::{BLOCK, Block, write};
 use isophote_engine::fearless_simd::{Simd, f32x8, prelude::*};
 use isophote_engine::{Band, Class, CpuPass, ImageId, PlanBuilder, Support, Tolerance};
 
@@ -70,12 +71,9 @@ pub fn pass(plan: &mut PlanBuilder, options: &Options) -> ImageId {
 #[inline(always)]
 fn steps<S: Simd>(simd: S, pass: &CpuPass<'_>, params: &Params, band: &mut Band<'_>) {
     let window = band.window;
-    let (first, last) = (window.x0 - 1, window.x1 + 1);
     let mut scratch: [Vec<f32>; 3] = Default::default();
     for y in window.y0..window.y1 {
-        let [s0, s1, s2] = &mut scratch;
-        let now = &pass.inputs[4];
-        let rows = [(y - 1, s0), (y, s1), (y + 1, s2)].map(|(y, s)| now.padded_row(y, first, last, s));
+        let rows = rows(&pass.inputs[4], y, window, &mut scratch);
         let row = band.row_mut(0, y);
         for x in (window.x0..window.x1).step_by(BLOCK) {
             let block = Block::until(window.x1, x, y);
@@ -95,25 +93,6 @@ fn steps<S: Simd>(simd: S, pass: &CpuPass<'_>, params: &Params, band: &mut Band<
     }
 }
 
-/// A block of the motion field and what surrounds it.
-struct Around<'a> {
-    /// The row above, its own and the one below, from the pixel to the left of the band's first.
-    rows: [&'a [f32]; 3],
-    /// Index of the pixel to the left of the block.
-    at: usize,
-    /// Pixels of the block.
-    len: usize,
-}
-
-impl Around<'_> {
-    /// The block's neighbours at (dx, dy), -1..=1.
-    #[inline(always)]
-    fn value<S: Simd>(&self, simd: S, dx: i32, dy: i32) -> [f32x8<S>; 2] {
-        let at = (self.at as i32 + 1 + dx) as usize;
-        read(simd, &self.rows[(dy + 1) as usize][2 * at..2 * (at + self.len)])
-    }
-}
-
 /// Terms that smoothness adds at eight pixels.
 struct Smoothness<S: Simd> {
     /// Sum of the neighbours' weights.
@@ -124,7 +103,7 @@ struct Smoothness<S: Simd> {
 
 impl<S: Simd> Smoothness<S> {
     #[inline(always)]
-    fn of(simd: S, around: &Around<'_>, origin: [f32x8<S>; 2]) -> Self {
+    fn of(simd: S, around: &Around<'_, 2>, origin: [f32x8<S>; 2]) -> Self {
         let centre = around.value(simd, 0, 0);
         let [left, right] = [around.value(simd, -1, 0), around.value(simd, 1, 0)];
         let [up, down] = [around.value(simd, 0, -1), around.value(simd, 0, 1)];

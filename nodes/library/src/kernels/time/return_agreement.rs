@@ -6,17 +6,13 @@
 
 pub use crate::kernels::shaders::return_agreement::Params;
 use crate::kernels::shared::motion::{bounded, fetch2, is_known};
-use crate::kernels::simd::pixels::{Block, for_blocks, write};
+use crate::kernels::simd::pixels::Block;
 use crate::kernels::time::guide_agreement::Way;
 use isophote_engine::fearless_simd::{Simd, f32x8, i32x8, prelude::*};
 use isophote_engine::{Class, CpuPass, ImageId, PlanBuilder, Support, Tolerance};
 
 crate::kernel!(return_agreement {
-    cpu: |simd, pass, params, band| for_blocks::<1>(
-        band,
-        #[inline(always)]
-        |block, target| { write([agreement(simd, pass, &params, block)], target) }
-    ),
+    block: |simd, pass, params| |block| [agreement(simd, pass, &params, block)],
     cost: |_| 70.0,
     tolerance: Tolerance {
         absolute: 1e-3,
