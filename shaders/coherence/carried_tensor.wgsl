@@ -16,8 +16,7 @@ struct Params {
 }
 
 #params
-#input source
-#input earlier
+#input source, earlier
 #output target_image rgba32float
 
 // E, F and G on a square of 24 x 24 pixels, and smoothed along its rows.

@@ -19,8 +19,7 @@ struct Params {
 }
 
 #params
-#input source
-#input tensors
+#input source, tensors
 // What the derivative is taken of.
 #input smooth_source
 #output target_image rgba32float

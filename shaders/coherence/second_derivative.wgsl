@@ -4,8 +4,7 @@
 #import gpu/grid
 #import shared/tensor
 
-#input source
-#input tensors
+#input source, tensors
 #output target_image rgba32float
 
 // By how much a neighbour exceeds the centre; where it is transparent it stands for the centre.

@@ -11,8 +11,7 @@ struct Params {
 }
 
 #params
-#input source
-#input detector
+#input source, detector
 #output target_image rgba32float
 
 // By how much a neighbour lies on the side that the step goes to; where it is transparent it stands for

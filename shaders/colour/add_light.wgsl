@@ -2,8 +2,7 @@
 // Cost: two loads and three additions.
 #import gpu/grid
 
-#input picture
-#input light
+#input picture, light
 #output target_image rgba32float
 
 fn of_pixel(id: vec3u, under: vec4f, light: vec4f) -> vec4f {

@@ -27,8 +27,7 @@ struct Params {
 }
 
 #params
-#input lightness
-#input edges
+#input lightness, edges
 #output target_image rgba32float
 
 // How much of a pixel at `x` is covered by lines `width` wide, `spacing` apart.

@@ -10,8 +10,7 @@ struct Params {
 }
 
 #params
-#input source
-#input edges
+#input source, edges
 #output target_image rgba32float
 
 fn of_pixel(id: vec3u, v: vec4f, edges: vec4f) -> vec4f {

@@ -32,8 +32,7 @@ struct Params {
 #params
 // Black lines on white.
 #input lines
-#input source
-#input strokes
+#input source, strokes
 // The share of the paper that marks cover, and how far grain shows in them.
 #input marks
 #output target_image rgba32float

@@ -8,8 +8,7 @@ struct Params {
 }
 
 #params
-#input first
-#input second
+#input first, second
 #output target_image rgba32float
 
 fn of_pixel(id: vec3u, a: vec4f, b: vec4f) -> vec4f {

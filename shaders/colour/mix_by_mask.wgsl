@@ -9,9 +9,7 @@ struct Params {
 }
 
 #params
-#input first
-#input second
-#input mask
+#input first, second, mask
 #output target_image rgba32float
 
 fn of_pixel(id: vec3u, a: vec4f, b: vec4f, mask: vec4f) -> vec4f {

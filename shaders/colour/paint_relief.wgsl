@@ -10,8 +10,7 @@ struct Params {
 }
 
 #params
-#input source
-#input heights
+#input source, heights
 #output target_image rgba32float
 
 fn height(p: vec2i) -> f32 {

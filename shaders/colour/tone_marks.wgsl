@@ -43,10 +43,7 @@ struct Params {
 #params
 // (L alpha, alpha).
 #input tones
-#input tensor
-#input strokes
-#input first_hatching
-#input second_hatching
+#input tensor, strokes, first_hatching, second_hatching
 #output target_image rg32float
 
 const HALF: vec2f = vec2f(0.5);

@@ -10,8 +10,7 @@ struct Params {
 }
 
 #params
-#input source
-#input field
+#input source, field
 #output target_image rgba32float
 
 fn main(@builtin(global_invocation_id) id: vec3u) {

@@ -25,9 +25,7 @@ struct Params {
 }
 
 #params
-#input source
-#input blurred
-#input given_clouds
+#input source, blurred, given_clouds
 #output target_image rgba32float
 
 // Luma within the range of paper.

@@ -3,8 +3,7 @@
 // Cost: two loads and a multiplication.
 #import gpu/grid
 
-#input lightness
-#input edges
+#input lightness, edges
 #output target_image rg32float
 
 fn of_pixel(id: vec3u, v: vec4f, edges: vec4f) -> vec4f {

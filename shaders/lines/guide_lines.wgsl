@@ -30,9 +30,7 @@ struct Params {
 #input response
 // (E - G, F), see orientation_field.
 #input field
-#input normal
-#input depth
-#input object_id
+#input normal, depth, object_id
 #output target_image rg32float
 
 // False for NaN and infinities, by bits: shader compilers may assume that they do not exist.

@@ -31,8 +31,7 @@ struct Params {
 }
 
 #params
-#input source
-#input tensors
+#input source, tensors
 #output target_image rgba32float
 #output deviations r32float
 

@@ -25,8 +25,7 @@ struct Params {
 }
 
 #params
-#input source
-#input tensors
+#input source, tensors
 #output target_image rgba32float
 #output deviations r32float
 

@@ -17,10 +17,7 @@ struct Params {
 }
 
 #params
-#input left_sums
-#input right_sums
-#input square_sums
-#input source
+#input left_sums, right_sums, square_sums, source
 #output target_image rgba32float
 
 // Rounding of a variance, as a share of the mean square.

@@ -17,10 +17,7 @@ struct Params {
 }
 
 #params
-#input source
-#input coarse
-#input deviations
-#input structure
+#input source, coarse, deviations, structure
 #output target_image rgba32float
 
 fn main(@builtin(global_invocation_id) id: vec3u) {

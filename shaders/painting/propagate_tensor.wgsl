@@ -7,8 +7,7 @@
 // Least anisotropy that counts.
 const FLOOR: f32 = 1e-3;
 
-#input fine
-#input coarse
+#input fine, coarse
 #output target_image rgba32float
 
 fn main(@builtin(global_invocation_id) id: vec3u) {

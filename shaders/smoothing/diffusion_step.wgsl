@@ -8,8 +8,7 @@ struct Params {
 }
 
 #params
-#input source
-#input weights
+#input source, weights
 #output target_image rgba32float
 
 // The workgroup's pixels and those around them.

@@ -21,8 +21,7 @@ struct Params {
 }
 
 #params
-#input source
-#input tensors
+#input source, tensors
 #output target_image rgba32float
 
 const INPUT_TENSORS = 1u;

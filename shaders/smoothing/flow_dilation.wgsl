@@ -11,9 +11,7 @@ struct Params {
 }
 
 #params
-#input source
-#input tensors
-#input noise
+#input source, tensors, noise
 #output target_image rgba32float
 
 const INPUT_TENSORS = 1u;

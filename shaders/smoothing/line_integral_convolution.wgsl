@@ -23,8 +23,7 @@ struct Params {
 }
 
 #params
-#input source
-#input tensors
+#input source, tensors
 // (E - G, F), see orientation_field.
 #input field
 #output target_image rgba32float

@@ -12,8 +12,7 @@ struct Params {
 }
 
 #params
-#input source
-#input tensors
+#input source, tensors
 #output target_image rgba32float
 
 // Gradients below this count as flat, where the flow is plain diffusion.

@@ -21,8 +21,7 @@ struct Params {
 }
 
 #params
-#input source
-#input tensors
+#input source, tensors
 #output target_image rgba32float
 
 const SAMPLING_LINEAR = 0u;

@@ -18,8 +18,7 @@ struct Params {
 }
 
 #params
-#input source
-#input largest
+#input source, largest
 #output target_image rgba32float
 
 fn weight(i: i32) -> f32 {

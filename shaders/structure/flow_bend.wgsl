@@ -2,8 +2,7 @@
 // Cost: two loads and about 15 operations.
 #import gpu/grid
 
-#input source
-#input flow
+#input source, flow
 #output target_image rgba32float
 
 // Trace that painted orientation has where the picture has none: (1/255)^2, one step of eight bits a pixel.

@@ -13,8 +13,7 @@ struct Params {
 }
 
 #params
-#input source
-#input guide
+#input source, guide
 #output target_image rgba32float
 
 // Where there is nothing, or no number, the depth is far behind everything.

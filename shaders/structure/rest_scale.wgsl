@@ -3,8 +3,7 @@
 #import shared/rest_position
 #import gpu/grid
 
-#input points
-#input footprints
+#input points, footprints
 #output target_image r32float
 
 fn main(@builtin(global_invocation_id) id: vec3u) {

@@ -15,9 +15,7 @@ struct Params {
 }
 
 #params
-#input points
-#input scales
-#input screen
+#input points, scales, screen
 #output target_image rgba32float
 
 // A number in -0.5..0.5 that belongs to a cell, of a sum of its coordinates' products.

@@ -7,8 +7,7 @@
 // Where both anisotropies together are not above this, the finer tensor stays.
 const LEAST: f32 = 1e-6;
 
-#input fine
-#input coarse
+#input fine, coarse
 #output target_image rgba32float
 
 fn main(@builtin(global_invocation_id) id: vec3u) {

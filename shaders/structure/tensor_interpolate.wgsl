@@ -9,8 +9,7 @@ struct Params {
 }
 
 #params
-#input fine
-#input coarse
+#input fine, coarse
 #output target_image rgba32float
 
 fn main(@builtin(global_invocation_id) id: vec3u) {

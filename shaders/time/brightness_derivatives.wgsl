@@ -2,8 +2,7 @@
 // and of its gradient. Central differences; in levels of brightness. Cost: 14 loads.
 #import gpu/grid
 
-#input mean
-#input difference
+#input mean, difference
 #output first_image rgba32float
 #output second_image rgba32float
 

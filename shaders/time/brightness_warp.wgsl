@@ -2,9 +2,7 @@
 // to, and their difference, that there less that here. Cost: 6 loads.
 #import shared/sampling
 
-#input here
-#input there
-#input motion
+#input here, there, motion
 #output mean_image r32float
 #output difference_image r32float
 

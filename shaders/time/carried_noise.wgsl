@@ -12,10 +12,7 @@ struct Params {
 }
 
 #params
-#input of_both
-#input first
-#input second
-#input chain
+#input of_both, first, second, chain
 #output target_image rgba32float
 
 // The noise at a place; beyond the border it is mirrored.

@@ -16,11 +16,7 @@ struct Params {
 }
 
 #params
-#input own
-#input motion
-#input weights
-#input before
-#input theirs
+#input own, motion, weights, before, theirs
 #output target_image rg32float
 
 fn main(@builtin(global_invocation_id) id: vec3u) {

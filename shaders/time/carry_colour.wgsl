@@ -2,10 +2,7 @@
 // Cost: 16 loads of colour and 100 operations.
 #import shared/motion
 
-#input average
-#input motion
-#input shares
-#input theirs
+#input average, motion, shares, theirs
 #output target_image rgba32float
 
 fn main(@builtin(global_invocation_id) id: vec3u) {

@@ -3,10 +3,7 @@
 // Cost: 16 loads and 60 operations.
 #import shared/motion
 
-#input average
-#input motion
-#input shares
-#input theirs
+#input average, motion, shares, theirs
 #output target_image rg32float
 
 fn main(@builtin(global_invocation_id) id: vec3u) {

@@ -2,10 +2,7 @@
 // Cost: five loads of motion, four of tensors and 60 operations.
 #import shared/motion
 
-#input average
-#input motion
-#input shares
-#input theirs
+#input average, motion, shares, theirs
 #output target_image rgba32float
 
 // The derivative of motion from its values before, at and after a pixel: the smaller one-sided difference, and none

@@ -10,10 +10,7 @@ struct Params {
 }
 
 #params
-#input own
-#input motion
-#input weights
-#input theirs
+#input own, motion, weights, theirs
 #output target_image r32float
 
 // Agreement of two values of a guide, 0..1.

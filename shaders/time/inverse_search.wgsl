@@ -21,9 +21,7 @@ struct Params {
 }
 
 #params
-#input here
-#input there
-#input start
+#input here, there, start
 #output target_image rg32float
 
 // Added to the Hessian's diagonal, brightness squared per pixel: two of 255 levels for every pixel of a patch. Where

@@ -15,8 +15,7 @@ struct Params {
 }
 
 #params
-#input so_far
-#input steps
+#input so_far, steps
 #output target_image rgba32float
 
 // One step on; a point whose motion is not known, or that goes too far, stays where it is for this frame.

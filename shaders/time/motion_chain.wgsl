@@ -10,8 +10,7 @@ struct Params {
 }
 
 #params
-#input so_far
-#input steps
+#input so_far, steps
 #output target_image rg32float
 
 fn main(@builtin(global_invocation_id) id: vec3u) {

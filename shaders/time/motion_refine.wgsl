@@ -10,11 +10,7 @@ struct Params {
 }
 
 #params
-#input first_image
-#input second_image
-#input start
-#input before
-#input now
+#input first_image, second_image, start, before, now
 #output target_image rg32float
 
 // Weights of the gradient's constancy and of smoothness against that of the brightness.

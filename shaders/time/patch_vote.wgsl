@@ -2,9 +2,7 @@
 // less the more the brightness differs that it takes the pixel to. Cost: 21 loads.
 #import gpu/grid
 
-#input here
-#input there
-#input patches
+#input here, there, patches
 #output target_image rg32float
 
 // Levels of brightness to 1; differences of one level or less count alike.

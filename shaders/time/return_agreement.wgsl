@@ -10,9 +10,7 @@ struct Params {
 }
 
 #params
-#input motion
-#input weights
-#input back
+#input motion, weights, back
 #output target_image r32float
 
 fn main(@builtin(global_invocation_id) id: vec3u) {

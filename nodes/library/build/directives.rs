@@ -4,14 +4,14 @@
 const FORMATS: [&str; 3] = ["r32float", "rg32float", "rgba32float"];
 
 /// Line of a shader that stands for text.
-#[derive(Clone, Copy, Debug, PartialEq)]
+#[derive(Debug, PartialEq)]
 pub enum Directive<'t> {
     /// `#import folder/name`: the text of the file `folder/name.wgsl`.
     Import(&'t str),
     /// `#params`: the variable `params`, the uniform block of the type `Params`.
     Params,
-    /// `#input name`: a texture that is read.
-    Input(&'t str),
+    /// `#input name, name`: textures that are read.
+    Inputs(Vec<&'t str>),
     /// `#output name format`: a texture that is written, and the format of its exact results.
     Output(&'t str, &'t str),
 }
@@ -23,17 +23,21 @@ impl<'t> Directive<'t> {
     /// Its form, where the line has another.
     pub fn read(line: &'t str) -> Result<Option<Self>, String> {
         let Some(text) = line.strip_prefix('#') else { return Ok(None) };
+        let inputs =
+            text.strip_prefix("input ").map(|names| names.split(',').map(str::trim).collect::<Vec<_>>());
+        if let Some(names) = inputs.filter(|names| names.iter().all(|name| is_name(name))) {
+            return Ok(Some(Self::Inputs(names)));
+        }
         let words: Vec<&str> = text.split_whitespace().collect();
         let form = match words[..] {
             ["import", name] if name.contains('/') => return Ok(Some(Self::Import(name))),
             ["params"] => return Ok(Some(Self::Params)),
-            ["input", name] if is_name(name) => return Ok(Some(Self::Input(name))),
             ["output", name, format] if is_name(name) && FORMATS.contains(&format) => {
                 return Ok(Some(Self::Output(name, format)));
             }
             ["import", ..] => "#import folder/name".to_owned(),
             ["params", ..] => "#params".to_owned(),
-            ["input", ..] => "#input name".to_owned(),
+            ["input", ..] => "#input name, name, ...".to_owned(),
             ["output", ..] => format!("#output name format, with a format of {}", FORMATS.join(", ")),
             _ => return Err(format!("`{line}` is none of #import, #params, #input, #output")),
         };
@@ -47,6 +51,11 @@ fn is_name(word: &str) -> bool {
         && word.chars().all(|c| c.is_ascii_alphanumeric() || c == '_')
 }
 
+/// The declaration of a variable at a binding.
+fn bound(number: u32, variable: &str) -> String {
+    format!("@group(0) @binding({number}) {variable};\n")
+}
+
 /// Bindings of a kernel as its directives declare them, in the order of their numbers: the uniform block is 1, and textures
 /// count from 2.
 #[derive(Default)]
@@ -57,30 +66,32 @@ pub struct Bindings {
 }
 
 impl Bindings {
-    /// The declaration that a directive stands for; an import declares nothing.
+    /// The declarations that a directive stands for; an import declares nothing.
     ///
     /// # Errors
     /// What it should stand before.
     pub fn declare(&mut self, directive: Directive<'_>) -> Result<String, String> {
-        let number = 2 + self.inputs + self.outputs;
-        let (number, variable) = match directive {
-            Directive::Import(_) => return Ok(String::new()),
-            Directive::Params if self.has_params => return Err("#params stands in a shader once".into()),
-            Directive::Params if number > 2 => return Err("#params stands before #input and #output".into()),
+        let next = 2 + self.inputs + self.outputs;
+        match directive {
+            Directive::Import(_) => Ok(String::new()),
+            Directive::Params if self.has_params => Err("#params stands in a shader once".into()),
+            Directive::Params if next > 2 => Err("#params stands before #input and #output".into()),
             Directive::Params => {
                 self.has_params = true;
-                (1, "var<uniform> params: Params".to_owned())
+                Ok(bound(1, "var<uniform> params: Params"))
             }
-            Directive::Input(_) if self.outputs > 0 => return Err("#input stands before #output".into()),
-            Directive::Input(name) => {
-                self.inputs += 1;
-                (number, format!("var {name}: texture_2d<f32>"))
+            Directive::Inputs(_) if self.outputs > 0 => Err("#input stands before #output".into()),
+            Directive::Inputs(names) => {
+                self.inputs += names.len() as u32;
+                let textures = (next..).zip(names);
+                Ok(textures
+                    .map(|(number, name)| bound(number, &format!("var {name}: texture_2d<f32>")))
+                    .collect())
             }
             Directive::Output(name, format) => {
                 self.outputs += 1;
-                (number, format!("var {name}: texture_storage_2d<{format}, write>"))
+                Ok(bound(next, &format!("var {name}: texture_storage_2d<{format}, write>")))
             }
-        };
-        Ok(format!("@group(0) @binding({number}) {variable};\n"))
+        }
     }
 }

@@ -17,15 +17,16 @@ fn bindings_are_numbered_by_their_order() {
     let shader = "// Colours.
 #import gpu/grid
 #params
-#input source
-#input tensors
+#input source, tensors
+#input depth
 #output target_image rgba32float
 #output weights r32float";
     let expected = "@group(0) @binding(1) var<uniform> params: Params;
 @group(0) @binding(2) var source: texture_2d<f32>;
 @group(0) @binding(3) var tensors: texture_2d<f32>;
-@group(0) @binding(4) var target_image: texture_storage_2d<rgba32float, write>;
-@group(0) @binding(5) var weights: texture_storage_2d<r32float, write>;
+@group(0) @binding(4) var depth: texture_2d<f32>;
+@group(0) @binding(5) var target_image: texture_storage_2d<rgba32float, write>;
+@group(0) @binding(6) var weights: texture_storage_2d<r32float, write>;
 ";
     assert_eq!(declared(shader).unwrap(), expected);
 }
@@ -42,8 +43,10 @@ fn malformed_directives_are_refused() {
         ("#import", "`#import` is not of the form #import folder/name"),
         ("#import grid", "`#import grid` is not of the form #import folder/name"),
         ("#params Params", "`#params Params` is not of the form #params"),
-        ("#input", "`#input` is not of the form #input name"),
-        ("#input source;", "`#input source;` is not of the form #input name"),
+        ("#input", "`#input` is not of the form #input name, name, ..."),
+        ("#input source,", "`#input source,` is not of the form #input name, name, ..."),
+        ("#input source tensors", "`#input source tensors` is not of the form #input name, name, ..."),
+        ("#input source;", "`#input source;` is not of the form #input name, name, ..."),
         (
             "#output target_image",
             "`#output target_image` is not of the form #output name format, with a format of r32float, rg32float, rgba32float",
