@@ -2,10 +2,13 @@
 
 use crate::declare::choice::choice;
 use crate::declare::spec::{Param, Scope};
+use crate::kernels::colour::rgb_to_lab;
 use crate::kernels::smoothing::bilateral::Options;
 use crate::kernels::structure::orientation_field;
 use crate::stages::bilateral::{self, Kernel};
-use crate::stages::{ADVANCED, LOOK, flow_bilateral, oriented_bilateral};
+use crate::stages::steady::{Agreement, COLOUR_AGREEMENT, steadied};
+use crate::stages::tensor_options::TensorOptions;
+use crate::stages::{ADVANCED, LOOK, flow_bilateral, flow_map, oriented_bilateral, structure_tensor};
 use isophote_engine::{ImageId, PlanBuilder};
 
 pub(crate) const DETAIL: Param = Param::float("detail", "Detail", 0.5, [0.0, 1.0]).group(LOOK).doc(
@@ -17,6 +20,12 @@ pub(crate) const ABSTRACTION: Param =
          own scales then grow with `sigma_d` / 3 and `sigma_r` / 4.25; or without regard to it, by the full \
          window (3.2) or along rows and then columns (3.3).",
     );
+/// Iterations of styles whose regions are all that they abstract.
+pub(crate) const N_A: Param = Param::int("n_a", "Iterations", 4, [0, 16])
+    .slider(0.0, 8.0)
+    .structural()
+    .group(ADVANCED)
+    .doc("Bilateral iterations.");
 pub(crate) const SIGMA_D: Param = Param::length("sigma_d", "Sigma d", 3.0, [0.1, 20.0])
     .slider(0.5, 10.0)
     .group(ADVANCED)
@@ -100,6 +109,21 @@ impl Abstraction {
             Self::Isotropic(passes) => bilateral::iteration(plan, lab, passes),
         })
     }
+}
+
+/// The picture after `n_a` iterations, in CIELAB, and the tensors that they follow, both steady over time.
+pub(crate) fn steady_regions(scope: &mut Scope<'_>, options: &TensorOptions) -> [ImageId; 2] {
+    let abstraction = Abstraction::of(scope);
+    let n_a = scope.int(N_A.id);
+    let by = Agreement::lab(COLOUR_AGREEMENT);
+    let steadied = steadied(scope, by, |scope| {
+        let color = scope.required("color");
+        let tensors = structure_tensor::of_color(scope.plan, color, options);
+        let tensors = flow_map::bent(scope, tensors);
+        let lab = rgb_to_lab::pass(scope.plan, color, 1.0);
+        [abstraction.apply(scope.plan, lab, tensors, n_a), tensors]
+    });
+    steadied.stages
 }
 
 /// Factors on (`sigma_d`, `sigma_r`) for `detail` 0..=1, 1 at the default.

@@ -2,21 +2,17 @@
 
 use crate::declare::choice::choice;
 use crate::declare::spec::Param;
+use crate::declare::value::Value;
 use crate::kernels::shared::stream::Integrator;
 use crate::kernels::smoothing::flow_bilateral::{self, Placement};
 use crate::kernels::smoothing::oriented_bilateral::{self, Direction};
-use crate::stages::oriented_bilateral::SAMPLING;
+use crate::stages::oriented_bilateral::{self as across, SAMPLING, SIGMA_DG};
 use isophote_engine::{ImageId, PlanBuilder};
 
-pub(crate) const SIGMA_DG: Param = Param::length("sigma_dg", "Sigma along gradient", 3.0, [0.0, 40.0])
-    .slider(0.0, 10.0)
-    .doc("Standard deviation of the domain weight across edges, cut at 3 sigma.");
 pub(crate) const SIGMA_DT: Param = Param::length("sigma_dt", "Sigma along flow", 8.0, [0.0, 40.0])
     .slider(0.0, 20.0)
     .doc("Standard deviation of the domain weight along stream lines, cut at 2 sigma.");
-pub(crate) const SIGMA_RG: Param = Param::float("sigma_rg", "Range across", 2.0, [0.01, 200.0])
-    .slider(0.5, 30.0)
-    .doc("Standard deviation of the range weight across edges, in CIELAB units.");
+pub(crate) const SIGMA_RG: Param = across::SIGMA_RG.with_default(Value::Float(2.0));
 pub(crate) const SIGMA_RT: Param = Param::float("sigma_rt", "Range along", 14.0, [0.01, 200.0])
     .slider(0.5, 60.0)
     .doc("Standard deviation of the range weight along stream lines, in CIELAB units.");

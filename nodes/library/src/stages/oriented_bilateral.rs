@@ -17,6 +17,12 @@ pub(crate) const SIGMA_RG: Param = Param::float("sigma_rg", "Range across", 4.25
 pub(crate) const SIGMA_RT: Param = Param::float("sigma_rt", "Range along", 4.25, [0.01, 200.0])
     .slider(0.5, 30.0)
     .doc("Standard deviation of the range weight along edges, in CIELAB units.");
+/// Number of times that both passes run; the flow-based filter has the same.
+pub(crate) const ITERATIONS: Param = Param::int("iterations", "Iterations", 4, [0, 20])
+    .neutral_at_zero()
+    .slider(0.0, 10.0)
+    .structural()
+    .doc("How often both passes run; the orientation is found once.");
 pub(crate) const ANISOTROPY: Param = Param::float("anisotropy", "Elongation", 0.0, [0.0, 4.0]).doc(
     "Adapts the shape as the ellipse of 5.22 does, with 1/alpha: sigma along the tangent times 1 + elongation \
      A, across it divided by the same, A being the anisotropy. 0 for off.",

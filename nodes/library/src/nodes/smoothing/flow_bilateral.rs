@@ -2,13 +2,13 @@
 //! lines, so that curved features are enhanced and not smoothed away.
 
 use crate::declare::ports;
-use crate::declare::spec::{NodeSpec, Param, Scope};
+use crate::declare::spec::{NodeSpec, Scope};
 use crate::kernels::colour::{lab_to_rgb, rgb_to_lab};
 use crate::kernels::smoothing::{flow_bilateral, oriented_bilateral};
 use crate::stages::flow_bilateral::{
-    INTEGRATOR, PLACEMENT, Passes, SIGMA_DG, SIGMA_DT, SIGMA_RG, SIGMA_RT, Stepping, iteration,
+    INTEGRATOR, PLACEMENT, Passes, SIGMA_DT, SIGMA_RG, SIGMA_RT, Stepping, iteration,
 };
-use crate::stages::oriented_bilateral::SAMPLING;
+use crate::stages::oriented_bilateral::{ITERATIONS, SAMPLING, SIGMA_DG};
 use crate::stages::structure_tensor;
 use isophote_engine::ImageId;
 
@@ -23,20 +23,7 @@ pub static NODE: NodeSpec = NodeSpec {
     section: "3.5",
     inputs: &[ports::COLOR, ports::TENSOR],
     output: ports::color_output("The abstracted picture."),
-    own_params: &[
-        SIGMA_DG,
-        SIGMA_DT,
-        SIGMA_RG,
-        SIGMA_RT,
-        Param::int("iterations", "Iterations", 4, [0, 20])
-            .neutral_at_zero()
-            .slider(0.0, 10.0)
-            .structural()
-            .doc("How often both passes run; the orientation is found once."),
-        SAMPLING,
-        INTEGRATOR,
-        PLACEMENT,
-    ],
+    own_params: &[SIGMA_DG, SIGMA_DT, SIGMA_RG, SIGMA_RT, ITERATIONS, SAMPLING, INTEGRATOR, PLACEMENT],
     build,
 };
 

@@ -1,11 +1,11 @@
 //! The orientation-aligned bilateral filter (§ 3.4): regions of like colour become flat, borders stay.
 
 use crate::declare::ports;
-use crate::declare::spec::{NodeSpec, Param, STEADINESS, Scope, WINDOW};
+use crate::declare::spec::{NodeSpec, STEADINESS, Scope, WINDOW};
 use crate::kernels::colour::{lab_to_rgb, rgb_to_lab};
 use crate::kernels::smoothing::oriented_bilateral::Options;
 use crate::stages::oriented_bilateral::{
-    ANISOTROPY, Passes, SAMPLING, SIGMA_DG, SIGMA_DT, SIGMA_RG, SIGMA_RT, iteration,
+    ANISOTROPY, ITERATIONS, Passes, SAMPLING, SIGMA_DG, SIGMA_DT, SIGMA_RG, SIGMA_RT, iteration,
 };
 use crate::stages::steady::steadied_picture;
 use crate::stages::structure_tensor;
@@ -24,19 +24,7 @@ pub static NODE: NodeSpec = NodeSpec {
     inputs: &[ports::COLOR, ports::TENSOR],
     output: ports::color_output("The abstracted picture."),
     own_params: &[
-        SIGMA_DG,
-        SIGMA_DT,
-        SIGMA_RG,
-        SIGMA_RT,
-        Param::int("iterations", "Iterations", 4, [0, 20])
-            .neutral_at_zero()
-            .slider(0.0, 10.0)
-            .structural()
-            .doc("How often both passes run; the orientation is found once."),
-        SAMPLING,
-        ANISOTROPY,
-        STEADINESS,
-        WINDOW,
+        SIGMA_DG, SIGMA_DT, SIGMA_RG, SIGMA_RT, ITERATIONS, SAMPLING, ANISOTROPY, STEADINESS, WINDOW,
     ],
     build,
 };

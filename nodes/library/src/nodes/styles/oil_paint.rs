@@ -3,16 +3,13 @@
 
 use crate::declare::ports;
 use crate::declare::spec::{HOLD, NodeSpec, Param, RENEWAL, STEADINESS, Scope, WINDOW};
+use crate::declare::value::Value;
+use crate::kernels::colour::lab_to_rgb;
 use crate::kernels::colour::paint_relief::{self, Relief};
-use crate::kernels::colour::{lab_to_rgb, rgb_to_lab};
 use crate::kernels::smoothing::flow_dilation;
 use crate::kernels::smoothing::line_integral_convolution::{self, Adapt, Options as Lic};
-use crate::stages::abstraction::{self, Abstraction};
-use crate::stages::steady::{Agreement, COLOUR_AGREEMENT, Steadied, steadied};
 use crate::stages::tensor_options::TensorOptions;
-use crate::stages::{
-    ADVANCED, LOOK, flow_map, line_integral_convolution as lic, marks, structure_tensor, tone,
-};
+use crate::stages::{ADVANCED, LOOK, abstraction, line_integral_convolution as lic, marks, tone};
 use isophote_engine::{ImageId, math};
 
 /// The node.
@@ -44,11 +41,7 @@ pub static NODE: NodeSpec = NodeSpec {
         tone::LIGHTS,
         tone::DARKS,
         abstraction::ABSTRACTION,
-        Param::int("n_a", "Iterations", 2, [0, 16])
-            .slider(0.0, 8.0)
-            .structural()
-            .group(ADVANCED)
-            .doc("Bilateral iterations before the strokes."),
+        abstraction::N_A.with_default(Value::Int(2)).doc("Bilateral iterations before the strokes."),
         abstraction::SIGMA_D,
         abstraction::SIGMA_R,
         Param::length("rho", "Rho", 3.0, [0.0, 20.0])
@@ -109,16 +102,7 @@ fn build(scope: &mut Scope<'_>) -> ImageId {
         levels: scope.int("levels"),
         ..TensorOptions::default()
     };
-    let abstraction = Abstraction::of(scope);
-    let n_a = scope.int("n_a");
-    let Steadied { stages: [flat, tensors], .. } =
-        steadied(scope, Agreement::lab(COLOUR_AGREEMENT), |scope| {
-            let color = scope.required("color");
-            let tensors = structure_tensor::of_color(scope.plan, color, &options);
-            let tensors = flow_map::bent(scope, tensors);
-            let lab = rgb_to_lab::pass(scope.plan, color, 1.0);
-            [abstraction.apply(scope.plan, lab, tensors, n_a), tensors]
-        });
+    let [flat, tensors] = abstraction::steady_regions(scope, &options);
     let (scale, seed) = (scope.scale(), scope.renewed(scope.int("seed") as u32));
     let sigma_n = scope.float("sigma_n") * width;
     let grains = marks::grains(scope, sigma_n, seed);

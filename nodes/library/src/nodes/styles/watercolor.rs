@@ -2,17 +2,13 @@
 
 use crate::declare::ports;
 use crate::declare::spec::{NodeSpec, Param, RENEWAL, STEADINESS, Scope, WINDOW};
+use crate::kernels::colour::lab_to_rgb;
 use crate::kernels::colour::watercolor_wash::{self, CLOUDS, Wash};
-use crate::kernels::colour::{lab_to_rgb, rgb_to_lab};
 use crate::kernels::smoothing::gaussian_blur;
 use crate::kernels::smoothing::line_integral_convolution::{self, Options as Lic};
 use crate::kernels::smoothing::wobble::{self, Options as Wobble};
-use crate::stages::abstraction::{self, Abstraction};
-use crate::stages::steady::{Agreement, COLOUR_AGREEMENT, Steadied, steadied};
 use crate::stages::tensor_options::TensorOptions;
-use crate::stages::{
-    ADVANCED, LOOK, flow_map, line_integral_convolution as lic, marks, morphology, structure_tensor, tone,
-};
+use crate::stages::{ADVANCED, LOOK, abstraction, line_integral_convolution as lic, marks, morphology, tone};
 use isophote_engine::ImageId;
 
 /// The node.
@@ -53,11 +49,7 @@ pub static NODE: NodeSpec = NodeSpec {
         tone::LIGHTS,
         tone::DARKS,
         abstraction::ABSTRACTION,
-        Param::int("n_a", "Iterations", 4, [0, 16])
-            .slider(0.0, 8.0)
-            .structural()
-            .group(ADVANCED)
-            .doc("Bilateral iterations."),
+        abstraction::N_A,
         abstraction::SIGMA_D,
         abstraction::SIGMA_R,
         Param::length("sigma_a", "Edge smoothing", 2.0, [0.0, 20.0])
@@ -93,16 +85,7 @@ const SHORTEST_WAVE: f32 = 8.0;
 
 fn build(scope: &mut Scope<'_>) -> ImageId {
     let options = TensorOptions::at_scale(scope.scale());
-    let abstraction = Abstraction::of(scope);
-    let n_a = scope.int("n_a");
-    let Steadied { stages: [mut flat, tensors], .. } =
-        steadied(scope, Agreement::lab(COLOUR_AGREEMENT), |scope| {
-            let color = scope.required("color");
-            let tensors = structure_tensor::of_color(scope.plan, color, &options);
-            let tensors = flow_map::bent(scope, tensors);
-            let lab = rgb_to_lab::pass(scope.plan, color, 1.0);
-            [abstraction.apply(scope.plan, lab, tensors, n_a), tensors]
-        });
+    let [mut flat, tensors] = abstraction::steady_regions(scope, &options);
     flat = tone::curve(scope, flat);
     let saturation = scope.float("saturation");
     let rgb = lab_to_rgb::pass(scope.plan, flat, saturation);
