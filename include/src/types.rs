@@ -167,7 +167,7 @@ pub struct IsophoteValue {
 
 /// What the host wants of a graph.
 #[repr(C)]
-#[derive(Clone, Copy, Debug, PartialEq)]
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct IsophoteRequest {
     /// Width of the whole rendered picture in pixels, 1 to 65536.
     pub width: u32,

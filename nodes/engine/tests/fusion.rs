@@ -99,8 +99,7 @@ fn single_pixels_follow_in_one_dispatch() {
 
 #[test]
 fn what_several_read_or_what_leaves_is_written() {
-    let mut b = PlanBuilder::new(53, 37).unwrap();
-    let source = b.input("source", 4, Class::Colour);
+    let (mut b, source) = begun();
     let slopes = slope(&mut b, source, 1.0);
     let sums = sum(&mut b, slopes, 0.5);
     // The slopes are read again, and the sums leave.
@@ -110,74 +109,67 @@ fn what_several_read_or_what_leaves_is_written() {
     assert_eq!(names(&b.finish().unwrap()), ["SLOPE", "SUM", "BLEND"]);
 }
 
-/// Runs a plan as a whole and in part on both executors.
-fn compare(plan: &Plan) {
+/// A plan and the picture that it begins with.
+fn begun() -> (PlanBuilder, ImageId) {
+    let mut b = PlanBuilder::new(53, 37).unwrap();
+    let source = b.input("source", 4, Class::Colour);
+    (b, source)
+}
+
+/// Runs a plan that ends with `result` as a whole and in part on both executors, in dispatches of these names.
+fn compare(mut b: PlanBuilder, result: ImageId, expected: &[&str]) {
+    b.output("result", result);
+    let plan = b.finish().unwrap();
+    assert_eq!(names(&plan), expected);
     let Some(device) = device() else { return };
     let source = picture();
     let mut executor = Executor::new(device);
     for region in [Rect::of_size(53, 37), Rect { x0: 13, y0: 5, x1: 44, y1: 30 }] {
-        let results = executor.run_images(plan, &[("source", &source)], region, Control::default()).unwrap();
-        assert!(worst(&on_cpu(plan, &source, region), &results[0]) < 1e-5);
+        let results = executor.run_images(&plan, &[("source", &source)], region, Control::default()).unwrap();
+        assert!(worst(&on_cpu(&plan, &source, region), &results[0]) < 1e-5);
     }
 }
 
 #[test]
 fn what_follows_from_a_stored_pixel_is_stored_besides() {
-    let mut b = PlanBuilder::new(53, 37).unwrap();
-    let source = b.input("source", 4, Class::Colour);
+    let (mut b, source) = begun();
     let first = slope(&mut b, source, 1.0);
     // Reads farther than what is stored besides.
     let second = slope(&mut b, first, 0.5);
     let factor = sum(&mut b, first, 0.5);
     let third = slope(&mut b, second, 0.5);
     let blended = blend(&mut b, [third, factor], 0.0);
-    b.output("result", blended);
-    let plan = b.finish().unwrap();
-    assert_eq!(names(&plan), ["SLOPE*+SUM", "SLOPE", "SLOPE+BLEND"]);
-    compare(&plan);
+    compare(b, blended, &["SLOPE*+SUM", "SLOPE", "SLOPE+BLEND"]);
 }
 
 #[test]
 fn several_chains_of_single_pixels_join() {
-    let mut b = PlanBuilder::new(53, 37).unwrap();
-    let source = b.input("source", 4, Class::Colour);
+    let (mut b, source) = begun();
     let first = slope(&mut b, source, 1.0);
     let factor = sum(&mut b, source, 0.5);
     let blended = blend(&mut b, [first, factor], 0.01);
-    b.output("result", blended);
-    let plan = b.finish().unwrap();
-    assert_eq!(names(&plan), ["SLOPE+SUM@(t)+BLEND@(0,1)"]);
-    compare(&plan);
+    compare(b, blended, &["SLOPE+SUM@(t)+BLEND@(0,1)"]);
 }
 
 #[test]
 fn what_a_kernel_reads_itself_stays_a_texture() {
-    let mut b = PlanBuilder::new(53, 37).unwrap();
-    let source = b.input("source", 4, Class::Colour);
+    let (mut b, source) = begun();
     let first = slope(&mut b, source, 1.0);
     let factor = sum(&mut b, first, 0.5);
     let shifted = beside(&mut b, [source, factor], 0.5);
-    b.output("result", shifted);
-    let plan = b.finish().unwrap();
-    assert_eq!(names(&plan), ["SLOPE+SUM+BESIDE@1"]);
-    compare(&plan);
+    compare(b, shifted, &["SLOPE+SUM+BESIDE@1"]);
 
-    let mut b = PlanBuilder::new(53, 37).unwrap();
-    let source = b.input("source", 4, Class::Colour);
+    let (mut b, source) = begun();
     let first = slope(&mut b, source, 1.0);
     let factor = sum(&mut b, source, 0.5);
     // The neighbours of the slopes are not those of a single pixel.
     let shifted = beside(&mut b, [first, factor], 0.5);
-    b.output("result", shifted);
-    let plan = b.finish().unwrap();
-    assert_eq!(names(&plan), ["SLOPE", "SUM+BESIDE@1"]);
-    compare(&plan);
+    compare(b, shifted, &["SLOPE", "SUM+BESIDE@1"]);
 }
 
 #[test]
 fn a_chain_runs_where_its_last_pass_stands() {
-    let mut b = PlanBuilder::new(53, 37).unwrap();
-    let source = b.input("source", 4, Class::Colour);
+    let (mut b, source) = begun();
     let first = slope(&mut b, source, 1.0);
     let second = slope(&mut b, source, 0.5);
     let factor = sum(&mut b, second, 1.0);
@@ -228,8 +220,7 @@ fn half_precision_halves_the_bytes_and_rounds() {
 #[test]
 fn shaders_of_single_kernels_store_half_floats() {
     let Some(device) = device() else { return };
-    let mut b = PlanBuilder::new(53, 37).unwrap();
-    let source = b.input("source", 4, Class::Colour);
+    let (mut b, source) = begun();
     let blurred = support::box_blur(&mut b, source, 2, 0.5);
     let again = support::box_blur(&mut b, blurred, 1, 1.0);
     b.output("result", again);

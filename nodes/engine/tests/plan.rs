@@ -211,6 +211,13 @@ fn shared(b: &mut PlanBuilder, gains: [f32; 2]) -> ImageId {
     box_blur(b, first, 2, 1.0)
 }
 
+/// One blur of an input.
+fn blurred(b: &mut PlanBuilder, from: &str) {
+    let source = b.input(from, 4, Class::Colour);
+    let result = box_blur(b, source, 1, 1.0);
+    b.output("result", result);
+}
+
 type Describe = fn(&mut PlanBuilder);
 
 /// Descriptions of other plans than [`shared`] with equal gains, and what is other in them.
@@ -225,11 +232,7 @@ fn departures() -> [(&'static str, Describe); 9] {
             let result = box_blur(b, result, 1, 1.0);
             b.output("result", result);
         }),
-        ("one pass less", |b| {
-            let source = b.input("source", 4, Class::Colour);
-            let result = box_blur(b, source, 1, 1.0);
-            b.output("result", result);
-        }),
+        ("one pass less", |b| blurred(b, "source")),
         ("another kernel", |b| {
             let source = b.input("source", 4, Class::Colour);
             let moved = shift(b, source, [1.0, 1.0]);
@@ -260,11 +263,7 @@ fn departures() -> [(&'static str, Describe); 9] {
             let result = box_blur(b, first, 2, 1.0);
             b.output("result", result);
         }),
-        ("another input", |b| {
-            let source = b.input("other", 4, Class::Colour);
-            let result = box_blur(b, source, 1, 1.0);
-            b.output("result", result);
-        }),
+        ("another input", |b| blurred(b, "other")),
         ("another output", |b| {
             let result = shared(b, [1.0, 1.0]);
             b.output("another", result);

@@ -84,17 +84,10 @@ pub struct Target<'a> {
 impl<'a> Target<'a> {
     /// As [`Image::new`].
     pub fn new(bytes: &'a mut [u8], size: (u32, u32), channels: u32, sample: Sample) -> Option<Self> {
-        let row_stride = row_stride(bytes.len(), size, channels, sample)?;
-        let raw = IsophoteTarget {
-            data: bytes.as_mut_ptr().cast(),
-            row_stride,
-            sample: sample.number(),
-            channels,
-            width: size.0,
-            height: size.1,
-            x: 0,
-            y: 0,
-        };
+        let IsophoteImage { row_stride, sample, channels, width, height, x, y, .. } =
+            Image::new(bytes, size, channels, sample)?.raw;
+        let data = bytes.as_mut_ptr().cast();
+        let raw = IsophoteTarget { data, row_stride, sample, channels, width, height, x, y };
         Some(Self { raw, memory: PhantomData })
     }
 

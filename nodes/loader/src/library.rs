@@ -68,19 +68,7 @@ impl Library {
     /// # Errors
     /// [`Error`](crate::Error) for impossible sizes.
     pub fn request(&self, size: (u32, u32)) -> Result<IsophoteRequest> {
-        let mut request = IsophoteRequest {
-            width: 0,
-            height: 0,
-            scale: 0.0,
-            space: 0,
-            alpha: 0,
-            guides: 0,
-            origin_x: 0.0,
-            origin_y: 0.0,
-            frame: 0,
-            reference_height: 0,
-            canonical_height: 0,
-        };
+        let mut request = IsophoteRequest::default();
         // SAFETY: `request` may be written during the call.
         let status = unsafe { (self.api.request_init)(size.0, size.1, &raw mut request) };
         check(status, || format!("{}x{} pixels: {}", size.0, size.1, status_name(self.api, status)))?;

@@ -164,20 +164,36 @@ pub(super) unsafe extern "C" fn update(
     change: *mut IsophoteChange,
 ) -> IsophoteStatus {
     guard::on::<PlanObject>(plan, |object| {
-        if change.is_null() {
-            return Err(Failure::argument("the place for the change is null"));
+        // SAFETY: the host promised a request behind the pointer, and that the place may be written.
+        unsafe {
+            updated(graph, host_request, change, |graph, request| lock(&object.state).update(graph, request))
         }
-        let graph = GraphObject::slots().get(graph.id)?.snapshot();
-        let request = if host_request.is_null() {
-            None
-        } else {
-            // SAFETY: the host promised a request behind the pointer.
-            Some(request::request(&unsafe { args::get(host_request, "the request")? })?)
-        };
-        let found = lock(&object.state).update(graph, request)?;
-        // SAFETY: the host promised that the place may be written.
-        unsafe { args::put(change, found, "the place for the change") }
     })
+}
+
+/// Updates something for a graph and, where there is one, a host's request, and hands over the change that this was.
+///
+/// # Safety
+/// `host_request` is null or points to a request, and `change` is null or may be written.
+pub unsafe fn updated(
+    graph: IsophoteGraph,
+    host_request: *const IsophoteRequest,
+    change: *mut IsophoteChange,
+    update: impl FnOnce(Graph, Option<Request>) -> Outcome<IsophoteChange>,
+) -> Outcome<()> {
+    if change.is_null() {
+        return Err(Failure::argument("the place for the change is null"));
+    }
+    let graph = GraphObject::slots().get(graph.id)?.snapshot();
+    let request = if host_request.is_null() {
+        None
+    } else {
+        // SAFETY: the caller promised a request behind the pointer.
+        Some(request::request(&unsafe { args::get(host_request, "the request")? })?)
+    };
+    let found = update(graph, request)?;
+    // SAFETY: the caller promised that the place may be written.
+    unsafe { args::put(change, found, "the place for the change") }
 }
 
 pub(super) unsafe extern "C" fn textures(
@@ -185,15 +201,9 @@ pub(super) unsafe extern "C" fn textures(
     textures: *mut *const IsophoteTexture,
     count: *mut u32,
 ) -> IsophoteStatus {
-    guard::on::<PlanObject>(plan, |object| {
-        let state = lock(&object.state);
-        let list = &state.shown.textures;
-        // SAFETY: the host promised that both places may be written.
-        unsafe {
-            args::put(textures, list.as_ptr(), "the place for the textures")?;
-            args::put(count, list.len() as u32, "the place for the number of textures")
-        }
-    })
+    let names = ["the place for the textures", "the place for the number of textures"];
+    // SAFETY: the host promised that both places may be written.
+    unsafe { list(plan, textures, count, names, |shown| &shown.textures) }
 }
 
 pub(super) unsafe extern "C" fn passes(
@@ -201,13 +211,29 @@ pub(super) unsafe extern "C" fn passes(
     passes: *mut *const IsophotePass,
     count: *mut u32,
 ) -> IsophoteStatus {
+    let names = ["the place for the passes", "the place for the number of passes"];
+    // SAFETY: the host promised that both places may be written.
+    unsafe { list(plan, passes, count, names, |shown| &shown.passes) }
+}
+
+/// Hands over a list of a plan's and its length; `names` are those of the places.
+///
+/// # Safety
+/// Both places are null or may be written.
+unsafe fn list<T>(
+    plan: IsophotePlan,
+    place: *mut *const T,
+    count: *mut u32,
+    names: [&str; 2],
+    of: impl FnOnce(&Shown) -> &Vec<T>,
+) -> IsophoteStatus {
     guard::on::<PlanObject>(plan, |object| {
         let state = lock(&object.state);
-        let list = &state.shown.passes;
-        // SAFETY: the host promised that both places may be written.
+        let list = of(&state.shown);
+        // SAFETY: as the caller promised.
         unsafe {
-            args::put(passes, list.as_ptr(), "the place for the passes")?;
-            args::put(count, list.len() as u32, "the place for the number of passes")
+            args::put(place, list.as_ptr(), names[0])?;
+            args::put(count, list.len() as u32, names[1])
         }
     })
 }

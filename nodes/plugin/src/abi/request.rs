@@ -97,12 +97,7 @@ pub(super) unsafe extern "C" fn init(
         scale: 1.0,
         space: ISOPHOTE_SPACE_SRGB,
         alpha: ISOPHOTE_ALPHA_PREMULTIPLIED,
-        guides: 0,
-        origin_x: 0.0,
-        origin_y: 0.0,
-        frame: 0,
-        reference_height: 0,
-        canonical_height: 0,
+        ..Default::default()
     };
     // SAFETY: the host promised that the place may be written.
     guard::call(|| unsafe { args::put(request, value, "the place for the request") }, |_| {})

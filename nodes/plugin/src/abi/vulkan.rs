@@ -181,19 +181,12 @@ unsafe extern "C" fn effect_update(
     change: *mut IsophoteChange,
 ) -> IsophoteStatus {
     guard::on::<EffectObject>(effect, |object| {
-        if change.is_null() {
-            return Err(Failure::argument("the place for the change is null"));
-        }
-        let graph = GraphObject::slots().get(graph.id)?.snapshot();
-        let request = if host_request.is_null() {
-            None
-        } else {
-            // SAFETY: the host promised a request behind the pointer.
-            Some(request::request(&unsafe { args::get(host_request, "the request")? })?)
+        let update = |graph, request| {
+            let found = object.with(|effect| effect.update(graph, request))?;
+            Ok(plan::change_number(found))
         };
-        let found = object.with(|effect| effect.update(graph, request))?;
-        // SAFETY: the host promised that the place may be written.
-        unsafe { args::put(change, plan::change_number(found), "the place for the change") }
+        // SAFETY: the host promised a request behind the pointer, and that the place may be written.
+        unsafe { plan::updated(graph, host_request, change, update) }
     })
 }
 
