@@ -247,17 +247,10 @@ mod tests {
     use std::sync::atomic::{AtomicBool, Ordering};
 
     use super::*;
+    use crate::temporary::tests::names;
 
     fn put(bytes: &[u8]) -> impl FnOnce(&mut BufWriter<Sink<'_>>) -> std::result::Result<(), String> {
         |file| file.write_all(bytes).map_err(|e| e.to_string())
-    }
-
-    fn names(folder: &Path) -> Vec<String> {
-        let entries = fs::read_dir(folder).unwrap();
-        let mut names: Vec<String> =
-            entries.map(|e| e.unwrap().file_name().to_string_lossy().into_owned()).collect();
-        names.sort();
-        names
     }
 
     #[test]

@@ -113,10 +113,7 @@ fn turntables_go_once_around() {
 
 #[test]
 fn videos_are_made_of_everything() {
-    if !support::has_ffmpeg() {
-        return;
-    }
-    let folder = folder();
+    let Some(folder) = support::video_folder() else { return };
     let at = |name: &str| folder.path().join(name);
     // An odd row and column are left out.
     for number in [1, 2, 4] {
@@ -198,10 +195,7 @@ fn what_is_cancelled_leaves_nothing() {
 
 #[test]
 fn videos_that_are_cancelled_leave_no_process_and_no_file() {
-    if !support::has_ffmpeg() {
-        return;
-    }
-    let folder = folder();
+    let Some(folder) = support::video_folder() else { return };
     let at = |name: &str| folder.path().join(name);
     let mut turn = job(Kind::Scene, &cube(folder.path()), &at("turn.mp4"));
     (turn.turntable, turn.frames) = (true, Some("500".into()));

@@ -84,14 +84,7 @@ fn render_ends_in_order_without_memory() {
     let folder = folder();
     cube(folder.path());
     let mut command = isophote();
-    command.current_dir(folder.path()).args([
-        "render",
-        "cube.gltf",
-        "out.exr",
-        "--force",
-        "--size",
-        "160x90",
-    ]);
+    command.current_dir(folder.path()).args("render cube.gltf out.exr --force --size 160x90".split(' '));
     let [well, refused] = sweep((60..1200).step_by(100).chain([8192]), &command);
     assert!(well > 0 && refused > 0, "{well} ended well, {refused} were refused");
 }

@@ -71,14 +71,7 @@ fn graphs_are_masked_as_nodes_are() {
         {"name": "a", "node": "gaussian", "inputs": {"color": "@color"}}], "output": "a"}"#;
     fs::write(at("graph.json"), graph).expect("the folder is writable");
     let mut command = isophote();
-    command.current_dir(folder.path()).args([
-        "apply",
-        "graph.json",
-        "in.exr",
-        "graph.exr",
-        "--backend",
-        "cpu",
-    ]);
+    command.current_dir(folder.path()).args("apply graph.json in.exr graph.exr --backend cpu".split(' '));
     succeeds(command.args(["--mask", "cryptomatte:hero"]).args(IN_PIXELS));
     for (mixed, masked) in rgb(&at("graph.exr")).iter().zip(&masked) {
         for c in 0..3 {

@@ -274,15 +274,9 @@ fn an_interrupted_picture_is_given_up_within_a_second() {
     let before = fs::read(at("out.png")).expect("a picture");
     for (signal, wait) in [("-INT", 0.5), ("-TERM", 2.0)] {
         let mut command = isophote();
-        command.current_dir(folder.path()).args([
-            "apply",
-            "oil_paint",
-            "in.png",
-            "out.png",
-            "--force",
-            "--backend",
-            "cpu",
-        ]);
+        command
+            .current_dir(folder.path())
+            .args("apply oil_paint in.png out.png --force --backend cpu".split(' '));
         let child = command.stdout(Stdio::piped()).stderr(Stdio::piped()).spawn().expect("a process");
         // It has started when it has looked whether it may write.
         let patience = Instant::now();

@@ -320,10 +320,7 @@ fn no_verb_replaces_what_it_reads() {
 
 #[test]
 fn videos_follow_the_same_rule() {
-    if !support::has_ffmpeg() {
-        return;
-    }
-    let folder = folder();
+    let Some(folder) = support::video_folder() else { return };
     let at = folder.path();
     let mut ffmpeg = Command::new("ffmpeg");
     let source =

@@ -6,7 +6,7 @@ use std::fs;
 use std::path::Path;
 use std::process::{Command, Stdio};
 
-use support::{IN_PIXELS, fails, folder, has_ffmpeg, isophote, listing, succeeds};
+use support::{IN_PIXELS, fails, isophote, listing, succeeds, video_folder};
 
 fn ffmpeg(folder: &Path, args: &str) {
     let mut command = Command::new("ffmpeg");
@@ -59,10 +59,7 @@ fn difference(folder: &Path, a: &str, b: &str) -> f64 {
 
 #[test]
 fn sound_rate_range_and_matrix_are_kept() {
-    if !has_ffmpeg() {
-        return;
-    }
-    let folder = folder();
+    let Some(folder) = video_folder() else { return };
     let at = folder.path();
     for (name, colours) in [
         (
@@ -100,10 +97,7 @@ fn sound_rate_range_and_matrix_are_kept() {
 
 #[test]
 fn styles_are_steady_by_the_motion_of_the_pictures() {
-    if !has_ffmpeg() {
-        return;
-    }
-    let folder = folder();
+    let Some(folder) = video_folder() else { return };
     let at = folder.path();
     clip(at, "video.mp4", "-pix_fmt yuv420p");
     let steady = ["--steadiness", "0.5", "--motion", "estimate"];
@@ -115,10 +109,7 @@ fn styles_are_steady_by_the_motion_of_the_pictures() {
 
 #[test]
 fn streams_go_through_pipes() {
-    if !has_ffmpeg() {
-        return;
-    }
-    let folder = folder();
+    let Some(folder) = video_folder() else { return };
     let at = folder.path();
     clip(at, "video.mp4", "-pix_fmt yuv420p");
     ffmpeg(at, "-i video.mp4 -f yuv4mpegpipe video.y4m");
@@ -141,10 +132,7 @@ fn streams_go_through_pipes() {
 
 #[test]
 fn bad_videos_are_refused_and_nothing_is_left() {
-    if !has_ffmpeg() {
-        return;
-    }
-    let folder = folder();
+    let Some(folder) = video_folder() else { return };
     let at = folder.path();
     clip(at, "video.mp4", "-pix_fmt yuv420p");
     let bytes = fs::read(at.join("video.mp4")).expect("a video");
@@ -171,10 +159,7 @@ fn bad_videos_are_refused_and_nothing_is_left() {
 
 #[test]
 fn scenes_become_videos() {
-    if !has_ffmpeg() {
-        return;
-    }
-    let folder = folder();
+    let Some(folder) = video_folder() else { return };
     let at = folder.path();
     support::cube(at);
     let render = |args: &[&str]| {

@@ -9,7 +9,7 @@ use std::process::{Command, Stdio};
 
 use isophote_window::document::{Document, Options};
 
-use support::{IN_PIXELS, cube, errors, fails, folder, has_ffmpeg, isophote, listing, succeeds};
+use support::{IN_PIXELS, cube, errors, fails, isophote, listing, succeeds, video_folder};
 
 const FRAMES: u64 = 50;
 
@@ -49,10 +49,7 @@ fn cut(folder: &Path, from: &str, to: &str, share: f64) {
 
 #[test]
 fn headers_of_streams_run_no_filter() {
-    if !has_ffmpeg() {
-        return;
-    }
-    let folder = folder();
+    let Some(folder) = video_folder() else { return };
     let at = folder.path();
     // Filters that write files of their own; the names have no colon, which separates options.
     for place in [
@@ -81,10 +78,7 @@ fn headers_of_streams_run_no_filter() {
 
 #[test]
 fn playlists_are_no_videos() {
-    if !has_ffmpeg() {
-        return;
-    }
-    let folder = folder();
+    let Some(folder) = video_folder() else { return };
     let at = folder.path();
     clip(at, "in.ts", "-c:v libx264 -pix_fmt yuv420p");
     let hls = "#EXTM3U\n#EXT-X-VERSION:3\n#EXT-X-TARGETDURATION:2\n#EXTINF:2.0,\nin.ts\n#EXT-X-ENDLIST\n";
@@ -101,10 +95,7 @@ fn playlists_are_no_videos() {
 
 #[test]
 fn videos_that_are_cut_short_are_not_written_in_silence() {
-    if !has_ffmpeg() {
-        return;
-    }
-    let folder = folder();
+    let Some(folder) = video_folder() else { return };
     let at = folder.path();
     for (name, codec) in [
         ("a.mp4", H264),
@@ -137,10 +128,7 @@ fn videos_that_are_cut_short_are_not_written_in_silence() {
 
 #[test]
 fn streams_that_are_cut_short_are_not_written_in_silence() {
-    if !has_ffmpeg() {
-        return;
-    }
-    let folder = folder();
+    let Some(folder) = video_folder() else { return };
     let at = folder.path();
     clip(at, "a.y4m", "-pix_fmt yuv420p");
     cut(at, "a.y4m", "cut.y4m", 0.405);
@@ -177,10 +165,7 @@ fn streams_that_are_cut_short_are_not_written_in_silence() {
 
 #[test]
 fn damaged_videos_are_not_written_in_silence() {
-    if !has_ffmpeg() {
-        return;
-    }
-    let folder = folder();
+    let Some(folder) = video_folder() else { return };
     let at = folder.path();
     for (name, codec) in [
         ("a.mp4", H264),
@@ -219,10 +204,7 @@ fn damaged_videos_are_not_written_in_silence() {
 
 #[test]
 fn whole_videos_pass_whatever_their_containers_count() {
-    if !has_ffmpeg() {
-        return;
-    }
-    let folder = folder();
+    let Some(folder) = video_folder() else { return };
     let at = folder.path();
     let x264 = "-c:v libx264 -g 30 -bf 3 -pix_fmt yuv420p";
     let uneven = format!("-vf select=gt(mod(n\\,4)\\,0) -fps_mode vfr {x264}");
@@ -263,10 +245,7 @@ fn whole_videos_pass_whatever_their_containers_count() {
 
 #[test]
 fn a_video_without_all_frames_is_not_called_written() {
-    if !has_ffmpeg() {
-        return;
-    }
-    let folder = folder();
+    let Some(folder) = video_folder() else { return };
     let at = folder.path();
     clip(at, "a.mp4", H264);
     let before = listing(at);
@@ -290,10 +269,7 @@ fn a_video_without_all_frames_is_not_called_written() {
 #[cfg(target_os = "linux")]
 #[test]
 fn full_disks_hold_no_video() {
-    if !has_ffmpeg() {
-        return;
-    }
-    let folder = folder();
+    let Some(folder) = video_folder() else { return };
     let at = folder.path();
     clip(at, "a.mp4", H264);
     cube(at);
@@ -340,10 +316,7 @@ fn full_disks_hold_no_video() {
 #[cfg(target_os = "linux")]
 #[test]
 fn standard_output_that_takes_no_more_is_no_success() {
-    if !has_ffmpeg() {
-        return;
-    }
-    let folder = folder();
+    let Some(folder) = video_folder() else { return };
     let at = folder.path();
     clip(at, "a.mp4", H264);
     // One frame stays within what ffmpeg holds back to the end.

@@ -106,6 +106,11 @@ pub fn folder() -> TempDir {
     tempfile::tempdir().expect("a folder for the test")
 }
 
+/// Folder for a test of videos; none where there is no ffmpeg.
+pub fn video_folder() -> Option<TempDir> {
+    has_ffmpeg().then(folder)
+}
+
 /// Names of everything in a folder, sorted.
 pub fn listing(folder: &Path) -> Vec<String> {
     let entries = fs::read_dir(folder).expect("the folder is there");

@@ -74,11 +74,11 @@ pub fn run(library: &Library, options: &Options<'_>) -> Result<()> {
     };
     card.compare(library, options)?;
     for precision in MEASURED {
-        let mut bench = Bench::new(gpu.clone(), precision);
-        card.compile(library, (&mut bench, precision), options)?;
+        let mut setup = Setup { library, bench: Bench::new(gpu.clone(), precision), precision, options };
+        card.compile(&mut setup)?;
         for size in options.sizes {
-            card.measure(library, (&mut bench, precision), options, *size)?;
-            card.loop_for(library, (&mut bench, precision), options, *size)?;
+            card.measure(&mut setup, *size)?;
+            card.loop_for(&mut setup, *size)?;
             card.sequence(library, precision, options, *size)?;
         }
     }
@@ -93,6 +93,14 @@ pub fn run(library: &Library, options: &Options<'_>) -> Result<()> {
             "send the report to the authors; --backend cpu or --precision exact may do meanwhile",
         )),
     }
+}
+
+/// All that measurements in one precision share.
+struct Setup<'a> {
+    library: &'a Library,
+    bench: Bench,
+    precision: Precision,
+    options: &'a Options<'a>,
 }
 
 impl Card {
@@ -116,12 +124,8 @@ impl Card {
         Ok(())
     }
 
-    fn compile(
-        &mut self,
-        library: &Library,
-        (bench, precision): (&mut Bench, Precision),
-        options: &Options<'_>,
-    ) -> Result<()> {
+    fn compile(&mut self, setup: &mut Setup<'_>) -> Result<()> {
+        let Setup { library, bench, precision, options } = setup;
         for subject in options.subjects {
             let what = format!("compiling {}, {}", subject.label, precision.name());
             let seconds = self.step(&what, || bench.compile(library, subject))?;
@@ -131,31 +135,21 @@ impl Card {
         Ok(())
     }
 
-    fn measure(
-        &mut self,
-        library: &Library,
-        (bench, precision): (&mut Bench, Precision),
-        options: &Options<'_>,
-        size: (u32, u32),
-    ) -> Result<()> {
+    fn measure(&mut self, setup: &mut Setup<'_>, size: (u32, u32)) -> Result<()> {
+        let Setup { library, bench, precision, options } = setup;
         let picture = picture(size);
         for subject in options.subjects {
-            let what = described(&subject.label, precision, size);
+            let what = described(&subject.label, *precision, size);
             let entry = self.step(&what, || bench.run(library, subject, &picture, options.runs))?;
-            self.entries.extend(entry.map(|entry| (precision, entry)));
+            self.entries.extend(entry.map(|entry| (*precision, entry)));
         }
         Ok(())
     }
 
-    fn loop_for(
-        &mut self,
-        library: &Library,
-        (bench, precision): (&mut Bench, Precision),
-        options: &Options<'_>,
-        size: (u32, u32),
-    ) -> Result<()> {
+    fn loop_for(&mut self, setup: &mut Setup<'_>, size: (u32, u32)) -> Result<()> {
+        let Setup { library, bench, precision, options } = setup;
         let subject = Subject { label: STYLE.to_owned(), node: STYLE.to_owned(), settings: Vec::new() };
-        let what = format!("a loop of {}", described(STYLE, precision, size));
+        let what = format!("a loop of {}", described(STYLE, *precision, size));
         let times = self.step(&what, || bench.frames(library, &subject, &picture(size), options.seconds))?;
         self.loops.extend(times.map(|mut times| {
             times.sort_by(f64::total_cmp);
