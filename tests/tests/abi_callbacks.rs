@@ -66,8 +66,7 @@ fn control(watch: &Watch) -> IsophoteControl {
 fn a_run_reports_progress_and_stops_when_asked() {
     let library = Loaded::new();
     let mut run = Run::new(&library, "gaussian");
-    let data = picture();
-    let expected = run.result(&color(floats(&data)));
+    let (data, expected) = run.pictures();
     let patient = Watch { stop_after: u32::MAX, ..Watch::default() };
     run.control = Some(control(&patient));
     assert_eq!(run.result(&color(floats(&data))), expected);
@@ -95,8 +94,7 @@ fn a_run_reports_progress_and_stops_when_asked() {
 fn the_number_and_the_owner_of_threads_change_nothing() {
     let library = Loaded::new();
     let mut run = Run::new(&library, "gaussian");
-    let data = picture();
-    let expected = run.result(&color(floats(&data)));
+    let (data, expected) = run.pictures();
     let watch = Watch { stop_after: u32::MAX, ..Watch::default() };
     for threads in [0, 1, 2, 3, 7] {
         run.control = Some(IsophoteControl { threads, ..control(&watch) });
@@ -153,8 +151,7 @@ unsafe extern "C" fn destroy(user: *mut c_void, _: f32) {
 fn a_graph_may_be_destroyed_while_it_runs() {
     let library = Loaded::new();
     let mut run = Run::new(&library, "gaussian");
-    let data = picture();
-    let expected = run.result(&color(floats(&data)));
+    let (data, expected) = run.pictures();
     let mut pair = (run.api, run.graph);
     let user = (&raw mut pair).cast();
     run.control = Some(IsophoteControl {
@@ -204,8 +201,7 @@ fn the_library_can_be_unloaded_and_loaded_again() {
 fn a_device_of_the_librarys_own_gives_the_same_picture() {
     let library = Loaded::new();
     let mut run = Run::new(&library, "gaussian");
-    let data = picture();
-    let expected = run.result(&color(floats(&data)));
+    let (data, expected) = run.pictures();
     let mut status = 0;
     // SAFETY: the texts end with zeros, the places are writable.
     unsafe {

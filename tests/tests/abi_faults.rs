@@ -371,19 +371,7 @@ fn broken_graph_files_are_refused_with_a_reason() {
 }
 
 fn request(api: &IsophoteApi, width: u32, height: u32) -> IsophoteRequest {
-    let mut request = IsophoteRequest {
-        width: 0,
-        height: 0,
-        scale: 0.0,
-        space: 9,
-        alpha: 9,
-        guides: 9,
-        origin_x: 0.0,
-        origin_y: 0.0,
-        frame: 0,
-        reference_height: 0,
-        canonical_height: 0,
-    };
+    let mut request = IsophoteRequest { space: 9, alpha: 9, guides: 9, ..Default::default() };
     // SAFETY: the place is writable.
     assert_eq!(unsafe { (api.request_init)(width, height, &raw mut request) }, ISOPHOTE_OK);
     request

@@ -14,8 +14,7 @@ use std::ptr::{null, null_mut};
 fn every_format_goes_in_and_out() {
     let library = Loaded::new();
     let run = Run::new(&library, "gaussian");
-    let data = picture();
-    let expected = run.result(&color(floats(&data)));
+    let (data, expected) = run.pictures();
     for (sample, size, step) in [
         (ISOPHOTE_SAMPLE_U8, 1, 1.0 / 255.0),
         (ISOPHOTE_SAMPLE_U16, 2, 1.0 / 65535.0),
@@ -76,8 +75,7 @@ fn light_beyond_coverage_is_found_and_kept() {
 fn rows_may_run_upwards_and_buffers_overlap() {
     let library = Loaded::new();
     let run = Run::new(&library, "gaussian");
-    let data = picture();
-    let expected = run.result(&color(floats(&data)));
+    let (data, expected) = run.pictures();
     let row = WIDTH as usize * 4;
 
     let flipped: Vec<f32> = data.chunks_exact(row).rev().flatten().copied().collect();
@@ -111,8 +109,7 @@ fn rows_may_run_upwards_and_buffers_overlap() {
 fn a_region_is_the_same_part_of_the_whole_and_leaves_the_rest() {
     let library = Loaded::new();
     let mut run = Run::new(&library, "gaussian");
-    let data = picture();
-    let expected = run.result(&color(floats(&data)));
+    let (data, expected) = run.pictures();
     let region = IsophoteRect { x0: 13, y0: 9, x1: 22, y1: 16 };
     run.region = Some(region);
     let mut support = IsophoteSupport::default();

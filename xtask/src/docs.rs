@@ -5,25 +5,16 @@ use crate::packing;
 use crate::python;
 use crate::scene;
 use crate::setup::{self, BLENDER, C_COMPILER, FFMPEG, PYTHON, VULKAN};
-use crate::tools::{build_with_host, heading, host, program, run as run_command, target_dir};
+use crate::tools::{HandedOn, build_with_host, heading, host, program, run as run_command, target_dir};
 
 /// The package that makes the site.
 const PACKAGE: &str = "isophote-docs";
-
-/// Options of `cargo xtask docs`: those of the program that makes the site.
-#[derive(clap::Args)]
-#[command(disable_help_flag = true)]
-pub struct Options {
-    /// --help lists what may be chosen
-    #[arg(trailing_var_arg = true, allow_hyphen_values = true)]
-    arguments: Vec<String>,
-}
 
 /// Builds the host, the library and the program, and makes the site.
 ///
 /// # Errors
 /// The first step that fails.
-pub fn run(options: &Options) -> Result<()> {
+pub fn run(options: &HandedOn) -> Result<()> {
     setup::ensure(&[&C_COMPILER, &FFMPEG, &VULKAN, &PYTHON, &BLENDER])?;
     heading("build");
     build_with_host("debug", &[scene::PACKAGE, PACKAGE, packing::PACKAGE])?;

@@ -3,25 +3,16 @@
 use crate::error::Result;
 use crate::scene;
 use crate::setup::{self, VULKAN};
-use crate::tools::{build_with_host, heading, host, program, run as run_command, target_dir};
+use crate::tools::{HandedOn, build_with_host, heading, host, program, run as run_command, target_dir};
 
 /// The package that makes the page.
 const PACKAGE: &str = "isophote-gallery";
-
-/// Options of `cargo xtask gallery`: those of the program that makes the page.
-#[derive(clap::Args)]
-#[command(disable_help_flag = true)]
-pub struct Options {
-    /// --help lists what may be chosen
-    #[arg(trailing_var_arg = true, allow_hyphen_values = true)]
-    arguments: Vec<String>,
-}
 
 /// Builds the host, the library and the program, and makes the page.
 ///
 /// # Errors
 /// The first step that fails.
-pub fn run(options: &Options) -> Result<()> {
+pub fn run(options: &HandedOn) -> Result<()> {
     setup::ensure(&[&VULKAN])?;
     heading("build");
     build_with_host("debug", &[scene::PACKAGE, PACKAGE])?;

@@ -25,6 +25,7 @@ mod web;
 
 use clap::{Parser, Subcommand};
 use std::process::ExitCode;
+use tools::HandedOn;
 
 /// The project's chores.
 #[derive(Parser)]
@@ -45,9 +46,9 @@ enum Chore {
     /// Runs the thesis' experiments and writes their tables
     Experiments(experiments::Options),
     /// Every node on pictures, as a page to look at
-    Gallery(gallery::Options),
+    Gallery(HandedOn),
     /// Makes the documentation as a site, and runs every command on it
-    Docs(docs::Options),
+    Docs(HandedOn),
     /// Every look that ships with the host, as one sheet
     Looks(looks::Options),
     /// The pictures that come with the host, to try looks on

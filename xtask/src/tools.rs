@@ -12,6 +12,15 @@ pub fn root() -> PathBuf {
     here.parent().unwrap_or(here).to_owned()
 }
 
+/// Options of a chore that are those of the program which does the work.
+#[derive(clap::Args)]
+#[command(disable_help_flag = true)]
+pub struct HandedOn {
+    /// --help lists what may be chosen
+    #[arg(trailing_var_arg = true, allow_hyphen_values = true)]
+    pub arguments: Vec<String>,
+}
+
 /// Says what comes next, and how long the chore has run since its first heading.
 pub fn heading(what: &str) {
     static STARTED: OnceLock<Instant> = OnceLock::new();

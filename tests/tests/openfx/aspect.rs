@@ -113,15 +113,7 @@ pub fn guides_have_oblong_pixels_too(binary: &Binary, effect: Expected) {
         .flat_map(|(x, y)| if inside(x, y) { [0.6, 0.0, 0.8, 1.0] } else { [0.0, 0.0, 1.0, 1.0] })
         .collect();
     let depths: Vec<f32> = places().map(|(x, y)| if inside(x, y) { 2.0 } else { 1e20 }).collect();
-    let instance = Described::new(&host, effect.plugin(binary)).instance(kOfxImageEffectContextGeneral);
-    let names = instance.effect.clip_names();
-    if !names.contains(&"Normal".to_owned()) || !names.contains(&"Depth".to_owned()) {
-        return;
-    }
-    plain(&instance);
-    if instance.has("guide_weight") {
-        instance.set("guide_weight", 1.0);
-    }
+    let Some(instance) = guided(&host, binary, effect) else { return };
     let connect = |layout: Layout, depth_layout: Layout, size, [color, normal, depth]: [&[f32]; 3]| {
         instance.connect("Source", picture(layout, size, color));
         instance.connect("Normal", picture(layout, size, normal));

@@ -3,10 +3,12 @@
 use isophote::graph::GraphInput;
 use isophote::spec::{ImageKind, NodeSpec};
 use isophote::{ColourSpace, Graph};
+use isophote_abi::openfx::kOfxImageEffectContextGeneral;
 use isophote_abi::*;
 use isophote_engine::pixels::Sample;
 use isophote_tests::library::{Loaded, text};
-use isophote_tests::ofx::effect::Instance;
+use isophote_tests::ofx::effect::{Described, Instance};
+use isophote_tests::ofx::host::Host;
 use isophote_tests::ofx::picture::{Layout, Picture};
 use isophote_tests::ofx::plugin::{Binary, Plugin};
 use std::ffi::CString;
@@ -159,12 +161,7 @@ impl Through<'_> {
             scale: self.scale,
             space: self.space as u32,
             alpha: if self.premultiplied { ISOPHOTE_ALPHA_PREMULTIPLIED } else { ISOPHOTE_ALPHA_STRAIGHT },
-            guides: 0,
-            origin_x: 0.0,
-            origin_y: 0.0,
-            frame: 0,
-            reference_height: 0,
-            canonical_height: 0,
+            ..Default::default()
         };
         // SAFETY: text with a closing zero, images of the sizes they name, and places for the answers.
         unsafe {
@@ -217,4 +214,18 @@ pub fn source(layout: Layout, opaque: bool) -> Picture {
 pub fn plain(instance: &Instance<'_>) {
     instance.set("working_space", 1);
     instance.set("process_alpha", 1);
+}
+
+/// An instance in the general context for which guides count, plain; none of effects that take none.
+pub fn guided<'h>(host: &'h Host, binary: &Binary, effect: Expected) -> Option<Instance<'h>> {
+    let instance = Described::new(host, effect.plugin(binary)).instance(kOfxImageEffectContextGeneral);
+    let names = instance.effect.clip_names();
+    if !names.contains(&"Normal".to_owned()) || !names.contains(&"Depth".to_owned()) {
+        return None;
+    }
+    plain(&instance);
+    if instance.has("guide_weight") {
+        instance.set("guide_weight", 1.0);
+    }
+    Some(instance)
 }

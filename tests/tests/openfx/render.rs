@@ -181,15 +181,7 @@ pub fn guides_enter_in_the_general_context(binary: &Binary, effect: Expected) {
     let host = Host::new(Behaviour::default());
     let layout = Layout::default();
     let depth_layout = Layout { components: kOfxImageComponentAlpha, ..layout };
-    let instance = Described::new(&host, effect.plugin(binary)).instance(kOfxImageEffectContextGeneral);
-    let names = instance.effect.clip_names();
-    if !names.contains(&"Normal".to_owned()) || !names.contains(&"Depth".to_owned()) {
-        return;
-    }
-    plain(&instance);
-    if instance.has("guide_weight") {
-        instance.set("guide_weight", 1.0);
-    }
+    let Some(instance) = guided(&host, binary, effect) else { return };
     let step = |x: i32| if x < WIDTH / 2 { [0.0, 0.0, 1.0, 1.0] } else { [0.8, 0.0, 0.6, 1.0] };
     let normals: Vec<f32> = (0..WIDTH * HEIGHT).flat_map(|i| step(i % WIDTH)).collect();
     let depths: Vec<f32> =

@@ -48,19 +48,7 @@ impl<'a> Run<'a> {
     pub fn new(library: &'a Loaded, node: &str) -> Self {
         let api = library.api;
         let mut graph = IsophoteGraph::default();
-        let mut request = IsophoteRequest {
-            width: 0,
-            height: 0,
-            scale: 0.0,
-            space: 0,
-            alpha: 0,
-            guides: 0,
-            origin_x: 0.0,
-            origin_y: 0.0,
-            frame: 0,
-            reference_height: 0,
-            canonical_height: 0,
-        };
+        let mut request = IsophoteRequest::default();
         let id = CString::new(node).unwrap();
         // SAFETY: the text ends with a zero, the places are writable.
         unsafe {
@@ -94,6 +82,13 @@ impl<'a> Run<'a> {
         // SAFETY: the text is writable.
         let said = text(|t| unsafe { assert_eq!((self.api.graph_error)(self.graph, t), ISOPHOTE_OK) });
         (status, said, report)
+    }
+
+    /// The picture, and the result for it.
+    pub fn pictures(&self) -> (Vec<f32>, Vec<f32>) {
+        let data = picture();
+        let result = self.result(&color(floats(&data)));
+        (data, result)
     }
 
     /// The result as RGBA floats.

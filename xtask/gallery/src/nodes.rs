@@ -81,10 +81,11 @@ pub fn shots(node: &Value) -> Vec<Shot> {
 }
 
 #[cfg(test)]
-mod tests {
+pub mod tests {
     use super::*;
 
-    fn node() -> Value {
+    /// A node with a choice and a number.
+    pub fn node() -> Value {
         json!({
             "id": "n", "output": { "kind": "color" },
             "inputs": [{ "id": "color", "kind": "color", "optional": false }],

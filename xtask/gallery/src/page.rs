@@ -49,18 +49,7 @@ pub fn escaped(text: &str) -> String {
 mod tests {
     use super::*;
     use crate::nodes::shots;
-    use serde_json::json;
-
-    fn node() -> Value {
-        json!({
-            "id": "n", "output": { "kind": "color" },
-            "inputs": [{ "id": "color", "kind": "color", "optional": false }],
-            "params": [
-                { "id": "kind", "default": "a", "options": [{ "id": "a" }, { "id": "b" }] },
-                { "id": "sigma", "default": 0.1_f32 },
-            ],
-        })
-    }
+    use crate::nodes::tests::node;
 
     #[test]
     fn each_other_option_is_shown_and_marked() {
