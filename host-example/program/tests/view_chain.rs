@@ -6,13 +6,14 @@ use egui_kittest::Harness;
 use egui_kittest::kittest::Queryable;
 use isophote_loader::Library;
 use isophote_scene::Scene;
-use isophote_window::chain::{self, Chain, Watched};
-use isophote_window::look::EditedLook;
-use isophote_window::scenery::{Scenery, Staging};
-use isophote_window::session::Session;
-use isophote_window::settings::Settings;
-use isophote_window::value::Value;
-use isophote_window::{command, ui};
+use isophote_window::state::chain::{self, Chain, Watched};
+use isophote_window::state::command;
+use isophote_window::state::look::EditedLook;
+use isophote_window::state::scenery::{Scenery, Staging};
+use isophote_window::state::session::Session;
+use isophote_window::state::settings::Settings;
+use isophote_window::state::value::Value;
+use isophote_window::widgets;
 
 fn library() -> Library {
     Library::from_file(support::library()).unwrap()
@@ -169,8 +170,8 @@ fn the_panel_adds_and_removes_nodes() {
     session.show_scene(Scenery::new(scene, Staging::default(), 1.5), None, "cube".into());
     let mut harness = Harness::builder()
         .with_size(egui::vec2(1200.0, 1600.0))
-        .build_ui_state(|ui, session: &mut Session| ui::show(ui, session), session);
-    ui::theme::apply(&harness.ctx);
+        .build_ui_state(|ui, session: &mut Session| widgets::show(ui, session), session);
+    widgets::theme::apply(&harness.ctx);
     harness.run_ok();
     for label in ["Nodes", "Add a node", "Smoothing", "Bilateral"] {
         harness.get_by_label(label).click();

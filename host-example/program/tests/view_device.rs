@@ -13,13 +13,12 @@ use isophote_loader::Library;
 use isophote_render::gpu::Gpu;
 use isophote_scene::Scene;
 use isophote_window::app::{App, Event};
-use isophote_window::document::{Document, Options};
-use isophote_window::look::EditedLook;
-use isophote_window::playback::Playback;
-use isophote_window::scenery::{Scenery, Staging};
-use isophote_window::session::Session;
-use isophote_window::settings::Settings;
-use isophote_window::value::Value;
+use isophote_window::jobs::document::{Document, Options};
+use isophote_window::state::look::EditedLook;
+use isophote_window::state::scenery::{Scenery, Staging};
+use isophote_window::state::session::Session;
+use isophote_window::state::settings::Settings;
+use isophote_window::state::value::Value;
 use winit::application::ApplicationHandler;
 use winit::event::{StartCause, WindowEvent};
 use winit::event_loop::{ActiveEventLoop, ControlFlow, EventLoop};
@@ -120,7 +119,7 @@ fn session(folder: &Path, styles: &[&str], size: (u32, u32)) -> Session {
     let file = folder.join("photo.png");
     support::picture(size.0, size.1).save(&file).unwrap();
     let document = Document::open(&file, &Options::default()).unwrap();
-    session.show_playback(Playback::new(document).unwrap());
+    session.show_playback(document.playback().unwrap());
     session
 }
 

@@ -13,14 +13,13 @@ use egui::accesskit::Role;
 use egui_kittest::Harness;
 use egui_kittest::kittest::Queryable;
 use isophote_loader::Library;
-use isophote_window::document::{Document, Options};
-use isophote_window::leaving::Leaving;
-use isophote_window::look::EditedLook;
-use isophote_window::playback::Playback;
-use isophote_window::session::Session;
-use isophote_window::settings::Settings;
-use isophote_window::ui;
-use isophote_window::value::Value;
+use isophote_window::jobs::document::{Document, Options};
+use isophote_window::state::leaving::Leaving;
+use isophote_window::state::look::EditedLook;
+use isophote_window::state::session::Session;
+use isophote_window::state::settings::Settings;
+use isophote_window::state::value::Value;
+use isophote_window::widgets;
 use winit::keyboard::{Key, NamedKey};
 
 use support::others;
@@ -48,7 +47,7 @@ fn session(styles: &[&Path], file: &Path) -> Session {
     let library = Library::from_file(support::library()).unwrap();
     let looks = styles.iter().map(|style| EditedLook::open(&library, style).unwrap()).collect();
     let mut session = Session::new(library, looks, Settings::default()).unwrap();
-    session.show_playback(Playback::new(Document::open(file, &Options::default()).unwrap()).unwrap());
+    session.show_playback(Document::open(file, &Options::default()).unwrap().playback().unwrap());
     session
 }
 
@@ -247,8 +246,8 @@ fn change(session: &mut Session) {
 fn shown(session: Session) -> Harness<'static, Session> {
     let mut harness = Harness::builder()
         .with_size(egui::vec2(1000.0, 640.0))
-        .build_ui_state(|ui, session: &mut Session| ui::show(ui, session), session);
-    ui::theme::apply(&harness.ctx);
+        .build_ui_state(|ui, session: &mut Session| widgets::show(ui, session), session);
+    widgets::theme::apply(&harness.ctx);
     harness.run_ok();
     harness
 }
@@ -282,7 +281,7 @@ fn every_look_that_would_be_lost_is_named_and_can_be_saved_in_turn() {
     harness.run_ok();
     click(&mut harness, "Save the look…");
     assert_eq!((harness.state().leaving, harness.state().look().name.as_str()), (Leaving::Saves, "Cartoon"));
-    ui::keys::press(harness.state_mut(), &Key::Named(NamedKey::Escape));
+    widgets::keys::press(harness.state_mut(), &Key::Named(NamedKey::Escape));
     harness.run_ok();
     assert_eq!((harness.state().leaving, harness.state().unsaved()), (Leaving::Stays, vec![1]));
     harness.state_mut().leave();

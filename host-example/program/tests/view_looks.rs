@@ -11,16 +11,16 @@ use egui_kittest::Harness;
 use egui_kittest::kittest::{NodeT, Queryable};
 use isophote_finishing::stylize::preset::{self as file, Preset};
 use isophote_loader::Library;
-use isophote_window::browser::entry::{Content, Group};
-use isophote_window::browser::listing::{self, Listing, ListingRequest};
-use isophote_window::document::{Document, Options};
-use isophote_window::leaving::Leaving;
-use isophote_window::look::EditedLook;
-use isophote_window::playback::Playback;
-use isophote_window::session::{Request, Session};
-use isophote_window::settings::Settings;
-use isophote_window::ui;
-use isophote_window::value::Value;
+use isophote_window::jobs::document::{Document, Options};
+use isophote_window::jobs::listing::{self, ListingRequest};
+use isophote_window::state::browser::entry::{Content, Group};
+use isophote_window::state::browser::listing::Listing;
+use isophote_window::state::leaving::Leaving;
+use isophote_window::state::look::EditedLook;
+use isophote_window::state::session::{Request, Session};
+use isophote_window::state::settings::Settings;
+use isophote_window::state::value::Value;
+use isophote_window::widgets;
 use tempfile::TempDir;
 use winit::keyboard::{Key, NamedKey};
 
@@ -58,7 +58,7 @@ fn session(folder: &Path) -> Session {
     let picture = folder.join("picture.png");
     support::picture(90, 60).save(&picture).expect("the folder is writable");
     let document = Document::open(&picture, &Options::default()).expect("a picture");
-    session.show_playback(Playback::new(document).expect("a picture"));
+    session.show_playback(document.playback().expect("a picture"));
     session.settings.add_look_folder(folder);
     session.toggle_browser();
     session.list(read(folder));
@@ -69,8 +69,8 @@ fn session(folder: &Path) -> Session {
 fn harness(session: Session) -> Harness<'static, Session> {
     let mut harness = Harness::builder()
         .with_size(egui::vec2(1400.0, 4000.0))
-        .build_ui_state(|ui, session: &mut Session| ui::show(ui, session), session);
-    ui::theme::apply(&harness.ctx);
+        .build_ui_state(|ui, session: &mut Session| widgets::show(ui, session), session);
+    widgets::theme::apply(&harness.ctx);
     harness.run_ok();
     harness
 }
@@ -212,7 +212,7 @@ fn keys_go_from_card_to_card() {
     let mut session = session(folder.path());
     session.browser.columns = 4;
     session.browser.selected = None;
-    let press = |session: &mut Session, key: NamedKey| ui::keys::press(session, &Key::Named(key));
+    let press = |session: &mut Session, key: NamedKey| widgets::keys::press(session, &Key::Named(key));
     let selected = |session: &Session| {
         session.browser.selected.and_then(|id| session.browser.entry(id)).map(|entry| entry.name.clone())
     };
@@ -234,7 +234,7 @@ fn keys_go_from_card_to_card() {
     press(&mut session, NamedKey::Enter);
     assert!(!session.browser.is_open);
     assert_eq!(session.look().name, all[4]);
-    ui::keys::press(&mut session, &Key::Character("l".into()));
+    widgets::keys::press(&mut session, &Key::Character("l".into()));
     assert!(session.browser.is_open && session.browser.is_outdated, "the looks are read again");
     assert_eq!(selected(&session).as_deref(), Some(all[4].as_str()));
     press(&mut session, NamedKey::Escape);
@@ -305,7 +305,7 @@ fn a_file_is_deleted_only_when_that_was_asked_and_undo_brings_it_back() {
     // It is kept until the window is closed, whatever is opened meanwhile.
     let session = harness.state_mut();
     let picture = Document::open(&folder.path().join("picture.png"), &Options::default()).expect("a picture");
-    session.show_playback(Playback::new(picture).expect("a picture"));
+    session.show_playback(picture.playback().expect("a picture"));
     session.undo();
     assert_eq!(fs::read(&file).expect("it is back"), bytes);
     session.redo();
@@ -426,11 +426,11 @@ fn up_to_six_looks_are_compared_and_one_is_taken() {
     // Another picture is seen by the same looks.
     let other = folder.path().join("picture.png");
     let document = Document::open(&other, &Options::default()).expect("a picture");
-    harness.state_mut().show_playback(Playback::new(document).expect("a picture"));
+    harness.state_mut().show_playback(document.playback().expect("a picture"));
     harness.run_ok();
     assert!(harness.query_by_role_and_label(Role::Button, "Take Linocut").is_some());
     // Escape goes back to where it came from.
-    ui::keys::press(harness.state_mut(), &Key::Named(NamedKey::Escape));
+    widgets::keys::press(harness.state_mut(), &Key::Named(NamedKey::Escape));
     assert!(harness.state().browser.is_open && harness.state().comparison.is_none());
     harness.state_mut().compare_marked();
     harness.run_ok();

@@ -11,14 +11,13 @@ use isophote_files::files::Existing;
 use isophote_loader::Library;
 use isophote_pictures::floats::{self, Layer, Picture, Precision};
 use isophote_scene::Scene;
-use isophote_window::document::{Document, Options};
-use isophote_window::look::EditedLook;
-use isophote_window::playback::Playback;
-use isophote_window::scenery::{Scenery, Staging};
-use isophote_window::session::{Request, Session};
-use isophote_window::settings::Settings;
-use isophote_window::ui;
-use isophote_window::value::Value;
+use isophote_window::jobs::document::{Document, Options};
+use isophote_window::state::look::EditedLook;
+use isophote_window::state::scenery::{Scenery, Staging};
+use isophote_window::state::session::{Request, Session};
+use isophote_window::state::settings::Settings;
+use isophote_window::state::value::Value;
+use isophote_window::widgets;
 
 /// A session of all styles with a scene.
 fn session() -> Session {
@@ -38,8 +37,8 @@ fn session() -> Session {
 fn harness(session: Session) -> Harness<'static, Session> {
     let mut harness = Harness::builder()
         .with_size(egui::vec2(1200.0, 2400.0))
-        .build_ui_state(|ui, session: &mut Session| ui::show(ui, session), session);
-    ui::theme::apply(&harness.ctx);
+        .build_ui_state(|ui, session: &mut Session| widgets::show(ui, session), session);
+    widgets::theme::apply(&harness.ctx);
     harness.run_ok();
     harness
 }
@@ -185,7 +184,7 @@ fn layers_are_chosen_from_a_list() {
     write_layers(&file);
     let mut session = session();
     let document = Document::open(&file, &Options::default()).unwrap();
-    session.show_playback(Playback::new(document).unwrap());
+    session.show_playback(document.playback().unwrap());
     let mut harness = harness(session);
     harness.get_by_role_and_label(egui::accesskit::Role::ComboBox, "Layer").click();
     harness.run_ok();

@@ -1,7 +1,9 @@
 //! The window: its events, and when a frame is drawn.
 
+mod clicks;
 mod keys;
 mod opening;
+mod pace;
 
 use std::sync::Arc;
 use std::time::{Duration, Instant};
@@ -13,17 +15,17 @@ use winit::event_loop::{ActiveEventLoop, ControlFlow, EventLoopProxy};
 use winit::keyboard::ModifiersState;
 use winit::window::{Window, WindowId};
 
-use super::background::Background;
-use super::clicks;
-use super::leaving::Leaving;
-use super::pace::Pace;
-use super::panel::Textures;
-use super::playback::Playback;
-use super::record::Hold;
-use super::session::{Request, Session};
-use super::stage::{Drawn, Stage};
-use super::ui;
-use super::worker::Wake;
+use self::pace::Pace;
+use crate::drawing::panel::Textures;
+use crate::drawing::stage::{Drawn, Stage};
+use crate::jobs::background::Background;
+use crate::jobs::document::Document;
+use crate::jobs::worker::Wake;
+use crate::state::leaving::Leaving;
+use crate::state::playback::Playback;
+use crate::state::record::Hold;
+use crate::state::session::{Request, Session};
+use crate::widgets;
 use isophote_example::plan_runner::Counts;
 use isophote_files::error::{Error, Result};
 use isophote_render::gpu::Gpu;
@@ -122,6 +124,11 @@ impl App {
         &mut self.session
     }
 
+    /// Reads frames of the document that the session shows from now on.
+    pub fn read_frames(&mut self, document: Document) {
+        self.background.read_frames(document);
+    }
+
     /// The device, while there is one.
     pub fn gpu(&self) -> Option<&Gpu> {
         self.stage.as_ref().map(Stage::gpu)
@@ -161,7 +168,7 @@ impl App {
         let context = input.egui_ctx().clone();
         let mut raw = input.take_egui_input(window);
         self.late = clicks::one_at_a_time(&mut raw.events, std::mem::take(&mut self.late));
-        let output = context.run_ui(raw, |ui| ui::show(ui, session));
+        let output = context.run_ui(raw, |ui| widgets::show(ui, session));
         input.handle_platform_output(window, output.platform_output);
         let delay =
             output.viewport_output.get(&egui::ViewportId::ROOT).map(|viewport| viewport.repaint_delay);
@@ -175,6 +182,7 @@ impl App {
         let copied = self.background.carry_out(session);
         copied.into_iter().for_each(|text| input.set_clipboard_text(text));
         session.advance();
+        self.background.follow_frames(session);
         let scale = self.pace.scale(session);
         let problems = stage.follow(session, scale)?;
         problems.iter().for_each(|problem| session.notes.complain(problem));

@@ -7,9 +7,9 @@ use winit::event::{ElementState, KeyEvent, WindowEvent};
 use winit::keyboard::{Key, NamedKey};
 
 use super::App;
-use crate::leaving::Leaving;
-use crate::session::Request;
-use crate::ui;
+use crate::state::leaving::Leaving;
+use crate::state::session::Request;
+use crate::widgets;
 
 impl App {
     /// Does what a key stands for.
@@ -29,7 +29,7 @@ impl App {
         }
         self.due = Some(Instant::now());
         if !self.is_command() {
-            return ui::keys::press(&mut self.session, &event.logical_key);
+            return widgets::keys::press(&mut self.session, &event.logical_key);
         }
         let session = &mut self.session;
         match key {
