@@ -7,8 +7,9 @@ use std::path::{Path, PathBuf};
 use std::time::{Duration, Instant};
 
 use isophote_window::jobs::document::{Document, Options};
-use isophote_window::jobs::export::{Export, ExportJob, Progress, State};
+use isophote_window::jobs::export::{Export, ExportJob};
 use isophote_window::state::document::kind::Kind;
+use isophote_window::state::progress::{Progress, State};
 
 use support::{cube, folder, isophote, listing, picture, succeeds};
 

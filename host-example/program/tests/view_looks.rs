@@ -17,6 +17,7 @@ use isophote_window::state::browser::entry::{Content, Group};
 use isophote_window::state::browser::listing::Listing;
 use isophote_window::state::leaving::Leaving;
 use isophote_window::state::look::EditedLook;
+use isophote_window::state::outcome::Dialog;
 use isophote_window::state::session::{Request, Session};
 use isophote_window::state::settings::Settings;
 use isophote_window::state::value::Value;
@@ -446,7 +447,7 @@ fn folders_are_added_and_taken_off_the_list() {
     let folder = presets();
     let mut harness = harness(session(folder.path()));
     click(&mut harness, Role::Button, "Add a folder…");
-    assert_eq!(harness.state().requests, [Request::ChooseFolder]);
+    assert_eq!(harness.state().requests, [Request::Choose(Dialog::LookFolder)]);
     let shown: PathBuf = folder.path().components().collect();
     click(&mut harness, Role::Button, &format!("Remove {} from the list", shown.display()));
     assert!(harness.state().settings.look_folders.is_empty() && harness.state().browser.is_outdated);

@@ -90,7 +90,7 @@ impl App {
     pub fn new(session: Session, size: Option<(u32, u32)>, proxy: EventLoopProxy<Event>) -> Result<Self> {
         let wake = waker(&proxy, || Event::Done);
         Ok(Self {
-            background: Background::new(&wake)?,
+            background: Background::new(&session.library, &wake)?,
             pace: Pace::default(),
             session,
             size,
@@ -164,7 +164,7 @@ impl App {
         let started = Instant::now();
         self.due = None;
         let session = &mut self.session;
-        self.background.collect(session);
+        collect(&mut self.background, session);
         let context = input.egui_ctx().clone();
         let mut raw = input.take_egui_input(window);
         self.late = clicks::one_at_a_time(&mut raw.events, std::mem::take(&mut self.late));
@@ -179,10 +179,11 @@ impl App {
         if !context.egui_is_using_pointer() && !context.text_edit_focused() {
             session.let_go();
         }
-        let copied = self.background.carry_out(session);
-        copied.into_iter().for_each(|text| input.set_clipboard_text(text));
+        hand_over(&mut self.background, session);
         session.advance();
-        self.background.follow_frames(session);
+        if let Some(frames) = self.background.frames(session) {
+            session.take_over(frames);
+        }
         let scale = self.pace.scale(session);
         let problems = stage.follow(session, scale)?;
         problems.iter().for_each(|problem| session.notes.complain(problem));
@@ -253,16 +254,15 @@ impl App {
 
     /// Does the window's work that is not seen: opens what was dropped on it, and has its title say so.
     fn attend(&mut self) {
-        self.background.collect(&mut self.session);
-        // There is nothing to copy from what is not seen.
-        let _ = self.background.carry_out(&mut self.session);
+        collect(&mut self.background, &mut self.session);
+        hand_over(&mut self.background, &mut self.session);
         self.update_title();
     }
 
     /// Follows the export that the window waits for before it closes; says whether it closes now.
     fn is_leaving(&mut self) -> bool {
         if self.session.leaving == Leaving::Waits {
-            self.background.collect(&mut self.session);
+            collect(&mut self.background, &mut self.session);
             if self.session.leaving != Leaving::Waits {
                 self.due = Some(Instant::now());
             }
@@ -397,6 +397,23 @@ impl ApplicationHandler<Event> for App {
         self.stage = None;
         self.input = None;
         self.window = None;
+    }
+}
+
+/// Takes over what was done beside the window since the last call.
+fn collect(background: &mut Background, session: &mut Session) {
+    for outcome in background.collect() {
+        session.take_over(outcome);
+    }
+    session.follow_picture();
+    background.follow(session);
+}
+
+/// Has done beside the window what the controls have asked for.
+fn hand_over(background: &mut Background, session: &mut Session) {
+    let (requests, previews) = (session.take_requests(), session.previews.tasks());
+    for outcome in background.carry_out(session, requests, previews) {
+        session.take_over(outcome);
     }
 }
 

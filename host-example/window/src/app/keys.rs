@@ -8,6 +8,7 @@ use winit::keyboard::{Key, NamedKey};
 
 use super::App;
 use crate::state::leaving::Leaving;
+use crate::state::outcome::Dialog;
 use crate::state::session::Request;
 use crate::widgets;
 
@@ -38,7 +39,7 @@ impl App {
             Key::Character("z") if !self.modifiers.shift_key() => session.undo(),
             Key::Character("z" | "Z" | "y") => session.redo(),
             Key::Character("e") => session.plan_export(),
-            Key::Character("o") => session.requests.push(Request::ChooseFile),
+            Key::Character("o") => session.requests.push(Request::Choose(Dialog::File)),
             Key::Character("s") => session.save_look(self.modifiers.shift_key()),
             Key::Character("S") => session.save_look(true),
             _ => {}

@@ -16,6 +16,7 @@ use std::time::Duration;
 use serde_json::Value;
 
 use crate::state::document::kind::Kind;
+use crate::state::progress::{Progress, State};
 use isophote_files::error::{Error, Result};
 use isophote_files::files::{self, Existing};
 use isophote_files::frames::Pattern;
@@ -115,31 +116,6 @@ impl ExportJob {
         command.args(&self.arguments).args(["--force", "--json", "--"]).arg(&self.input).arg(output);
         Ok(command)
     }
-}
-
-/// Progress of an export.
-#[derive(Clone, Debug, Default, PartialEq)]
-pub struct Progress {
-    /// Frames that are done; a picture by itself counts by its share.
-    pub done: f64,
-    /// All frames, as far as is known; 0 at first.
-    pub total: f64,
-    /// State that it is in.
-    pub state: State,
-}
-
-/// State of an export.
-#[derive(Clone, Debug, Default, PartialEq)]
-pub enum State {
-    /// It goes on.
-    #[default]
-    Running,
-    /// The output is there.
-    Done,
-    /// The reason why there is none, or not all of it.
-    Failed(String),
-    /// It was ended; frames of a sequence that were whole stay.
-    Cancelled,
 }
 
 /// An export at work. Dropped, it is cancelled.

@@ -1,8 +1,12 @@
 //! Search for controls that have no effect at the moment: those whose other values leave every pass as it is.
 
 use std::collections::HashSet;
+use std::sync::Arc;
 
+use super::worker::{Wake, Worker};
 use crate::state::look::EditedLook;
+use crate::state::outcome::{IdleControls, Outcome};
+use crate::state::session::Session;
 use crate::state::value::Value;
 use isophote_files::error::Result;
 use isophote_finishing::stylize::frame_request;
@@ -14,27 +18,49 @@ use isophote_loader::abi::IsophoteRequest;
 const SIDE: u32 = 512;
 
 /// A look about whose controls something is to be known.
-pub struct IdleRequest {
-    /// The library.
-    pub library: Library,
-    /// The look.
-    pub look: EditedLook,
+struct IdleRequest {
+    library: Library,
+    look: EditedLook,
     /// Request of looks on the picture; that of scenes without.
-    pub asked: Option<IsophoteRequest>,
+    asked: Option<IsophoteRequest>,
 }
 
-/// The controls that are known to have none.
-pub struct IdleControls {
-    /// The look.
-    pub look: EditedLook,
-    /// Request that it was found for.
-    pub asked: Option<IsophoteRequest>,
-    /// Names of the parameters without effect.
-    pub idle: HashSet<String>,
+/// The search, on a thread of its own.
+pub struct IdleSearch {
+    worker: Worker<IdleRequest, IdleControls>,
+    /// The last look that was asked about, on what picture.
+    asked: Option<(EditedLook, Option<IsophoteRequest>)>,
+}
+
+impl IdleSearch {
+    /// Starts the thread.
+    ///
+    /// # Errors
+    /// As [`Worker::new`].
+    pub fn new(wake: &Wake) -> Result<Self> {
+        Ok(Self { worker: Worker::new("controls", Arc::clone(wake), idle_controls)?, asked: None })
+    }
+
+    /// Controls that were found since the last call.
+    pub fn answer(&mut self) -> Option<Outcome> {
+        self.worker.answer().map(Outcome::Idle)
+    }
+
+    /// Searches the controls of the look that is shown, unless it has.
+    pub fn follow(&mut self, session: &Session) {
+        let asked = session.asked();
+        let is_known = self.asked.as_ref().is_some_and(|(look, of)| look == session.look() && *of == asked);
+        if is_known || !session.has_picture() {
+            return;
+        }
+        let (library, look) = (session.library.clone(), session.look().clone());
+        self.asked = Some((look.clone(), asked));
+        self.worker.ask(IdleRequest { library, look, asked });
+    }
 }
 
 /// Tries all controls. What cannot be tried has an effect.
-pub fn idle_controls(request: IdleRequest) -> IdleControls {
+fn idle_controls(request: IdleRequest) -> IdleControls {
     let idle = find(&request).unwrap_or_default();
     IdleControls { look: request.look, asked: request.asked, idle }
 }

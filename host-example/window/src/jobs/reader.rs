@@ -19,10 +19,8 @@ pub struct Reader {
 
 impl Reader {
     /// Reads the frames of a document from when it is shown on.
-    pub fn add(&mut self, document: Document) {
-        if document.frames().is_some() {
-            self.documents.push(document);
-        }
+    pub fn extend(&mut self, document: Option<Document>) {
+        self.documents.extend(document.filter(|document| document.frames().is_some()));
     }
 
     /// Frames of what is shown, of which those are read next that it wants. All other documents are closed.

@@ -62,8 +62,6 @@ pub fn small() -> Vec<Arc<ColorImage>> {
 /// The small pictures as the window has them.
 #[derive(Default)]
 pub struct Thumbnails {
-    /// True where they have been asked for.
-    pub are_asked: bool,
     textures: Vec<TextureHandle>,
     images: Vec<Arc<ColorImage>>,
 }

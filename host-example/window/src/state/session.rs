@@ -3,6 +3,7 @@
 mod browsing;
 mod leaving;
 mod looks;
+mod outcomes;
 mod steps;
 
 use std::borrow::Cow;
@@ -19,6 +20,7 @@ use super::history::History;
 use super::leaving::Leaving;
 use super::look::{EditedLook, Parameter};
 use super::notes::Notes;
+use super::outcome::Dialog;
 use super::plan::Plan;
 use super::playback::Playback;
 use super::preview::Previews;
@@ -36,35 +38,25 @@ use isophote_loader::catalogue::Node;
 use isophote_loader::printable;
 use isophote_pictures::exr::{Guide, Layer};
 
-/// Request of the controls for what only the window itself can do.
+/// Request of the controls for work beside the window.
 #[derive(Clone, Debug, PartialEq)]
 pub enum Request {
     /// Open this file.
     Open(PathBuf),
-    /// Show a dialog and open what is chosen.
-    ChooseFile,
     /// Open the scene that comes with the program.
     OpenDemo,
     /// Open a picture that comes with the program.
     OpenSample(usize),
-    /// Show a dialog and take the look that is chosen.
-    ChooseLook,
-    /// Show a dialog and take the folder that is chosen among those of looks.
-    ChooseFolder,
-    /// Show a dialog and save the look to what is chosen.
-    ChooseLookFile,
-    /// Show a dialog and take the picture that is chosen as what is around the scene.
-    ChooseSurroundings,
+    /// Show a dialog and take what is chosen.
+    Choose(Dialog),
     /// Show this layer of the file, and a view of it.
     ChooseLayer(Layer, Option<String>),
-    /// Show a dialog and export to what is chosen.
-    ChooseOutput,
+    /// Read which looks there are.
+    ListLooks,
     /// Make what is planned.
     Export,
     /// End the export.
     CancelExport,
-    /// Put the command line of the present picture on the clipboard.
-    CopyCommand,
 }
 
 /// State that undo brings back.

@@ -13,6 +13,7 @@ use crate::state::browser::Step;
 use crate::state::browser::entry::{Entry, Group};
 use crate::state::browser::filter::{Filter, tags};
 use crate::state::look::PLAIN;
+use crate::state::outcome::Dialog;
 use crate::state::preview::Place;
 use crate::state::preview::order::{FINENESS, Order};
 use crate::state::session::{Request, Session};
@@ -90,7 +91,7 @@ fn buttons(ui: &mut Ui, session: &mut Session) {
     }
     let hint = "Offer the looks of a folder and of those within it";
     if ui.button("Add a folder…").on_hover_text(hint).clicked() {
-        session.requests.push(Request::ChooseFolder);
+        session.requests.push(Request::Choose(Dialog::LookFolder));
     }
     let marked = session.browser.marked.len();
     let text = if marked > 0 { format!("Compare {marked}") } else { "Compare".to_owned() };

@@ -4,6 +4,7 @@ use egui::{Align2, Button, Context, Grid, RichText, TextEdit, Ui};
 
 use super::theme;
 use crate::state::browser::title_edit::Words;
+use crate::state::outcome::Dialog;
 use crate::state::session::{Request, Session};
 
 /// Width of text fields in points.
@@ -82,7 +83,7 @@ fn saving(context: &Context, session: &mut Session) {
         session.saving = Some(saving);
     }
     if chooses {
-        session.requests.push(Request::ChooseLookFile);
+        session.requests.push(Request::Choose(Dialog::Save));
     }
     if done {
         session.finish_saving();

@@ -4,6 +4,7 @@ use egui::{Align2, Button, ComboBox, DragValue, Grid, RichText, TextEdit, Ui};
 
 use super::theme;
 use crate::state::document::kind::Kind;
+use crate::state::outcome::Dialog;
 use crate::state::plan::{Plan, What};
 use crate::state::session::{Request, Session};
 
@@ -23,7 +24,7 @@ pub fn show(context: &egui::Context, session: &mut Session) {
                 kind(ui, &mut plan);
                 amount(ui, &mut plan, session.playback.as_ref().map(|playback| playback.number()));
                 if place(ui, &mut plan) {
-                    request = Some(Request::ChooseOutput);
+                    request = Some(Request::Choose(Dialog::Export));
                 }
             });
             ui.add_space(10.0);

@@ -3,6 +3,7 @@
 use egui::{Button, RichText, Slider, Ui};
 
 use super::theme;
+use crate::state::outcome::Dialog;
 use crate::state::session::{Request, Session};
 use isophote_render::background::Background;
 use isophote_scene::camera::Direction;
@@ -117,7 +118,7 @@ fn background(ui: &mut Ui, session: &mut Session) {
                 }
             }
             if ui.button("A picture of the surroundings…").clicked() {
-                session.requests.push(Request::ChooseSurroundings);
+                session.requests.push(Request::Choose(Dialog::Surroundings));
             }
         });
         shown.response.labelled_by(label.id);

@@ -3,6 +3,7 @@
 use egui::{Align2, Button, FontId, Id, Rect, RichText, Sense, Stroke, StrokeKind, Ui, vec2};
 
 use super::{card, theme};
+use crate::state::outcome::Dialog;
 use crate::state::samples::SAMPLES;
 use crate::state::session::{Request, Session};
 
@@ -41,7 +42,7 @@ pub fn show(ui: &mut Ui, session: &mut Session, has_room: bool) {
                 session.requests.push(Request::OpenDemo);
             }
             if ui.add(large("Open a file…")).on_hover_text("Ctrl+O").clicked() {
-                session.requests.push(Request::ChooseFile);
+                session.requests.push(Request::Choose(Dialog::File));
             }
             ui.add_space(4.0);
             let hint = session

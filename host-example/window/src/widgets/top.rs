@@ -3,6 +3,7 @@
 use egui::{Button, RichText, Ui};
 
 use super::theme;
+use crate::state::outcome::Dialog;
 use crate::state::session::{Request, Session};
 use crate::state::viewport::{Compare, Overlay};
 
@@ -44,10 +45,10 @@ pub fn show(ui: &mut Ui, session: &mut Session) {
 fn file_menu(ui: &mut Ui, session: &mut Session) {
     ui.menu_button("File", |ui| {
         ui.set_min_width(240.0);
-        item(ui, session, "Open…", "Ctrl+O", Request::ChooseFile, true);
+        item(ui, session, "Open…", "Ctrl+O", Request::Choose(Dialog::File), true);
         item(ui, session, "Open the demo scene", "", Request::OpenDemo, true);
         ui.separator();
-        item(ui, session, "Open a look…", "", Request::ChooseLook, true);
+        item(ui, session, "Open a look…", "", Request::Choose(Dialog::Look), true);
         let has_look = !session.look().is_plain();
         for (text, keys, elsewhere) in
             [("Save the look", "Ctrl+S", false), ("Save the look as…", "Ctrl+Shift+S", true)]
@@ -59,7 +60,11 @@ fn file_menu(ui: &mut Ui, session: &mut Session) {
         }
         ui.separator();
         let can_export = session.file.is_some() && (has_look || session.scenery.is_some());
-        item(ui, session, "Copy the command line", "", Request::CopyCommand, session.file.is_some());
+        let copy = Button::new("Copy the command line").shortcut_text("");
+        if ui.add_enabled(session.file.is_some(), copy).clicked() {
+            ui.ctx().copy_text(session.copy_command());
+            ui.close();
+        }
         if ui.add_enabled(can_export, Button::new("Export…").shortcut_text("Ctrl+E")).clicked() {
             session.plan_export();
             ui.close();
@@ -180,7 +185,7 @@ fn right(ui: &mut Ui, session: &mut Session) {
         }
         let copy = ui.add_enabled(session.file.is_some(), Button::new("Copy command"));
         if copy.on_hover_text("The command line that gives this picture").clicked() {
-            session.requests.push(Request::CopyCommand);
+            ui.ctx().copy_text(session.copy_command());
         }
         let has_look = !session.look().is_plain();
         if ui.add_enabled(has_look, Button::new("Save look")).on_hover_text("Ctrl+S").clicked() {
