@@ -135,7 +135,8 @@ fn is_at_rest(app: &mut App) -> bool {
 /// Gives a parameter a value, as a slider does.
 fn set(app: &mut App, name: &str, value: f32) {
     let session = app.session_mut();
-    let parameter = session.parameters.iter().find(|parameter| parameter.name == name).unwrap().clone();
+    let parameter =
+        session.looks.parameters().iter().find(|parameter| parameter.name == name).unwrap().clone();
     session.set(&parameter, &Value::Float(value));
 }
 
@@ -171,9 +172,10 @@ fn lost_at_rest(folder: &Path, loss: &Loss) -> Vec<(&'static str, Step)> {
             return false;
         }
         let session = app.session();
-        let parameter = session.parameters.iter().find(|parameter| parameter.name == "line_amount").unwrap();
+        let parameter =
+            session.looks.parameters().iter().find(|parameter| parameter.name == "line_amount").unwrap();
         assert_eq!(session.look().value(parameter), Value::Float(0.9));
-        assert_eq!((session.name.as_str(), session.can()), ("photo.png", [true, true]));
+        assert_eq!((session.open.name(), session.can()), ("photo.png", [true, true]));
         see_after() == *picture
     };
     vec![
@@ -207,7 +209,7 @@ fn lost_while_it_plays(scene: PathBuf, loss: &Loss) -> Vec<(&'static str, Step)>
     };
     vec![
         ("undo, and a scene that plays", Box::new(open)),
-        ("frames", Box::new(|app| app.session().name == "scene" && frames(app) > 5)),
+        ("frames", Box::new(|app| app.session().open.name() == "scene" && frames(app) > 5)),
         ("the loss while it plays", Box::new(lose)),
         ("more frames", Box::new(plays_on)),
     ]
@@ -246,7 +248,7 @@ fn a_device_that_is_lost_at_once_again_and_again_ends_the_window_with_the_reason
             }
             assert!(losses < 20, "the window goes on for ever");
             if losses == 6 {
-                assert!(!app.session().has_picture(), "what is open is put away first");
+                assert!(!app.session().open.has_picture(), "what is open is put away first");
             }
             false
         });

@@ -18,9 +18,10 @@ use isophote_window::state::browser::listing::Listing;
 use isophote_window::state::leaving::Leaving;
 use isophote_window::state::look::EditedLook;
 use isophote_window::state::outcome::Dialog;
-use isophote_window::state::session::{Request, Session};
+use isophote_window::state::session::Session;
 use isophote_window::state::settings::Settings;
 use isophote_window::state::value::Value;
+use isophote_window::state::work::Request;
 use isophote_window::widgets;
 use tempfile::TempDir;
 use winit::keyboard::{Key, NamedKey};
@@ -179,7 +180,8 @@ fn a_click_shows_a_look_and_undo_brings_back_what_it_replaced() {
     let mut session = session(folder.path());
     session.choose(1);
     let parameter = session
-        .parameters
+        .looks
+        .parameters()
         .iter()
         .find(|parameter| matches!(parameter.default, Value::Float(_)))
         .expect("a number")
@@ -195,9 +197,9 @@ fn a_click_shows_a_look_and_undo_brings_back_what_it_replaced() {
     assert_eq!(harness.state().look().source, Path::new("cartoon"));
     click(&mut harness, Role::Button, "Dusk");
     assert_eq!(harness.state().look().name, "Dusk");
-    let count = harness.state().looks.len();
+    let count = harness.state().looks.list().len();
     harness.state_mut().undo();
-    assert_eq!(harness.state().looks.len(), count - 1, "what was new is gone");
+    assert_eq!(harness.state().looks.list().len(), count - 1, "what was new is gone");
     harness.state_mut().undo();
     assert_eq!(harness.state().look().source, Path::new("ink"));
     harness.state_mut().choose(1);
@@ -239,7 +241,7 @@ fn keys_go_from_card_to_card() {
     assert!(session.browser.is_open && session.browser.is_outdated, "the looks are read again");
     assert_eq!(selected(&session).as_deref(), Some(all[4].as_str()));
     press(&mut session, NamedKey::Escape);
-    assert!(!session.browser.is_open && session.leaving == Leaving::Stays, "the window stays open");
+    assert!(!session.browser.is_open && session.dialogs.leaving == Leaving::Stays, "the window stays open");
 }
 
 #[test]
@@ -331,7 +333,7 @@ fn a_look_is_saved_with_its_name_and_nothing_is_replaced_unasked() {
     type_into(&mut harness, "Name", "Late Evening");
     type_into(&mut harness, "Tags", "calm");
     let file = looks.join("late-evening.json");
-    assert_eq!(harness.state().saving.as_ref().map(|saving| saving.file()), Some(file.clone()));
+    assert_eq!(harness.state().dialogs.saving.as_ref().map(|saving| saving.file()), Some(file.clone()));
     click(&mut harness, Role::Button, "Save");
     let saved = preset(&file);
     assert_eq!(
@@ -346,14 +348,15 @@ fn a_look_is_saved_with_its_name_and_nothing_is_replaced_unasked() {
     assert!(session.settings.look_folders.contains(&looks), "its folder is offered");
     // To its own file it is saved at once, under its name.
     let parameter = session
-        .parameters
+        .looks
+        .parameters()
         .iter()
         .find(|parameter| matches!(parameter.default, Value::Float(_)))
         .expect("a number")
         .clone();
     session.set(&parameter, &parameter.default.others(&parameter.param.kind)[0]);
     session.save_look(false);
-    assert!(session.saving.is_none() && !session.look().is_changed());
+    assert!(session.dialogs.saving.is_none() && !session.look().is_changed());
     assert_eq!(preset(&file).title.name.as_deref(), Some("Late Evening"));
     // Another of that name asks first.
     session.choose(2);
@@ -432,7 +435,7 @@ fn up_to_six_looks_are_compared_and_one_is_taken() {
     assert!(harness.query_by_role_and_label(Role::Button, "Take Linocut").is_some());
     // Escape goes back to where it came from.
     widgets::keys::press(harness.state_mut(), &Key::Named(NamedKey::Escape));
-    assert!(harness.state().browser.is_open && harness.state().comparison.is_none());
+    assert!(harness.state().browser.is_open && harness.state().browser.comparison.is_none());
     harness.state_mut().compare_marked();
     harness.run_ok();
     click(&mut harness, Role::Button, "Take Linocut");
@@ -447,7 +450,7 @@ fn folders_are_added_and_taken_off_the_list() {
     let folder = presets();
     let mut harness = harness(session(folder.path()));
     click(&mut harness, Role::Button, "Add a folder…");
-    assert_eq!(harness.state().requests, [Request::Choose(Dialog::LookFolder)]);
+    assert_eq!(harness.state().work.requests(), [Request::Choose(Dialog::LookFolder)]);
     let shown: PathBuf = folder.path().components().collect();
     click(&mut harness, Role::Button, &format!("Remove {} from the list", shown.display()));
     assert!(harness.state().settings.look_folders.is_empty() && harness.state().browser.is_outdated);

@@ -14,9 +14,10 @@ use isophote_scene::Scene;
 use isophote_window::jobs::document::{Document, Options};
 use isophote_window::state::look::EditedLook;
 use isophote_window::state::scenery::{Scenery, Staging};
-use isophote_window::state::session::{Request, Session};
+use isophote_window::state::session::Session;
 use isophote_window::state::settings::Settings;
 use isophote_window::state::value::Value;
+use isophote_window::state::work::Request;
 use isophote_window::widgets;
 
 /// A session of all styles with a scene.
@@ -56,13 +57,13 @@ fn open_headings(harness: &mut Harness<'_, Session>, closed: &mut Vec<&str>) {
 fn every_parameter_of_every_style_is_found_by_its_label() {
     let mut harness = harness(session());
     let mut closed = vec!["Advanced", "Time", "Output", "Scene and light"];
-    for index in 1..harness.state().looks.len() {
+    for index in 1..harness.state().looks.list().len() {
         harness.state_mut().choose(index);
         harness.run_ok();
         open_headings(&mut harness, &mut closed);
         let session = harness.state();
         let mut labels: HashMap<&str, usize> = HashMap::new();
-        for parameter in &session.parameters {
+        for parameter in session.looks.parameters().iter() {
             *labels.entry(parameter.param.label).or_default() += 1;
         }
         assert!(labels.len() > 10);
@@ -84,7 +85,8 @@ fn a_value_is_undone_redone_and_set_back() {
     harness.run_ok();
     let session = harness.state_mut();
     let parameter = session
-        .parameters
+        .looks
+        .parameters()
         .iter()
         .find(|parameter| matches!(parameter.default, Value::Float(_)))
         .unwrap()
@@ -113,12 +115,13 @@ fn a_value_is_undone_redone_and_set_back() {
 #[test]
 fn controls_can_be_used_by_programs_that_read_windows_aloud() {
     let mut harness = harness(session());
-    let index = harness.state().looks.iter().position(|look| look.name == "Cartoon").unwrap();
+    let index = harness.state().looks.list().iter().position(|look| look.name == "Cartoon").unwrap();
     harness.state_mut().choose(index);
     harness.run_ok();
     let parameter = harness
         .state()
-        .parameters
+        .looks
+        .parameters()
         .iter()
         .find(|parameter| parameter.param.label == "Posterize")
         .unwrap()
@@ -143,7 +146,7 @@ fn a_saved_look_is_the_same_look_and_its_command_is_short() {
     let file = folder.path().join("mine.json");
     let mut session = session();
     session.choose(1);
-    let parameters = session.parameters.clone();
+    let parameters = session.looks.parameters().clone();
     let changed = parameters.iter().filter(|parameter| !matches!(parameter.default, Value::Choice(_)));
     for parameter in changed.take(4) {
         let other = parameter.default.others(&parameter.param.kind).swap_remove(0);
@@ -164,17 +167,19 @@ fn a_saved_look_is_the_same_look_and_its_command_is_short() {
 fn an_export_is_asked_for_in_a_window_of_its_own() {
     let folder = support::folder();
     let mut session = session();
-    session.file = Some(folder.path().join("cube.gltf"));
+    let scene = Scene::load(&support::cube(folder.path()), None).unwrap();
+    let file = folder.path().join("cube.gltf");
+    session.show_scene(Scenery::new(scene, Staging::default(), 1.5), Some(file), "cube".into());
     session.plan_export();
     let mut harness = harness(session);
     harness.get_by_label("A turntable").click();
     harness.run_ok();
-    let plan = harness.state().plan.clone().expect("a plan");
+    let plan = harness.state().dialogs.plan.clone().expect("a plan");
     assert!(plan.path.ends_with("cube-look.####.png"), "{}", plan.path);
     assert_eq!(plan.frames().as_deref(), Some("96"));
     harness.get_by_label("Start the export").click();
     harness.run_ok();
-    assert_eq!(harness.state().requests, [Request::Export]);
+    assert_eq!(harness.state().work.requests(), [Request::Export]);
 }
 
 #[test]
@@ -190,7 +195,7 @@ fn layers_are_chosen_from_a_list() {
     harness.run_ok();
     harness.get_by_label("beauty").click();
     harness.run_ok();
-    let requests = &harness.state().requests;
+    let requests = harness.state().work.requests();
     assert!(
         matches!(&requests[..], [Request::ChooseLayer(layer, None)] if layer.name == "beauty"),
         "{requests:?}"

@@ -24,7 +24,8 @@ use crate::jobs::worker::Wake;
 use crate::state::leaving::Leaving;
 use crate::state::playback::Playback;
 use crate::state::record::Hold;
-use crate::state::session::{Request, Session};
+use crate::state::session::Session;
+use crate::state::work::Request;
 use crate::widgets;
 use isophote_example::plan_runner::Counts;
 use isophote_files::error::{Error, Result};
@@ -187,11 +188,11 @@ impl App {
         let scale = self.pace.scale(session);
         let problems = stage.follow(session, scale)?;
         problems.iter().for_each(|problem| session.notes.complain(problem));
-        let was_busy = session.busy;
-        session.busy = stage.is_busy().then_some("Preparing the look").or(self.background.busy());
+        let was_busy = session.work.busy;
+        session.work.busy = stage.is_busy().then_some("Preparing the look").or(self.background.busy());
         let looks = started.elapsed() - controls;
         let always =
-            session.record.limit.is_some() || session.scenery.as_ref().is_some_and(|scenery| scenery.playing);
+            session.record.limit.is_some() || session.open.scenery().is_some_and(|scenery| scenery.playing);
         let drawn = stage.draw(window, session, always)?;
         session.record.hold(Hold { controls, looks, drawing: started.elapsed() - controls - looks });
         let delay = delay.filter(|delay| *delay < Duration::from_secs(3600));
@@ -200,10 +201,10 @@ impl App {
             self.update_title();
             self.want(Duration::from_millis(10));
         }
-        if self.session.playback.as_ref().is_some_and(Playback::is_waiting) {
+        if self.session.open.playback().is_some_and(Playback::is_waiting) {
             self.want(Duration::from_millis(20));
         }
-        if !problems.is_empty() || !self.late.is_empty() || self.session.busy != was_busy {
+        if !problems.is_empty() || !self.late.is_empty() || self.session.work.busy != was_busy {
             self.want(Duration::ZERO);
         }
         Ok(())
@@ -230,8 +231,8 @@ impl App {
             return Ok(());
         }
         stage.panel_time.take().into_iter().for_each(|time| session.record.count_panel(time));
-        let is_probed = session.probed != stage.probed;
-        session.probed = stage.probed;
+        let is_probed = session.viewport.probed != stage.probed;
+        session.viewport.probed = stage.probed;
         if let Some(frame) = stage.snapshot(session)? {
             session.show_scene_frame(frame);
             self.due = Some(Instant::now());
@@ -261,13 +262,13 @@ impl App {
 
     /// Follows the export that the window waits for before it closes; says whether it closes now.
     fn is_leaving(&mut self) -> bool {
-        if self.session.leaving == Leaving::Waits {
+        if self.session.dialogs.leaving == Leaving::Waits {
             collect(&mut self.background, &mut self.session);
-            if self.session.leaving != Leaving::Waits {
+            if self.session.dialogs.leaving != Leaving::Waits {
                 self.due = Some(Instant::now());
             }
         }
-        self.session.leaving == Leaving::Closes && self.background.end_export()
+        self.session.dialogs.leaving == Leaving::Closes && self.background.end_export()
     }
 
     /// Lets the title tell what is shown: at once, or with a later frame where it did so a moment ago.
@@ -347,8 +348,8 @@ impl ApplicationHandler<Event> for App {
                 Ok(())
             }
             WindowEvent::DroppedFile(path) => {
-                if !self.session.leaving.is_shown() {
-                    self.session.requests.push(Request::Open(path));
+                if !self.session.dialogs.leaving.is_shown() {
+                    self.session.work.ask(Request::Open(path));
                 }
                 Ok(())
             }
@@ -368,7 +369,7 @@ impl ApplicationHandler<Event> for App {
             self.attend();
         }
         let revival = self.revive(event_loop);
-        let always = self.session.is_playing() || self.session.record.limit.is_some();
+        let always = self.session.open.is_playing() || self.session.record.limit.is_some();
         let due = if always { Some(Instant::now()) } else { self.due };
         // The device tells when it is there for the next frame.
         let is_ready = self.stage.as_ref().is_some_and(|stage| !stage.is_waiting());
@@ -380,7 +381,7 @@ impl ApplicationHandler<Event> for App {
             }
             return;
         }
-        let waits = matches!(self.session.leaving, Leaving::Waits | Leaving::Closes);
+        let waits = matches!(self.session.dialogs.leaving, Leaving::Waits | Leaving::Closes);
         let closing = waits.then(|| Instant::now() + CLOSING);
         // A picture that stands still costs nothing.
         let unseen = self.due.filter(|_| self.hidden);

@@ -65,7 +65,7 @@ pub fn run(args: &ViewArgs) -> Result<()> {
     let last = Some(last).filter(|_| args.style.is_empty());
     let mut session = Session::new(library, looks, settings)?;
     problem.iter().for_each(|problem| session.notes.complain(problem));
-    session.prepare(&args.set, args.lengths.lengths);
+    session.looks.prepare(&args.set, args.lengths.lengths);
     session.record.limit = args.frames;
     session.precision = args.precision.precision;
     session.resume(last.as_deref());

@@ -82,7 +82,7 @@ impl App {
     pub(super) fn handle(&mut self, event_loop: &ActiveEventLoop, result: Result<()>) {
         let Err(error) = result else { return };
         let was_open = self.stage.take().is_some() || self.revival.is_some();
-        if self.revivals >= REVIVALS && self.session.has_picture() {
+        if self.revivals >= REVIVALS && self.session.open.has_picture() {
             self.session.close();
             self.revivals = 0;
         }

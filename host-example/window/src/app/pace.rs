@@ -44,9 +44,9 @@ impl Pace {
         if !self.is_software {
             return 1.0;
         }
-        let scenery = session.scenery.as_ref();
+        let scenery = session.open.scenery();
         let appearance = Some(Appearance {
-            look: session.seen().into_owned(),
+            look: session.looks.seen().into_owned(),
             view: scenery.map(Scenery::view),
             light: scenery.map(|scenery| *scenery.light()),
             shown: session.shown(),
@@ -55,7 +55,7 @@ impl Pace {
             self.moved = Some(Instant::now());
         }
         self.appearance = appearance;
-        let rests = self.moved.is_none_or(|at| at.elapsed() >= REST) && !session.is_playing();
+        let rests = self.moved.is_none_or(|at| at.elapsed() >= REST) && !session.open.is_playing();
         let whole = self.whole.unwrap_or(GOAL * 2.0);
         let fits = |scale: &&f32| whole * **scale * **scale <= GOAL;
         let moving = SCALES.iter().find(fits).copied().unwrap_or(SCALES[SCALES.len() - 1]);

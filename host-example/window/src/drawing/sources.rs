@@ -78,7 +78,7 @@ impl Sources {
     pub fn follow(&mut self, session: &Session, scale: f32) -> Result<bool> {
         let usual = session.library.request((1, 1)).map_err(|e| e.at("the library", "install it again"))?;
         let is_new = self.take(session)?;
-        let is_other = match (&session.scenery, &session.playback) {
+        let is_other = match (session.open.scenery(), session.open.playback()) {
             (Some(scenery), _) => {
                 let [_, half] = session.viewport.halves();
                 let pixels = |length: f32| ((length * scale).round() as u32).max(1);
@@ -160,8 +160,8 @@ impl Sources {
         self.asked = None;
         let old = self.present.replace(source);
         let is_of_same = |frame: &Arc<Frame>| shows(old.as_ref(), frame);
-        let frames =
-            session.playback.iter().flat_map(|playback| [playback.frame(false), playback.frame(true)]);
+        let playback = session.open.playback();
+        let frames = playback.iter().flat_map(|playback| [playback.frame(false), playback.frame(true)]);
         let is_same = frames.flatten().any(|(frame, _)| is_of_same(frame));
         self.spare = old.filter(|_| is_same);
         self.number += 1;

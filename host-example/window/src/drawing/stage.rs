@@ -184,8 +184,8 @@ impl Stage {
         let overlay =
             session.viewport.overlay.node().map(|node| EditedLook::open(&session.library, node.as_ref()));
         let overlay = overlay.transpose()?.unwrap_or_else(EditedLook::plain);
-        let seen = session.seen();
-        let compared = session.compared.clone().unwrap_or_else(EditedLook::plain);
+        let seen = session.looks.seen();
+        let compared = session.looks.compared.clone().unwrap_or_else(EditedLook::plain);
         let asked = source.asked();
         for (live, look) in self.looks.iter_mut().zip([&*seen, &compared, &overlay]) {
             problems.extend(live.follow(&session.library, look, session.precision, asked).err());
@@ -208,13 +208,13 @@ impl Stage {
     pub fn snapshot(&mut self, session: &Session) -> Result<Option<Frame>> {
         let taken = self.snapshots.answer();
         // Panes that are all but ready are more to look at than none while a scene is turned.
-        let waits = session.comparison.is_some() && session.previews.is_busy() && !self.is_software();
+        let waits = session.browser.comparison.is_some() && session.previews.is_busy() && !self.is_software();
         let is_wanted =
-            session.is_covered() && !session.is_playing() && self.progress == Progress::Done && !waits;
+            session.is_covered() && !session.open.is_playing() && self.progress == Progress::Done && !waits;
         let made = self.made.as_ref().filter(|made| is_wanted && made.asked.scale == 1.0);
         let state = made.map(|made| (made.asked, made.source, made.scene));
         if let (Some(LookInput::Scene(source)), Some(scenery), Some(state)) =
-            (self.sources.present_mut(), &session.scenery, state)
+            (self.sources.present_mut(), session.open.scenery(), state)
             && !self.snapshots.shows(&state)
         {
             if source.add_rest_positions() {
@@ -403,7 +403,7 @@ impl Stage {
     /// Origins of the picture as it would be made now.
     fn to_make(&self, session: &Session) -> Option<Made> {
         let source = self.sources.present()?;
-        let scene = session.scenery.as_ref();
+        let scene = session.open.scenery();
         Some(Made {
             shown: session.shown(),
             overlay: session.viewport.overlay,
@@ -423,7 +423,9 @@ impl Stage {
         passes: usize,
     ) -> Result<bool> {
         let Some(source) = self.sources.present_mut() else { return Ok(true) };
-        if let (LookInput::Scene(source), Some(scenery), true) = (&mut *source, &session.scenery, begins) {
+        if let (LookInput::Scene(source), Some(scenery), true) =
+            (&mut *source, session.open.scenery(), begins)
+        {
             source.encode(encoder, scenery);
         }
         let asked = source.asked();
@@ -453,7 +455,7 @@ impl Stage {
             pictures,
             split: viewport.split(),
             exposure: viewport.exposure.exp2(),
-            middle: session.scenery.as_ref().map_or(1.0, |scenery| scenery.distance()),
+            middle: session.open.scenery().map_or(1.0, |scenery| scenery.distance()),
             square: 8.0,
         };
         self.canvas.set(&self.gpu.device, &self.gpu.queue, &arrangement);
@@ -461,7 +463,9 @@ impl Stage {
 
     /// Lets the pixels under the pointer be read.
     fn encode_probe(&mut self, encoder: &mut wgpu::CommandEncoder, session: &Session) {
-        let (Some(source), Some(pointer)) = (self.sources.present(), session.pointer) else { return };
+        let (Some(source), Some(pointer)) = (self.sources.present(), session.viewport.pointer) else {
+            return;
+        };
         let size = session.nominal_size();
         let Some((x, y)) = session.viewport.pixel(size, pointer) else { return };
         let place = [(x as f32 + 0.5) / size.0 as f32, (y as f32 + 0.5) / size.1 as f32];

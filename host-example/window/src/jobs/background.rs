@@ -5,7 +5,7 @@ use std::sync::Arc;
 
 use egui::ColorImage;
 
-use super::dialogs::Dialogs;
+use super::dialogs::SystemDialogs;
 use super::document::Document;
 use super::exporting::Exporting;
 use super::idle::IdleSearch;
@@ -16,7 +16,8 @@ use super::worker::{Wake, Worker};
 use crate::state::outcome::{Dialog, Outcome};
 use crate::state::preview::order::Task;
 use crate::state::samples::{self, SAMPLES};
-use crate::state::session::{Request, Session};
+use crate::state::session::Session;
+use crate::state::work::Request;
 use isophote_files::error::Result;
 use isophote_loader::Library;
 use isophote_pictures::exr::{Layer, Selection};
@@ -32,7 +33,7 @@ pub struct Background {
     reducer: Worker<(), Vec<Arc<ColorImage>>>,
     /// True where these have been asked for.
     is_start_made: bool,
-    dialogs: Dialogs,
+    dialogs: SystemDialogs,
     export: Exporting,
 }
 
@@ -50,7 +51,7 @@ impl Background {
             looks: LookWork::new(library, wake)?,
             reducer: Worker::new("samples", Arc::clone(wake), |()| samples::small())?,
             is_start_made: false,
-            dialogs: Dialogs::new(wake),
+            dialogs: SystemDialogs::new(wake),
             export: Exporting::default(),
         })
     }
@@ -72,7 +73,7 @@ impl Background {
 
     /// Frames of what is shown.
     pub fn frames(&mut self, session: &Session) -> Option<Outcome> {
-        let (frames, wanted) = self.frames.follow(session.playback.as_ref())?;
+        let (frames, wanted) = self.frames.follow(session.open.playback())?;
         Some(Outcome::Frames(frames, wanted))
     }
 
@@ -150,7 +151,7 @@ impl Background {
         if !files.is_empty() {
             self.opener.ask(OpenJob::Files(self.library.clone(), files));
         }
-        if !session.has_picture() && !std::mem::replace(&mut self.is_start_made, true) {
+        if !session.open.has_picture() && !std::mem::replace(&mut self.is_start_made, true) {
             self.reducer.ask(());
         }
         outcomes.extend(self.looks.preview(previews).err().map(Outcome::Failed));
@@ -159,10 +160,10 @@ impl Background {
 
     /// Opens the file that is open once more, to show a layer and a view of it.
     fn open_layer(&mut self, session: &Session, layer: Layer, view: Option<String>) {
-        let Some(file) = &session.file else { return };
+        let Some(file) = session.open.file() else { return };
         let name = Some(layer.name).filter(|name| !name.is_empty());
         let force = layer.is_data && name.is_some();
         let selection = Selection { force, layer: name, view, ..Selection::default() };
-        self.opener.ask(OpenJob::Again(file.clone(), Box::new(selection)));
+        self.opener.ask(OpenJob::Again(file.to_owned(), Box::new(selection)));
     }
 }

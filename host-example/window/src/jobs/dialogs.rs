@@ -1,4 +1,4 @@
-//! Dialogs of the system, each on a thread of its own: they may stay open for long. The crate that shows them tells in the log
+//! SystemDialogs of the system, each on a thread of its own: they may stay open for long. The crate that shows them tells in the log
 //! alone why one was not shown.
 
 use std::cell::RefCell;
@@ -15,8 +15,8 @@ use isophote_files::error::{Error, Result};
 /// Answer to a dialog: its purpose, and what was chosen, if anything was.
 type Answer = (Dialog, Result<Option<PathBuf>>);
 
-/// Dialogs, of which one is open at a time.
-pub struct Dialogs {
+/// SystemDialogs, of which one is open at a time.
+pub struct SystemDialogs {
     chosen: Receiver<Answer>,
     choose: Sender<Answer>,
     /// True while one is open.
@@ -24,7 +24,7 @@ pub struct Dialogs {
     wake: Wake,
 }
 
-impl Dialogs {
+impl SystemDialogs {
     /// None is open yet.
     pub fn new(wake: &Wake) -> Self {
         let (choose, chosen) = channel();
@@ -64,13 +64,13 @@ impl Dialogs {
 
 /// Folder and name of a file that a dialog begins with.
 fn proposed(dialog: Dialog, session: &Session) -> (Option<PathBuf>, String) {
-    let saved = session.saving.as_ref().map(Saving::file);
+    let saved = session.dialogs.saving.as_ref().map(Saving::file);
     let folder = match dialog {
         Dialog::Save => saved.as_deref().and_then(Path::parent).map(Path::to_owned),
         Dialog::Look | Dialog::LookFolder => session.settings.look_folder.clone(),
         Dialog::File | Dialog::Surroundings | Dialog::Export => session.settings.folder.clone(),
     };
-    let file = match (dialog, &session.plan) {
+    let file = match (dialog, &session.dialogs.plan) {
         (Dialog::Export, Some(plan)) => PathBuf::from(&plan.path),
         _ => saved.unwrap_or_default(),
     };

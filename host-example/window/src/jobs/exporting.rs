@@ -20,7 +20,7 @@ pub struct Exporting {
 impl Exporting {
     /// Begins to write what is shown, by another process, where something is planned.
     pub fn begin(&mut self, session: &Session) -> Option<Outcome> {
-        let job = job(session, session.plan.as_ref()?, session.file.as_deref()?);
+        let job = job(session, session.dialogs.plan.as_ref()?, session.open.file()?);
         let begun = job.and_then(Export::start).map(|export| self.export = Some(export));
         Some(Outcome::ExportBegun(begun))
     }
@@ -64,7 +64,7 @@ fn job(session: &Session, plan: &Plan, file: &Path) -> Result<ExportJob> {
     let mut job = ExportJob::new(plan.kind, file, Path::new(&plan.path), preset);
     let is_turntable = plan.what == What::Turntable;
     (job.frames, job.turntable) = (plan.frames(), is_turntable);
-    let mut words: Vec<String> = match &session.playback {
+    let mut words: Vec<String> = match session.open.playback() {
         Some(playback) => {
             job.rate = playback.rate;
             command::selection(playback)
@@ -77,7 +77,7 @@ fn job(session: &Session, plan: &Plan, file: &Path) -> Result<ExportJob> {
     };
     match plan.what {
         What::Animation => words.extend(command::animation(session)),
-        What::Picture if session.playback.is_none() => words.extend(command::moment(session)),
+        What::Picture if session.open.playback().is_none() => words.extend(command::moment(session)),
         What::Picture | What::Turntable | What::Frames => {}
     }
     words.extend(command::precision(session));

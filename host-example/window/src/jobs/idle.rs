@@ -50,7 +50,7 @@ impl IdleSearch {
     pub fn follow(&mut self, session: &Session) {
         let asked = session.asked();
         let is_known = self.asked.as_ref().is_some_and(|(look, of)| look == session.look() && *of == asked);
-        if is_known || !session.has_picture() {
+        if is_known || !session.open.has_picture() {
             return;
         }
         let (library, look) = (session.library.clone(), session.look().clone());

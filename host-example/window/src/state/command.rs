@@ -13,11 +13,11 @@ use isophote_scene::floor;
 
 /// The command line, quoted for a shell.
 pub fn line(session: &Session) -> String {
-    let look = session.seen();
+    let look = session.looks.seen();
     let style = look.rebuilt().map_or_else(|| quoted_path(&look.source), quoted);
     let mut words = vec!["isophote".to_owned()];
-    let input = session.file.as_deref().map_or_else(|| "SCENE.gltf".into(), quoted_path);
-    match &session.playback {
+    let input = session.open.file().map_or_else(|| "SCENE.gltf".into(), quoted_path);
+    match session.open.playback() {
         Some(playback) => {
             words.extend(["apply".to_owned(), style, input]);
             words.push(quoted_path(&output(playback)));
@@ -40,6 +40,12 @@ pub fn line(session: &Session) -> String {
     }
     words.extend(precision(session));
     words.join(" ")
+}
+
+/// The command line as it is put on the clipboard, of which the window tells.
+pub fn copied(session: &mut Session) -> String {
+    session.notes.say("Copied the command line of this picture");
+    line(session)
 }
 
 /// The option for a precision that is not the usual one.
@@ -78,8 +84,7 @@ pub fn selection(playback: &Playback) -> Vec<String> {
 
 /// Options of `render` for the time of an animated scene.
 pub fn moment(session: &Session) -> Vec<String> {
-    let Some(scenery) = session.scenery.as_ref().filter(|scenery| !scenery.scene.animations.is_empty())
-    else {
+    let Some(scenery) = session.open.scenery().filter(|scenery| !scenery.scene.animations.is_empty()) else {
         return Vec::new();
     };
     MotionArgs { start: scenery.time().0, ..motion(scenery) }.words()
@@ -87,7 +92,7 @@ pub fn moment(session: &Session) -> Vec<String> {
 
 /// Options of `render` that play the animation from its start.
 pub fn animation(session: &Session) -> Vec<String> {
-    session.scenery.as_ref().map_or_else(Vec::new, |scenery| motion(scenery).words())
+    session.open.scenery().map_or_else(Vec::new, |scenery| motion(scenery).words())
 }
 
 fn motion(scenery: &Scenery) -> MotionArgs {
@@ -100,7 +105,7 @@ fn motion(scenery: &Scenery) -> MotionArgs {
 /// goes around by itself, wherever the file's camera stands.
 pub fn staging(session: &Session, is_turntable: bool) -> Vec<String> {
     let [_, area] = session.viewport.halves();
-    let Some(scenery) = &session.scenery else { return Vec::new() };
+    let Some(scenery) = session.open.scenery() else { return Vec::new() };
     let mut staging = StagingArgs {
         light: scenery.sun_from_here(),
         exposure: scenery.lighting.exposure,

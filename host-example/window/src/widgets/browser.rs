@@ -16,7 +16,8 @@ use crate::state::look::PLAIN;
 use crate::state::outcome::Dialog;
 use crate::state::preview::Place;
 use crate::state::preview::order::{FINENESS, Order};
-use crate::state::session::{Request, Session};
+use crate::state::session::Session;
+use crate::state::work::Request;
 
 /// Least width of a card in points.
 const LEAST: f32 = 200.0;
@@ -91,7 +92,7 @@ fn buttons(ui: &mut Ui, session: &mut Session) {
     }
     let hint = "Offer the looks of a folder and of those within it";
     if ui.button("Add a folder…").on_hover_text(hint).clicked() {
-        session.requests.push(Request::Choose(Dialog::LookFolder));
+        session.work.ask(Request::Choose(Dialog::LookFolder));
     }
     let marked = session.browser.marked.len();
     let text = if marked > 0 { format!("Compare {marked}") } else { "Compare".to_owned() };
@@ -215,7 +216,7 @@ fn ask_plain(ui: &Ui, session: &mut Session, items: &[(Rect, Item)]) {
     let card = items.iter().find(|(_, item)| matches!(item, Item::Card(_)));
     let (Some((rect, _)), Some(picture)) = (card, session.previews.picture()) else { return };
     let size = card::pixels(ui, rect.size(), picture);
-    let plain = session.looks.iter().find(|look| look.is_plain()).cloned();
+    let plain = session.looks.list().iter().find(|look| look.is_plain()).cloned();
     let plain = plain.or_else(|| session.browser.find(PLAIN.as_ref())?.look().cloned());
     if let Some(look) = plain {
         session.previews.want(Place::Plain, Order::whole(look, size, FINENESS));

@@ -25,12 +25,12 @@ pub fn show(ui: &mut Ui, rect: Rect, session: &mut Session) {
     if response.hovered() {
         scroll(ui, pointer, session);
     }
-    session.pointer = pointer.filter(|_| response.hovered()).map(|at| pixels(ui, at));
+    session.viewport.pointer = pointer.filter(|_| response.hovered()).map(|at| pixels(ui, at));
     if session.viewport.compare == Compare::Wipe && !session.viewport.peek {
         wipe(ui, rect, session);
     }
     names(ui, rect, session);
-    if let Some(doing) = session.busy {
+    if let Some(doing) = session.work.busy {
         tag(ui, rect.center_bottom() + vec2(0.0, -26.0), Align2::CENTER_CENTER, &format!("{doing}…"));
         ui.ctx().request_repaint_after(std::time::Duration::from_millis(200));
     }
@@ -49,7 +49,7 @@ pub fn drag(ui: &Ui, response: &egui::Response, session: &mut Session) {
     }
     let (shift, magnified) = ui.input(|i| (i.modifiers.shift, i.modifiers.command));
     let size = session.nominal_size();
-    match &mut session.scenery {
+    match session.open.scenery_mut() {
         Some(scenery) if !magnified => {
             let height = response.rect.height().max(1.0);
             if response.dragged_by(PointerButton::Primary) && !shift {
@@ -68,7 +68,7 @@ pub fn drag(ui: &Ui, response: &egui::Response, session: &mut Session) {
 /// Goes nearer or magnifies about a place, by the wheel.
 pub fn scroll(ui: &Ui, pointer: Option<Pos2>, session: &mut Session) {
     let mut notches = 0.0;
-    let mut magnifies = session.scenery.is_none();
+    let mut magnifies = session.open.scenery().is_none();
     ui.input(|input| {
         for event in &input.events {
             if let egui::Event::MouseWheel { unit, delta, modifiers, .. } = event {
@@ -85,7 +85,7 @@ pub fn scroll(ui: &Ui, pointer: Option<Pos2>, session: &mut Session) {
         return;
     }
     let size = session.nominal_size();
-    match (&mut session.scenery, pointer) {
+    match (session.open.scenery_mut(), pointer) {
         (Some(scenery), _) if !magnifies => scenery.orbit().zoom(NEARER.powf(notches)),
         (_, Some(at)) => session.viewport.zoom_about(size, pixels(ui, at), LARGER.powf(notches)),
         _ => {}
@@ -126,7 +126,7 @@ fn names(ui: &Ui, rect: Rect, session: &Session) {
     let name = |which: Which| match which {
         Which::Original => "Original".to_owned(),
         Which::Look | Which::Overlay => session.look().name.clone(),
-        Which::Compared => session.compared.as_ref().map_or_else(String::new, |look| look.name.clone()),
+        Which::Compared => session.looks.compared.as_ref().map_or_else(String::new, |look| look.name.clone()),
     };
     let [left, right] = session.shown();
     if session.viewport.peek {

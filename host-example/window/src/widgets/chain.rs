@@ -21,11 +21,11 @@ pub fn show(ui: &mut Ui, session: &mut Session) {
     if session.look().is_plain() {
         return;
     }
-    let count = session.chain.as_ref().map_or(0, |chain| chain.links.len());
+    let count = session.looks.chain().map_or(0, |chain| chain.links.len());
     let heading = RichText::new("Nodes").strong();
     let header = CollapsingHeader::new(heading).id_salt("nodes").default_open(count > 1);
     header.show_unindented(ui, |ui| {
-        if session.chain.is_none() {
+        if session.looks.chain().is_none() {
             let text = "This graph is no list: its nodes branch. Their parameters are below.";
             ui.label(RichText::new(text).color(theme::FAINT));
             return;
@@ -43,9 +43,9 @@ pub fn show(ui: &mut Ui, session: &mut Session) {
 }
 
 fn row(ui: &mut Ui, session: &Session, index: usize, count: usize, asked: &mut Option<(usize, Act)>) {
-    let Some(link) = session.chain.as_ref().and_then(|chain| chain.links.get(index)) else { return };
-    let is_alone = session.watched == Some(Watched::Alone(link.name.clone()));
-    let is_after = session.watched == Some(Watched::After(link.name.clone()));
+    let Some(link) = session.looks.chain().and_then(|chain| chain.links.get(index)) else { return };
+    let is_alone = session.looks.watched() == Some(&Watched::Alone(link.name.clone()));
+    let is_after = session.looks.watched() == Some(&Watched::After(link.name.clone()));
     ui.horizontal(|ui| {
         ui.spacing_mut().item_spacing.x = 3.0;
         let button = |ui: &mut Ui, text: &str, name: &str, hint: &str, on: bool, enabled: bool| {
@@ -63,7 +63,7 @@ fn row(ui: &mut Ui, session: &Session, index: usize, count: usize, asked: &mut O
         if button(ui, "⏷", "Later", "Do this later", false, index + 1 < count) {
             act = Some(Act::Shift(index + 1));
         }
-        let is_selected = session.selected.as_ref() == Some(&link.name);
+        let is_selected = session.looks.selected() == Some(link.name.as_str());
         let mut text = RichText::new(link.label);
         if link.bypassed {
             text = text.color(theme::FAINT).strikethrough();
@@ -92,11 +92,15 @@ fn row(ui: &mut Ui, session: &Session, index: usize, count: usize, asked: &mut O
 }
 
 fn perform(session: &mut Session, index: usize, act: Act) {
-    let name = session.chain.as_ref().and_then(|chain| chain.links.get(index)).map(|link| link.name.clone());
+    let name = session.looks.chain().and_then(|chain| chain.links.get(index)).map(|link| link.name.clone());
     match act {
-        Act::Select => session.selected = if session.selected == name { None } else { name },
+        Act::Select => {
+            let is_selected = session.looks.selected() == name.as_deref();
+            session.looks.select(name.filter(|_| !is_selected));
+        }
         Act::Watch(watched) => {
-            session.watched = if session.watched.as_ref() == Some(&watched) { None } else { Some(watched) };
+            let is_watched = session.looks.watched() == Some(&watched);
+            session.looks.watch(Some(watched).filter(|_| !is_watched));
         }
         Act::Shift(to) => session.relink(|chain, _| {
             chain.shift(index, to);
@@ -119,11 +123,11 @@ fn add(ui: &mut Ui, session: &mut Session) {
     let mut chosen = None;
     ui.horizontal(|ui| {
         ui.menu_button("Add a node", |ui| {
-            let mut groups: Vec<&str> = session.fitting.iter().map(|node| node.group).collect();
+            let mut groups: Vec<&str> = session.looks.fitting().iter().map(|node| node.group).collect();
             groups.dedup();
             for group in groups {
                 ui.menu_button(theme::capital(group), |ui| {
-                    for node in session.fitting.iter().filter(|node| node.group == group) {
+                    for node in session.looks.fitting().iter().filter(|node| node.group == group) {
                         if ui.button(node.label).on_hover_text(node.doc).clicked() {
                             chosen = Some(node.id);
                             ui.close();
@@ -132,12 +136,12 @@ fn add(ui: &mut Ui, session: &mut Session) {
                 });
             }
         });
-        if session.watched.is_some() && ui.button("Look at all").clicked() {
-            session.watched = None;
+        if session.looks.watched().is_some() && ui.button("Look at all").clicked() {
+            session.looks.watch(None);
         }
     });
     let Some(node) = chosen else { return };
-    let selected = session.selected.clone();
+    let selected = session.looks.selected().map(str::to_owned);
     let mut added = None;
     session.relink(|chain, library| {
         let after = selected.and_then(|name| chain.find(&name)).map(|at| at + 1);
@@ -145,7 +149,7 @@ fn add(ui: &mut Ui, session: &mut Session) {
         added = Some(chain.add(library, node, at)?);
         Ok(())
     });
-    if session.selected.is_some() {
-        session.selected = added;
+    if session.looks.selected().is_some() {
+        session.looks.select(added);
     }
 }

@@ -18,11 +18,11 @@ const FINENESS: u32 = 2;
 
 /// Shows the panes.
 pub fn show(ui: &mut Ui, rect: Rect, session: &mut Session) {
-    let Some(comparison) = &session.comparison else { return };
+    let Some(comparison) = &session.browser.comparison else { return };
     let looks = comparison.panes.clone();
     let scale = ui.pixels_per_point();
     ui.painter().rect_filled(rect, 0.0, theme::SURROUND);
-    let aspect = match (&session.playback, session.previews.picture()) {
+    let aspect = match (session.open.playback(), session.previews.picture()) {
         (Some(playback), _) => playback.size().0 as f32 / playback.size().1.max(1) as f32,
         _ => rect.width() / rect.height().max(1.0),
     };

@@ -21,7 +21,7 @@ const ROW: f32 = 22.0;
 pub fn show(ui: &mut Ui, session: &mut Session, parameter: &Parameter) {
     let differs = session.look().differs(parameter);
     let animated = session.look().is_animated(parameter);
-    let is_idle = session.idle.contains(&parameter.name);
+    let is_idle = session.looks.is_idle(parameter);
     let mut changed = None;
     let mut reset = false;
     ui.push_id(&parameter.name, |ui| {

@@ -5,7 +5,8 @@ use egui::{Align2, Button, Context, Grid, RichText, TextEdit, Ui};
 use super::theme;
 use crate::state::browser::title_edit::Words;
 use crate::state::outcome::Dialog;
-use crate::state::session::{Request, Session};
+use crate::state::session::Session;
+use crate::state::work::Request;
 
 /// Width of text fields in points.
 const FIELD: f32 = 340.0;
@@ -46,7 +47,7 @@ fn fields(ui: &mut Ui, words: &mut Words) -> bool {
 }
 
 fn saving(context: &Context, session: &mut Session) {
-    let Some(mut saving) = session.saving.take() else { return };
+    let Some(mut saving) = session.dialogs.saving.take() else { return };
     let (mut open, mut closes, mut done, mut chooses) = (true, false, false, false);
     let title = if saving.is_present { "Save the look" } else { "Save a copy" };
     window(context, title, &mut open, |ui| {
@@ -80,10 +81,10 @@ fn saving(context: &Context, session: &mut Session) {
         });
     });
     if open && !closes {
-        session.saving = Some(saving);
+        session.dialogs.saving = Some(saving);
     }
     if chooses {
-        session.requests.push(Request::Choose(Dialog::Save));
+        session.work.ask(Request::Choose(Dialog::Save));
     }
     if done {
         session.finish_saving();

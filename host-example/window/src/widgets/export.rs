@@ -6,11 +6,12 @@ use super::theme;
 use crate::state::document::kind::Kind;
 use crate::state::outcome::Dialog;
 use crate::state::plan::{Plan, What};
-use crate::state::session::{Request, Session};
+use crate::state::session::Session;
+use crate::state::work::Request;
 
 /// Shows the window while something is to be exported.
 pub fn show(context: &egui::Context, session: &mut Session) {
-    let Some(mut plan) = session.plan.take() else { return };
+    let Some(mut plan) = session.dialogs.plan.take() else { return };
     let mut open = true;
     let mut request = None;
     egui::Window::new("Export")
@@ -22,18 +23,18 @@ pub fn show(context: &egui::Context, session: &mut Session) {
             ui.set_width(460.0);
             Grid::new("export").num_columns(2).spacing([18.0, 8.0]).show(ui, |ui| {
                 kind(ui, &mut plan);
-                amount(ui, &mut plan, session.playback.as_ref().map(|playback| playback.number()));
+                amount(ui, &mut plan, session.open.playback().map(|playback| playback.number()));
                 if place(ui, &mut plan) {
                     request = Some(Request::Choose(Dialog::Export));
                 }
             });
             ui.add_space(10.0);
-            request = end(ui, &plan, session.exported.is_some()).or(request.take());
+            request = end(ui, &plan, session.work.exported.is_some()).or(request.take());
         });
     if open {
-        session.plan = Some(plan);
+        session.dialogs.plan = Some(plan);
     }
-    session.requests.extend(request);
+    request.into_iter().for_each(|request| session.work.ask(request));
 }
 
 /// Kind of the export, and its format.

@@ -10,7 +10,7 @@ const MARGIN: f32 = 110.0;
 
 /// Shows the help while it is wanted.
 pub fn show(context: &egui::Context, session: &mut Session) {
-    let mut open = session.shows_help;
+    let mut open = session.dialogs.shows_help;
     egui::Window::new("Keys and mouse")
         .open(&mut open)
         .collapsible(false)
@@ -27,7 +27,7 @@ pub fn show(context: &egui::Context, session: &mut Session) {
                     .color(theme::FAINT),
             );
         });
-    session.shows_help = open;
+    session.dialogs.shows_help = open;
 }
 
 fn list(ui: &mut Ui) {

@@ -43,25 +43,27 @@ pub fn press(session: &mut Session, key: &Key) {
     if *key == Key::Named(NamedKey::Escape) {
         return session.close_front();
     }
-    let is_elsewhere = session.leaving.is_shown() || session.has_dialog();
+    let is_elsewhere = session.dialogs.leaving.is_shown() || session.has_dialog();
     if is_elsewhere || session.is_covered() && cover(session, key) {
         return;
     }
     let toggled = |now: Compare, wanted: Compare| if now == wanted { Compare::Off } else { wanted };
     match key.as_ref() {
-        Key::Named(NamedKey::Space) => session.toggle_playing(),
+        Key::Named(NamedKey::Space) => session.open.toggle_playing(),
         // Before anything is open it goes from control to control.
-        Key::Named(NamedKey::Tab) if session.has_picture() => session.choose_next(),
+        Key::Named(NamedKey::Tab) if session.open.has_picture() => session.choose_next(),
         Key::Named(key @ (NamedKey::ArrowLeft | NamedKey::ArrowRight)) => {
-            if let Some(playback) = &mut session.playback {
+            if let Some(playback) = session.open.playback_mut() {
                 playback.step(if key == NamedKey::ArrowLeft { -1 } else { 1 });
             }
         }
-        Key::Named(NamedKey::F1) | Key::Character("?") => session.shows_help = !session.shows_help,
+        Key::Named(NamedKey::F1) | Key::Character("?") => {
+            session.dialogs.shows_help = !session.dialogs.shows_help
+        }
         Key::Character("l") => session.toggle_browser(),
         Key::Character("f") => session.frame_all(),
         Key::Character("c") => {
-            if let Some(scenery) = &mut session.scenery {
+            if let Some(scenery) = session.open.scenery_mut() {
                 scenery.use_file_camera();
             }
         }
@@ -82,13 +84,13 @@ pub fn press(session: &mut Session, key: &Key) {
 
 /// Handles a key where looks are shown instead of the picture; says whether it does anything there.
 fn cover(session: &mut Session, key: &Key) -> bool {
-    if session.shows_help {
+    if session.dialogs.shows_help {
         return false;
     }
     match key.as_ref() {
         Key::Named(NamedKey::Tab) => {}
-        Key::Character("c") if session.comparison.is_none() => session.compare_marked(),
-        _ if session.comparison.is_some() => return false,
+        Key::Character("c") if session.browser.comparison.is_none() => session.compare_marked(),
+        _ if session.browser.comparison.is_some() => return false,
         Key::Named(NamedKey::ArrowLeft) => session.browser.step(Step::Left),
         Key::Named(NamedKey::ArrowRight) => session.browser.step(Step::Right),
         Key::Named(NamedKey::ArrowUp) => session.browser.step(Step::Up),

@@ -3,12 +3,13 @@
 use egui::{ComboBox, RichText, Ui};
 
 use super::theme;
-use crate::state::session::{Request, Session};
+use crate::state::session::Session;
+use crate::state::work::Request;
 use isophote_pictures::exr::{Guide, Layer};
 
 /// True where there is anything to choose or to tell.
 pub fn has_any(session: &Session) -> bool {
-    session.playback.as_ref().is_some_and(|playback| {
+    session.open.playback().is_some_and(|playback| {
         let offers = &playback.info().offers;
         offers.layers.len() > 1
             || !views(&offers.layers, &offers.layer).is_empty()
@@ -18,7 +19,7 @@ pub fn has_any(session: &Session) -> bool {
 
 /// Shows the controls.
 pub fn show(ui: &mut Ui, session: &mut Session) {
-    let Some(playback) = &session.playback else { return };
+    let Some(playback) = session.open.playback() else { return };
     let offers = &playback.info().offers;
     let selection = &playback.info().selection;
     let mut request = None;
@@ -55,7 +56,7 @@ pub fn show(ui: &mut Ui, session: &mut Session) {
         .response
         .on_hover_text("Looks follow it. It was found by its name");
     }
-    session.requests.extend(request);
+    request.into_iter().for_each(|request| session.work.ask(request));
 }
 
 /// The views of a layer, if there are several.

@@ -22,7 +22,7 @@ enum Answer {
 
 /// Shows the question while it is asked.
 pub fn show(context: &Context, session: &mut Session) {
-    if !session.leaving.is_shown() {
+    if !session.dialogs.leaving.is_shown() {
         return;
     }
     egui::Popup::close_all(context);
@@ -37,9 +37,9 @@ pub fn show(context: &Context, session: &mut Session) {
     });
     match shown.inner {
         Some(Answer::Save) => session.save_and_leave(),
-        Some(Answer::Wait) => session.leaving = Leaving::Waits,
-        Some(Answer::Close) => session.leaving = Leaving::Closes,
-        Some(Answer::Cancel) => session.leaving = Leaving::Stays,
+        Some(Answer::Wait) => session.dialogs.leaving = Leaving::Waits,
+        Some(Answer::Close) => session.dialogs.leaving = Leaving::Closes,
+        Some(Answer::Cancel) => session.dialogs.leaving = Leaving::Stays,
         None => return,
     }
     context.request_repaint();
@@ -48,8 +48,8 @@ pub fn show(context: &Context, session: &mut Session) {
 /// Says what would be lost, or what is waited for.
 fn reasons(ui: &mut Ui, session: &Session) {
     let mut say = |text: String| ui.add(egui::Label::new(text).wrap());
-    let percent = session.exported.map(|share| format!("{:.0} %", (share * 100.0).floor()));
-    match (session.leaving, &percent) {
+    let percent = session.work.exported.map(|share| format!("{:.0} %", (share * 100.0).floor()));
+    match (session.dialogs.leaving, &percent) {
         (Leaving::Closes, _) => {
             say("The export is being ended.".into());
             return;
@@ -64,8 +64,8 @@ fn reasons(ui: &mut Ui, session: &Session) {
         }
         (_, None) => {}
     }
-    let unsaved = session.unsaved();
-    let names = unsaved.iter().take(MOST).map(|index| format!("“{}”", session.looks[*index].name));
+    let unsaved = session.looks.unsaved();
+    let names = unsaved.iter().take(MOST).map(|index| format!("“{}”", session.looks.list()[*index].name));
     let names = names.collect::<Vec<_>>().join(", ");
     match unsaved.len() {
         0 if percent.is_none() => drop(say("Nothing would be lost.".into())),
@@ -74,21 +74,21 @@ fn reasons(ui: &mut Ui, session: &Session) {
         count if count <= MOST => drop(say(format!("{count} looks are not saved: {names}."))),
         count => drop(say(format!("{count} looks are not saved: {names} and {} more.", count - MOST))),
     }
-    if session.exported.is_some() {
+    if session.work.exported.is_some() {
         ui.ctx().request_repaint_after(std::time::Duration::from_millis(200));
     }
 }
 
 /// The buttons. Return presses the first, which loses nothing, unless Tab has gone to another; Escape cancels.
 fn answers(ui: &mut Ui, session: &Session) -> Option<Answer> {
-    let unsaved = session.unsaved().len();
-    let is_exporting = session.exported.is_some();
+    let unsaved = session.looks.unsaved().len();
+    let is_exporting = session.work.exported.is_some();
     let close = match (unsaved > 0, is_exporting) {
         (true, _) => "Discard and close",
         (false, true) => "End the export and close",
         (false, false) => "Close",
     };
-    let offered: &[(Answer, &str)] = match session.leaving {
+    let offered: &[(Answer, &str)] = match session.dialogs.leaving {
         Leaving::Closes => &[],
         Leaving::Waits => &[(Answer::Cancel, "Cancel"), (Answer::Close, close)],
         _ if unsaved > 0 => {

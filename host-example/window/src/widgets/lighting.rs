@@ -4,14 +4,15 @@ use egui::{Button, RichText, Slider, Ui};
 
 use super::theme;
 use crate::state::outcome::Dialog;
-use crate::state::session::{Request, Session};
+use crate::state::session::Session;
+use crate::state::work::Request;
 use isophote_render::background::Background;
 use isophote_scene::camera::Direction;
 
 /// Shows the controls.
 pub fn show(ui: &mut Ui, session: &mut Session) {
     camera(ui, session);
-    let Some(scenery) = &session.scenery else { return };
+    let Some(scenery) = session.open.scenery() else { return };
     let sun = scenery.sun();
     let mut degrees = [sun.azimuth.to_degrees(), sun.elevation.to_degrees()];
     for (index, label, range, doc) in [
@@ -31,13 +32,13 @@ pub fn show(ui: &mut Ui, session: &mut Session) {
             session.relight(label, |light| light.sun = Some(Direction { azimuth, elevation }));
         }
     }
-    let mut exposure = session.scenery.as_ref().map_or(0.0, |scenery| scenery.lighting.exposure);
+    let mut exposure = session.open.scenery().map_or(0.0, |scenery| scenery.lighting.exposure);
     let doc = "Brightness of the scene in stops, before looks are put on it.";
     if row(ui, "Exposure", doc, |ui| Slider::new(&mut exposure, -4.0..=4.0).max_decimals(2).ui_in(ui)) {
         session.relight("exposure", |light| light.exposure = exposure);
     }
     background(ui, session);
-    let changed = session.scenery.as_ref().is_some_and(|scenery| scenery.lighting != Default::default());
+    let changed = session.open.scenery().is_some_and(|scenery| scenery.lighting != Default::default());
     if ui.add_enabled(changed, Button::new("Reset light")).clicked() {
         session.let_go();
         session.relight("light", |light| *light = Default::default());
@@ -71,7 +72,7 @@ impl InUi for Slider<'_> {
 }
 
 fn camera(ui: &mut Ui, session: &mut Session) {
-    let Some(scenery) = &mut session.scenery else { return };
+    let Some(scenery) = session.open.scenery_mut() else { return };
     let cameras = scenery.cameras();
     if cameras.is_empty() {
         return;
@@ -96,7 +97,7 @@ fn camera(ui: &mut Ui, session: &mut Session) {
 }
 
 fn background(ui: &mut Ui, session: &mut Session) {
-    let Some(scenery) = &session.scenery else { return };
+    let Some(scenery) = session.open.scenery() else { return };
     let name = match scenery.lighting.background {
         Background::Sky => "Sky",
         Background::Transparent => "Nothing",
@@ -118,12 +119,12 @@ fn background(ui: &mut Ui, session: &mut Session) {
                 }
             }
             if ui.button("A picture of the surroundings…").clicked() {
-                session.requests.push(Request::Choose(Dialog::Surroundings));
+                session.work.ask(Request::Choose(Dialog::Surroundings));
             }
         });
         shown.response.labelled_by(label.id);
     });
-    if matches!(session.scenery.as_ref().map(|s| &s.lighting.background), Some(Background::Environment(_))) {
+    if matches!(session.open.scenery().map(|s| &s.lighting.background), Some(Background::Environment(_))) {
         ui.label(RichText::new("It lights the scene, too.").small().color(theme::FAINT));
     }
 }

@@ -44,9 +44,9 @@ pub fn show(ui: &mut Ui, session: &mut Session) {
         bar(Panel::bottom("bottom")).show(ui, |ui| status::show(ui, session));
         let has_panel = match session.browser.is_open {
             true => size.x >= DETAILS,
-            false => !session.settings.panel_hidden && session.comparison.is_none(),
+            false => !session.settings.panel_hidden && session.browser.comparison.is_none(),
         };
-        if session.has_picture() && has_panel {
+        if session.open.has_picture() && has_panel {
             let frame = egui::Frame::new().fill(theme::PANEL).inner_margin(Margin {
                 left: 12,
                 right: 4,
@@ -68,13 +68,13 @@ pub fn show(ui: &mut Ui, session: &mut Session) {
     let [right, bottom] = [rect.max.x, rect.max.y].map(|v| (v * scale).round());
     session.viewport.area = Area { x, y, width: (right - x).max(1.0), height: (bottom - y).max(1.0) };
     if session.is_covered() {
-        session.pointer = None;
+        session.viewport.pointer = None;
     }
-    if session.comparison.is_some() {
+    if session.browser.comparison.is_some() {
         comparison::show(ui, rect, session);
     } else if session.browser.is_open {
         browser::show(ui, rect, session);
-    } else if session.has_picture() {
+    } else if session.open.has_picture() {
         canvas::show(ui, rect, session);
     } else {
         start::show(ui, session, has_room);

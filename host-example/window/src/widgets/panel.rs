@@ -15,7 +15,7 @@ pub fn show(ui: &mut Ui, session: &mut Session) {
     ui.add_space(6.0);
     ScrollArea::vertical().auto_shrink([false, false]).show(ui, |ui| {
         ui.set_width(ui.available_width() - 10.0);
-        let parameters = session.parameters.clone();
+        let parameters = session.looks.parameters().clone();
         if session.look().is_plain() {
             ui.label(
                 RichText::new("The picture as it is. Choose a look above, or press Tab.").color(theme::FAINT),
@@ -26,7 +26,7 @@ pub fn show(ui: &mut Ui, session: &mut Session) {
         for (heading, id, parameters) in sections(&shown) {
             section(ui, session, &heading, id, &parameters);
         }
-        if session.scenery.is_some() {
+        if session.open.scenery().is_some() {
             CollapsingHeader::new("Scene and light").default_open(false).show_unindented(ui, |ui| {
                 lighting::show(ui, session);
             });
@@ -50,9 +50,10 @@ fn chooser(ui: &mut Ui, session: &mut Session) {
         let mut chosen = None;
         let response =
             egui::ComboBox::from_id_salt("look").selected_text(name).width(width).show_ui(ui, |ui| {
-                for (index, look) in session.looks.iter().enumerate() {
+                for (index, look) in session.looks.list().iter().enumerate() {
                     let number = if index < 9 { format!("{}", index + 1) } else { String::new() };
-                    let entry = egui::Button::selectable(index == session.current(), look.name.as_str());
+                    let entry =
+                        egui::Button::selectable(index == session.looks.current(), look.name.as_str());
                     if ui.add(entry.shortcut_text(number)).clicked() {
                         chosen = Some(index);
                     }
@@ -65,7 +66,7 @@ fn chooser(ui: &mut Ui, session: &mut Session) {
         if ui.button("Looks").on_hover_text("All looks, as they make this picture (l)").clicked() {
             session.toggle_browser();
         }
-        let changed = session.parameters.iter().any(|parameter| session.look().differs(parameter));
+        let changed = session.looks.parameters().iter().any(|parameter| session.look().differs(parameter));
         let reset = ui.add_enabled(changed, egui::Button::new("Reset all"));
         if reset.on_hover_text("Set everything back to the style's defaults (r)").clicked() {
             session.reset_all();
@@ -75,7 +76,7 @@ fn chooser(ui: &mut Ui, session: &mut Session) {
 
 /// Parameters of the node that is selected, or of all.
 fn selected(session: &Session, parameters: &[Parameter]) -> Vec<Parameter> {
-    let Some(node) = &session.selected else { return parameters.to_vec() };
+    let Some(node) = session.looks.selected() else { return parameters.to_vec() };
     let own = |parameter: &&Parameter| parameter.name.rsplit_once('.').is_none_or(|(of, _)| of == node);
     parameters.iter().filter(own).cloned().collect()
 }

@@ -5,7 +5,8 @@ use egui::{Align2, Button, FontId, Id, Rect, RichText, Sense, Stroke, StrokeKind
 use super::{card, theme};
 use crate::state::outcome::Dialog;
 use crate::state::samples::SAMPLES;
-use crate::state::session::{Request, Session};
+use crate::state::session::Session;
+use crate::state::work::Request;
 
 /// Width of everything in points, and where there is room for larger pictures, which is in windows of this height.
 const WIDTHS: [f32; 2] = [420.0, 560.0];
@@ -19,7 +20,7 @@ const HEIGHTS: [f32; 3] = [220.0, 150.0, 24.0];
 
 /// Shows the start.
 pub fn show(ui: &mut Ui, session: &mut Session, has_room: bool) {
-    if !has_room || session.busy.is_some() && session.file.is_some() {
+    if !has_room || session.work.busy.is_some() && session.open.file().is_some() {
         return;
     }
     let room = ui.available_rect_before_wrap();
@@ -38,14 +39,15 @@ pub fn show(ui: &mut Ui, session: &mut Session, has_room: bool) {
                 Button::new(RichText::new(text.to_owned()).size(15.0)).min_size(vec2(260.0, 38.0))
             };
             let demo = large("Open the demo scene").fill(ui.visuals().selection.bg_fill);
-            if ui.add_enabled(session.busy.is_none(), demo).clicked() {
-                session.requests.push(Request::OpenDemo);
+            if ui.add_enabled(session.work.busy.is_none(), demo).clicked() {
+                session.work.ask(Request::OpenDemo);
             }
             if ui.add(large("Open a file…")).on_hover_text("Ctrl+O").clicked() {
-                session.requests.push(Request::Choose(Dialog::File));
+                session.work.ask(Request::Choose(Dialog::File));
             }
             ui.add_space(4.0);
             let hint = session
+                .work
                 .busy
                 .map_or_else(|| "or drop a file on this window".to_owned(), |what| format!("{what}…"));
             ui.label(RichText::new(hint).color(theme::FAINT));
@@ -66,9 +68,9 @@ fn samples(ui: &mut Ui, session: &mut Session, width: f32) {
     ui.horizontal(|ui| {
         ui.spacing_mut().item_spacing.x = GAP;
         for index in 0..SAMPLES.len() {
-            ui.add_enabled_ui(session.busy.is_none(), |ui| {
+            ui.add_enabled_ui(session.work.busy.is_none(), |ui| {
                 if sample(ui, session, index, width) {
-                    session.requests.push(Request::OpenSample(index));
+                    session.work.ask(Request::OpenSample(index));
                 }
             });
         }
@@ -82,7 +84,7 @@ fn sample(ui: &mut Ui, session: &mut Session, index: usize, width: f32) -> bool 
     response.widget_info(|| egui::WidgetInfo::labeled(egui::Role::Button, ui.is_enabled(), name));
     let picture = Rect::from_min_max(rect.min, rect.max - vec2(0.0, NAME));
     let is_chosen = response.hovered() || response.has_focus();
-    match session.thumbnails.texture(ui.ctx(), index) {
+    match session.previews.samples.texture(ui.ctx(), index) {
         Some(texture) => card::draw(ui, texture, picture, egui::Color32::WHITE),
         None => drop(ui.painter().rect_filled(picture, 0.0, theme::EMPTY)),
     }
@@ -108,7 +110,7 @@ fn recent(ui: &mut Ui, session: &mut Session, rows: usize) {
         let folder = path.parent().map(|folder| folder.display().to_string()).unwrap_or_default();
         ui.horizontal(|ui| {
             if ui.link(RichText::new(name).color(theme::TEXT)).clicked() {
-                session.requests.push(Request::Open(path.clone()));
+                session.work.ask(Request::Open(path.clone()));
             }
             ui.add(egui::Label::new(RichText::new(folder).small().color(theme::FAINT)).truncate());
         });

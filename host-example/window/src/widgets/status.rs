@@ -3,19 +3,20 @@
 use egui::{Button, DragValue, Label, RichText, Slider, Ui};
 
 use super::theme;
-use crate::state::session::{Request, Session};
+use crate::state::session::Session;
+use crate::state::work::Request;
 
 /// Shows the bar.
 pub fn show(ui: &mut Ui, session: &mut Session) {
     ui.horizontal(|ui| {
         ui.set_min_height(22.0);
-        if let Some(share) = session.exported {
+        if let Some(share) = session.work.exported {
             ui.add(egui::ProgressBar::new(share).desired_width(160.0).text("Exporting"));
             if ui.button("Cancel").clicked() {
-                session.requests.push(Request::CancelExport);
+                session.work.ask(Request::CancelExport);
             }
         }
-        if session.has_picture() {
+        if session.open.has_picture() {
             timeline(ui, session);
             frames(ui, session);
             if !session.is_covered() {
@@ -25,7 +26,7 @@ pub fn show(ui: &mut Ui, session: &mut Session) {
             ui.label(RichText::new(&session.record.adapter).small().color(theme::FAINT));
         }
         ui.with_layout(egui::Layout::right_to_left(egui::Align::Center), |ui| {
-            if session.has_picture() {
+            if session.open.has_picture() {
                 magnification(ui, session);
             }
         });
@@ -33,7 +34,7 @@ pub fn show(ui: &mut Ui, session: &mut Session) {
 }
 
 fn timeline(ui: &mut Ui, session: &mut Session) {
-    let Some(scenery) = &mut session.scenery else { return };
+    let Some(scenery) = session.open.scenery_mut() else { return };
     let (time, length) = scenery.time();
     if length <= 0.0 {
         return;
@@ -56,12 +57,12 @@ fn timeline(ui: &mut Ui, session: &mut Session) {
 
 /// Time of sequences and videos, by their frames.
 fn frames(ui: &mut Ui, session: &mut Session) {
-    let Some(playback) = &mut session.playback else { return };
+    let Some(playback) = session.open.playback_mut() else { return };
     let Some(frames) = playback.frames().cloned() else {
         if let Some(pattern) = playback.info().sequence() {
             let name = pattern.file_name().unwrap_or_default().to_string_lossy().into_owned();
             if ui.button(format!("Open all of {name}")).clicked() {
-                session.requests.push(Request::Open(pattern));
+                session.work.ask(Request::Open(pattern));
             }
         }
         return;
@@ -93,7 +94,7 @@ fn frames(ui: &mut Ui, session: &mut Session) {
 }
 
 fn probe(ui: &mut Ui, session: &Session) {
-    let Some([before, after]) = session.probed else { return };
+    let Some([before, after]) = session.viewport.probed else { return };
     let text = |color: [f32; 4]| color[..3].iter().map(|v| format!("{v:.3}")).collect::<Vec<_>>().join(" ");
     let line = format!("{}  →  {}", text(before), text(after));
     ui.add(Label::new(RichText::new(line).monospace().color(theme::FAINT)))

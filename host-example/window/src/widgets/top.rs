@@ -3,9 +3,11 @@
 use egui::{Button, RichText, Ui};
 
 use super::theme;
+use crate::state::command;
 use crate::state::outcome::Dialog;
-use crate::state::session::{Request, Session};
+use crate::state::session::Session;
 use crate::state::viewport::{Compare, Overlay};
+use crate::state::work::Request;
 
 /// Points of the bar, beside the menu, up to which the name is left out.
 const NARROW: f32 = 660.0;
@@ -15,12 +17,12 @@ pub fn show(ui: &mut Ui, session: &mut Session) {
     ui.horizontal(|ui| {
         ui.set_min_height(24.0);
         file_menu(ui, session);
-        let name = if session.has_picture() { session.name.as_str() } else { "Isophote" };
+        let name = if session.open.has_picture() { session.open.name() } else { "Isophote" };
         // The title of the window has it, too.
         if ui.available_width() > NARROW {
             ui.label(RichText::new(name).color(theme::FAINT));
         }
-        if !session.has_picture() {
+        if !session.open.has_picture() {
             return right(ui, session);
         }
         ui.add_space(10.0);
@@ -59,10 +61,10 @@ fn file_menu(ui: &mut Ui, session: &mut Session) {
             }
         }
         ui.separator();
-        let can_export = session.file.is_some() && (has_look || session.scenery.is_some());
+        let can_export = session.open.file().is_some() && (has_look || session.open.scenery().is_some());
         let copy = Button::new("Copy the command line").shortcut_text("");
-        if ui.add_enabled(session.file.is_some(), copy).clicked() {
-            ui.ctx().copy_text(session.copy_command());
+        if ui.add_enabled(session.open.file().is_some(), copy).clicked() {
+            ui.ctx().copy_text(command::copied(session));
             ui.close();
         }
         if ui.add_enabled(can_export, Button::new("Export…").shortcut_text("Ctrl+E")).clicked() {
@@ -77,7 +79,7 @@ fn file_menu(ui: &mut Ui, session: &mut Session) {
         for path in recent {
             let name = path.file_name().unwrap_or_default().to_string_lossy();
             if ui.button(name).on_hover_text(path.display().to_string()).clicked() {
-                session.requests.push(Request::Open(path));
+                session.work.ask(Request::Open(path));
                 ui.close();
             }
         }
@@ -93,7 +95,7 @@ fn file_menu(ui: &mut Ui, session: &mut Session) {
 
 fn item(ui: &mut Ui, session: &mut Session, text: &str, keys: &str, request: Request, enabled: bool) {
     if ui.add_enabled(enabled, Button::new(text).shortcut_text(keys)).clicked() {
-        session.requests.push(request);
+        session.work.ask(request);
         ui.close();
     }
 }
@@ -104,7 +106,7 @@ fn looks(ui: &mut Ui, session: &mut Session) {
     if ui.add(browser).on_hover_text("All looks, as they make this picture (l)").clicked() {
         session.toggle_browser();
     }
-    if session.comparison.is_some() {
+    if session.browser.comparison.is_some() {
         ui.label(RichText::new("A click takes a look").color(theme::FAINT));
         if ui.button("End the comparison").on_hover_text("Esc").clicked() {
             session.end_comparison();
@@ -129,27 +131,32 @@ fn compare(ui: &mut Ui, session: &mut Session) {
     if session.viewport.compare == Compare::Off {
         return;
     }
-    let name = session.compared.as_ref().map_or("Original", |look| look.name.as_str());
+    let mut chosen = None;
+    let name = session.looks.compared.as_ref().map_or("Original", |look| look.name.as_str());
     egui::ComboBox::from_id_salt("compared")
         .selected_text(format!("with {name}"))
         .width(130.0)
         .show_ui(ui, |ui| {
-            if ui.selectable_label(session.compared.is_none(), "Original").clicked() {
-                session.compared = None;
+            if ui.selectable_label(session.looks.compared.is_none(), "Original").clicked() {
+                session.looks.compared = None;
             }
             if !session.look().is_plain() && ui.selectable_label(false, "The look as it is now").clicked() {
                 let mut look = session.look().clone();
                 look.name += " before";
-                session.compared = Some(look);
+                chosen = Some(look);
             }
-            for look in session.looks.iter().filter(|look| !look.is_plain()) {
-                if ui.selectable_label(session.compared.as_ref() == Some(&**look), &look.name).clicked() {
-                    session.compared = Some((**look).clone());
+            for look in session.looks.list().iter().filter(|look| !look.is_plain()) {
+                let is_compared = session.looks.compared.as_ref() == Some(&**look);
+                if ui.selectable_label(is_compared, &look.name).clicked() {
+                    chosen = Some((**look).clone());
                 }
             }
         })
         .response
         .on_hover_text("What the look is compared with");
+    if chosen.is_some() {
+        session.looks.compared = chosen;
+    }
 }
 
 fn overlays(ui: &mut Ui, session: &mut Session) {
@@ -178,14 +185,14 @@ fn right(ui: &mut Ui, session: &mut Session) {
     let is_narrow = ui.available_width() < 260.0;
     ui.with_layout(egui::Layout::right_to_left(egui::Align::Center), |ui| {
         if ui.button("?").on_hover_text("Keys and mouse").clicked() {
-            session.shows_help = !session.shows_help;
+            session.dialogs.shows_help = !session.dialogs.shows_help;
         }
-        if !session.has_picture() || is_narrow {
+        if !session.open.has_picture() || is_narrow {
             return;
         }
-        let copy = ui.add_enabled(session.file.is_some(), Button::new("Copy command"));
+        let copy = ui.add_enabled(session.open.file().is_some(), Button::new("Copy command"));
         if copy.on_hover_text("The command line that gives this picture").clicked() {
-            ui.ctx().copy_text(session.copy_command());
+            ui.ctx().copy_text(command::copied(session));
         }
         let has_look = !session.look().is_plain();
         if ui.add_enabled(has_look, Button::new("Save look")).on_hover_text("Ctrl+S").clicked() {

@@ -12,6 +12,7 @@ use self::entry::{Entry, Group};
 use self::filter::Filter;
 use self::listing::{Found, Listing};
 use self::title_edit::TitleEdit;
+use super::comparison::Comparison;
 use isophote_loader::Library;
 
 /// Most looks that are compared at once.
@@ -40,6 +41,8 @@ pub struct Browser {
     pub deleting: Option<PathBuf>,
     /// Files and folders that may change.
     pub watched: Vec<PathBuf>,
+    /// The looks that are seen beside each other, if any.
+    pub comparison: Option<Comparison>,
     entries: Vec<Arc<Entry>>,
     numbered: u64,
 }

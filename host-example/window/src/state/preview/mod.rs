@@ -10,6 +10,7 @@ use egui::{ColorImage, Context, TextureHandle, TextureOptions};
 
 use self::order::{Done, Order, Task};
 use self::picture::Picture;
+use super::samples::Thumbnails;
 use isophote_files::error::Result;
 use isophote_loader::process::Part;
 
@@ -37,6 +38,8 @@ pub enum Place {
 /// Previews by their places, and what is known of the picture.
 #[derive(Default)]
 pub struct Previews {
+    /// Pictures that come with the program.
+    pub samples: Thumbnails,
     picture: Option<Arc<Picture>>,
     slots: HashMap<Place, Slot>,
     /// Places that were asked for in this frame, the most urgent first.

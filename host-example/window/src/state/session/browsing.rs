@@ -15,19 +15,18 @@ use crate::state::preview::picture::Picture;
 use crate::state::saving::Saving;
 use crate::state::viewport::Compare;
 use isophote_files::error::Error;
-use isophote_finishing::stylize::preset::Title;
 
 impl Session {
     /// True where something else is shown instead of the picture.
     pub fn is_covered(&self) -> bool {
-        self.browser.is_open || self.comparison.is_some()
+        self.browser.is_open || self.browser.comparison.is_some()
     }
 
     /// Opens the browser, or closes it.
     pub fn toggle_browser(&mut self) {
         if self.browser.is_open {
             self.browser.is_open = false;
-        } else if self.has_picture() {
+        } else if self.open.has_picture() {
             self.end_comparison();
             (self.browser.is_open, self.browser.is_outdated) = (true, true);
             self.select_present();
@@ -80,13 +79,13 @@ impl Session {
         }
         let before = std::mem::replace(&mut self.viewport.compare, Compare::Off);
         self.viewport.fit();
-        self.comparison = Some(Comparison { panes, before, from_browser: self.browser.is_open });
+        self.browser.comparison = Some(Comparison { panes, before, from_browser: self.browser.is_open });
         self.browser.is_open = false;
     }
 
     /// Shows the picture, or the browser again if it was open before.
     pub fn end_comparison(&mut self) {
-        if let Some(comparison) = self.comparison.take() {
+        if let Some(comparison) = self.browser.comparison.take() {
             self.viewport.compare = comparison.before;
             self.viewport.fit();
             self.browser.is_open = comparison.from_browser;
@@ -95,7 +94,8 @@ impl Session {
 
     /// Takes one of the looks that are compared.
     pub fn take_pane(&mut self, index: usize) {
-        let look = self.comparison.as_ref().and_then(|comparison| comparison.panes.get(index)).cloned();
+        let look =
+            self.browser.comparison.as_ref().and_then(|comparison| comparison.panes.get(index)).cloned();
         if let Some(look) = look {
             self.end_comparison();
             self.browser.is_open = false;
@@ -106,12 +106,12 @@ impl Session {
 
     /// Takes over the picture that previews are of, where it is another one; time that passes does not count.
     pub fn follow_picture(&mut self) {
-        if !self.is_covered() || self.is_playing() && self.previews.picture().is_some() {
+        if !self.is_covered() || self.open.is_playing() && self.previews.picture().is_some() {
             return;
         }
         let exposure = self.viewport.exposure.exp2();
         let known = self.previews.picture();
-        let picture = match &self.playback {
+        let picture = match self.open.playback() {
             Some(playback) => {
                 let Some((frame, _)) = playback.frame(false) else { return };
                 Picture { frame: Arc::clone(frame), size: playback.size(), exposure }
@@ -148,14 +148,11 @@ impl Session {
     pub fn write_title(&mut self) {
         let Some(TitleEdit { file, words }) = self.browser.title_edit.take() else { return };
         let title = words.title(&file);
-        self.edit_file(&file, || title_edit::write(&file, &title), |session| session.retitle(&file, &title));
-    }
-
-    /// The window's own copies of a look whose file has a new title.
-    fn retitle(&mut self, file: &Path, title: &Title) {
-        for look in self.looks.iter_mut().filter(|look| look.source == file) {
-            Arc::make_mut(look).retitle(title);
-        }
+        self.edit_file(
+            &file,
+            || title_edit::write(&file, &title),
+            |session| session.looks.retitle(&file, &title),
+        );
     }
 
     /// Deletes the file of a look, which its owner has agreed to, until undo brings it back.
@@ -173,7 +170,7 @@ impl Session {
 
     /// Saves the present look: to its own file, or after its name has been asked.
     pub fn save_look(&mut self, elsewhere: bool) {
-        let look = Arc::clone(&self.looks[self.current]);
+        let look = Arc::clone(self.looks.present());
         if look.is_plain() {
             return;
         }
@@ -186,7 +183,7 @@ impl Session {
                 saving.place(Some(&own));
                 self.write_look(saving);
             }
-            None => self.saving = Some(saving),
+            None => self.dialogs.saving = Some(saving),
         }
     }
 
@@ -196,15 +193,15 @@ impl Session {
         let mut saving = Saving::new(look, &self.settings.place_for_looks(), false);
         saving.words.name += " copy";
         saving.rename();
-        self.saving = Some(saving);
+        self.dialogs.saving = Some(saving);
     }
 
     /// Saves what was asked for. A file that is there is replaced only when that has been asked.
     pub fn finish_saving(&mut self) {
-        let Some(mut saving) = self.saving.take() else { return };
+        let Some(mut saving) = self.dialogs.saving.take() else { return };
         if saving.file().exists() && !saving.asks {
             saving.asks = true;
-            self.saving = Some(saving);
+            self.dialogs.saving = Some(saving);
             return;
         }
         self.write_look(saving);
@@ -219,14 +216,14 @@ impl Session {
                 }
                 self.notes.say(format!("Saved {}", look.source.display()));
                 self.browser.is_outdated = true;
-                self.keep(&look);
+                self.looks.keep(&look);
                 if saving.is_present {
                     self.saved(look);
                 }
             }
             Err(error) => {
                 saving.problem = Some(error.to_string());
-                self.saving = Some(saving);
+                self.dialogs.saving = Some(saving);
             }
         }
     }

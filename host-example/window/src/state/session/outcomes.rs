@@ -4,11 +4,11 @@ use std::mem;
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
 
-use super::{Request, Session};
-use crate::state::command;
+use super::Session;
 use crate::state::outcome::{Dialog, IdleControls, Opened, Outcome};
 use crate::state::progress::{Progress, State};
 use crate::state::scenery::{Scenery, Staging};
+use crate::state::work::Request;
 use isophote_files::error::Error;
 use isophote_loader::abi::IsophoteRequest;
 use isophote_scene::{Scene, camera, floor};
@@ -20,24 +20,24 @@ impl Session {
             Outcome::Opened(opened) => self.open(opened),
             Outcome::Chosen(dialog, path) => self.take_chosen(dialog, &path),
             Outcome::ExportBegun(begun) => {
-                self.plan = None;
+                self.dialogs.plan = None;
                 match begun {
-                    Ok(()) => self.exported = Some(0.0),
+                    Ok(()) => self.work.exported = Some(0.0),
                     Err(error) => self.notes.complain(&error),
                 }
             }
             Outcome::Export(progress) => self.follow_export(progress),
             Outcome::Listed(listing) => self.list(listing),
             Outcome::Preview(done) => self.previews.take(done),
-            Outcome::Samples(small) => self.thumbnails.take(small),
+            Outcome::Samples(small) => self.previews.samples.take(small),
             Outcome::Reread(source, read) => self.reload(&source, read),
             Outcome::Idle(IdleControls { look, asked, idle }) => {
                 if look == *self.look() && asked == self.asked() {
-                    self.idle = idle;
+                    self.looks.set_idle(idle);
                 }
             }
             Outcome::Frames(frames, wanted) => {
-                let taken = self.playback.as_mut().map_or(Ok(()), |playback| playback.take(frames, wanted));
+                let taken = self.open.playback_mut().map_or(Ok(()), |playback| playback.take(frames, wanted));
                 taken.unwrap_or_else(|error| self.notes.complain(&error));
             }
             Outcome::Failed(error) => self.notes.complain(&error),
@@ -46,7 +46,7 @@ impl Session {
 
     /// Requests since the last call.
     pub fn take_requests(&mut self) -> Vec<Request> {
-        let mut requests = mem::take(&mut self.requests);
+        let mut requests = self.work.take_requests();
         if self.browser.is_open && mem::take(&mut self.browser.is_outdated) {
             requests.push(Request::ListLooks);
         }
@@ -55,14 +55,8 @@ impl Session {
 
     /// Request of looks on the picture that is open.
     pub fn asked(&self) -> Option<IsophoteRequest> {
-        let (frame, _) = self.playback.as_ref()?.frame(false)?;
+        let (frame, _) = self.open.playback()?.frame(false)?;
         self.library.request((1, 1)).ok().map(|usual| frame.request_of_all(1.0, usual))
-    }
-
-    /// The command line of the present picture, to be put on the clipboard.
-    pub fn copy_command(&mut self) -> String {
-        self.notes.say("Copied the command line of this picture");
-        command::line(self)
     }
 
     fn open(&mut self, opened: Opened) {
@@ -72,12 +66,12 @@ impl Session {
                 self.open(*opened);
                 if left > 0 {
                     let files = if left == 1 { "One file more was" } else { "More files were" };
-                    let name = &self.name;
+                    let name = self.open.name();
                     self.notes.say(format!("{files} dropped; the first that opens is shown, {name}"));
                 }
             }
             Opened::Again(playback) => {
-                if self.file.as_deref() == Some(playback.path()) {
+                if self.open.file() == Some(playback.path()) {
                     self.show_again(*playback);
                 }
             }
@@ -119,12 +113,12 @@ impl Session {
                 self.browser.is_outdated = true;
             }
             Dialog::Save => {
-                if let Some(saving) = &mut self.saving {
+                if let Some(saving) = &mut self.dialogs.saving {
                     saving.place(Some(path));
                 }
             }
             Dialog::Export => {
-                if let Some(plan) = &mut self.plan {
+                if let Some(plan) = &mut self.dialogs.plan {
                     plan.path = path.display().to_string();
                 }
             }
@@ -133,7 +127,7 @@ impl Session {
 
     /// Says how far the export is, and what became of it.
     fn follow_export(&mut self, Progress { done, total, state }: Progress) {
-        self.exported = Some((done / total.max(1.0)) as f32);
+        self.work.exported = Some((done / total.max(1.0)) as f32);
         let is_done = state == State::Done;
         match state {
             State::Running => return,

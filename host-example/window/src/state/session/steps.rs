@@ -1,7 +1,6 @@
 //! Steps that are taken back and taken again: everything that makes the picture.
 
 use std::path::Path;
-use std::sync::Arc;
 
 use super::{Session, State};
 use crate::state::look::EditedLook;
@@ -12,18 +11,17 @@ impl Session {
     /// State that undo would bring back.
     pub(super) fn state(&self) -> State {
         State {
-            current: self.current,
-            looks: self.looks.clone(),
-            lighting: self.scenery.as_ref().map(|scenery| scenery.lighting.clone()),
+            current: self.looks.current(),
+            looks: self.looks.list().to_vec(),
+            lighting: self.open.scenery().map(|scenery| scenery.lighting.clone()),
             files: self.files.done(),
         }
     }
 
     fn restore(&mut self, state: State) {
         let State { current, looks, lighting, files } = state;
-        self.looks = looks;
-        self.turn_to(current);
-        if let (Some(scenery), Some(lighting)) = (&mut self.scenery, lighting) {
+        self.turn(current, |own| own.restore(looks, current));
+        if let (Some(scenery), Some(lighting)) = (self.open.scenery_mut(), lighting) {
             scenery.lighting = lighting;
             scenery.relight();
         }
@@ -68,9 +66,7 @@ impl Session {
     /// Changes the look; changes of the same thing are one step until [`Session::let_go`].
     pub fn edit(&mut self, what: &str, change: impl FnOnce(&mut EditedLook)) {
         let before = self.state();
-        let current = self.current;
-        change(Arc::make_mut(&mut self.looks[current]));
-        if self.look() != &*before.looks[current] {
+        if self.looks.edit(change) {
             self.edits.record(what, &before);
         }
     }
@@ -78,7 +74,7 @@ impl Session {
     /// Changes the light.
     pub fn relight(&mut self, what: &str, change: impl FnOnce(&mut Lighting)) {
         let before = self.state();
-        let Some(scenery) = &mut self.scenery else { return };
+        let Some(scenery) = self.open.scenery_mut() else { return };
         change(&mut scenery.lighting);
         if Some(&scenery.lighting) != before.lighting.as_ref() {
             scenery.relight();
