@@ -4,6 +4,7 @@ mod support;
 
 use egui_kittest::Harness;
 use egui_kittest::kittest::Queryable;
+use isophote_finishing::stylize::value::Value;
 use isophote_loader::Library;
 use isophote_scene::Scene;
 use isophote_window::state::chain::{self, Chain, Watched};
@@ -12,7 +13,6 @@ use isophote_window::state::look::EditedLook;
 use isophote_window::state::scenery::{Scenery, Staging};
 use isophote_window::state::session::Session;
 use isophote_window::state::settings::Settings;
-use isophote_window::state::value::Value;
 use isophote_window::widgets;
 
 fn library() -> Library {

@@ -9,6 +9,7 @@ use std::process::Command;
 use std::rc::Rc;
 use std::time::{Duration, Instant};
 
+use isophote_finishing::stylize::value::Value;
 use isophote_loader::Library;
 use isophote_render::gpu::Gpu;
 use isophote_scene::Scene;
@@ -18,7 +19,6 @@ use isophote_window::state::look::EditedLook;
 use isophote_window::state::scenery::{Scenery, Staging};
 use isophote_window::state::session::Session;
 use isophote_window::state::settings::Settings;
-use isophote_window::state::value::Value;
 use winit::application::ApplicationHandler;
 use winit::event::{StartCause, WindowEvent};
 use winit::event_loop::{ActiveEventLoop, ControlFlow, EventLoop};

@@ -12,13 +12,13 @@ use std::time::Duration;
 use egui::accesskit::Role;
 use egui_kittest::Harness;
 use egui_kittest::kittest::Queryable;
+use isophote_finishing::stylize::value::Value;
 use isophote_loader::Library;
 use isophote_window::jobs::document::{Document, Options};
 use isophote_window::state::leaving::Leaving;
 use isophote_window::state::look::EditedLook;
 use isophote_window::state::session::Session;
 use isophote_window::state::settings::Settings;
-use isophote_window::state::value::Value;
 use isophote_window::widgets;
 use winit::keyboard::{Key, NamedKey};
 

@@ -8,6 +8,7 @@ use std::collections::HashMap;
 use egui_kittest::Harness;
 use egui_kittest::kittest::{NodeT, Queryable};
 use isophote_files::files::Existing;
+use isophote_finishing::stylize::value::Value;
 use isophote_loader::Library;
 use isophote_pictures::floats::{self, Layer, Picture, Precision};
 use isophote_scene::Scene;
@@ -16,7 +17,6 @@ use isophote_window::state::look::EditedLook;
 use isophote_window::state::scenery::{Scenery, Staging};
 use isophote_window::state::session::Session;
 use isophote_window::state::settings::Settings;
-use isophote_window::state::value::Value;
 use isophote_window::state::work::Request;
 use isophote_window::widgets;
 

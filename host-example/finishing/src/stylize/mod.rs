@@ -8,10 +8,12 @@ pub mod precision;
 pub mod preset;
 pub mod source;
 pub mod style;
+pub mod value;
 
 use std::sync::Arc;
 
 use self::style::{Setting, Style};
+use self::value::Value;
 use isophote_example::frame_runner::{FrameRunner, Named};
 use isophote_example::guides;
 use isophote_example::history::Past;
@@ -93,6 +95,16 @@ impl Stylizer {
     /// As [`Style::set`].
     pub fn set(&mut self, setting: &Setting) -> Result<()> {
         self.style.set(setting)?;
+        self.edited = true;
+        Ok(())
+    }
+
+    /// As [`Stylizer::set`], by a value of the parameter's type.
+    ///
+    /// # Errors
+    /// As [`Style::set_value`].
+    pub fn set_value(&mut self, name: &str, node: u32, id: &str, value: &Value) -> Result<()> {
+        self.style.set_value(name, node, id, value)?;
         self.edited = true;
         Ok(())
     }

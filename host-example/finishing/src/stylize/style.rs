@@ -4,14 +4,15 @@ use std::ffi::OsStr;
 use std::path::Path;
 use std::str::FromStr;
 
-use serde_json::{Map, Value};
+use serde_json::{Map, Value as Json};
 
 use super::preset::{self, Lengths, Preset};
 use super::source;
+use super::value::Value;
 use isophote_files::error::{AtPlace, Error, Result};
 use isophote_files::{frames, output};
 use isophote_loader::abi::IsophoteRequest;
-use isophote_loader::catalogue::{Kind, Node};
+use isophote_loader::catalogue::Kind;
 use isophote_loader::{Graph, Library, Style as Tracks};
 
 /// One `--set`: `id=value`, or `node.id=value` for one node of a graph.
@@ -177,20 +178,35 @@ impl Style {
         self.tracks.value(name, frame)
     }
 
-    /// Sets a parameter of the node that is named, or of the only one that has it. Returns the index of the node
-    /// and what it says about itself.
+    /// Sets a parameter of the node that is named, or of the only one that has it.
     ///
     /// # Errors
     /// [`Error::Input`] when there is no such node or parameter, several nodes have the parameter, or it cannot
     /// have the value.
-    pub fn set(&self, setting: &Setting) -> Result<(u32, Node)> {
+    pub fn set(&self, setting: &Setting) -> Result<()> {
         let name = match &setting.node {
             Some(node) => format!("{node}.{}", setting.param),
             None => setting.param.clone(),
         };
         let fail = |e: isophote_loader::Error| e.at(format!("--set {setting}"), "see the graph's nodes");
-        let node = self.tracks.set(self.graph.handle(), &name, &setting.value).map_err(fail)?;
-        Ok((node, self.graph.spec(node).map_err(fail)?))
+        self.tracks.set(self.graph.handle(), &name, &setting.value).map_err(fail)?;
+        Ok(())
+    }
+
+    /// Sets the parameter `id` of a node, which has no keyframes, by a value of its type. `name` is what presets call it.
+    ///
+    /// # Errors
+    /// As [`Style::set`].
+    pub fn set_value(&self, name: &str, node: u32, id: &str, value: &Value) -> Result<()> {
+        let graph = &self.graph;
+        let set = match value {
+            Value::Float(value) => graph.set_float(node, id, *value),
+            Value::Int(value) => graph.set_int(node, id, *value),
+            Value::Bool(value) => graph.set_bool(node, id, *value),
+            Value::Choice(option) => graph.set_choice(node, id, option),
+            Value::Color(color) => graph.set_color(node, id, color),
+        };
+        set.map_err(|e| e.at(format!("--set {name}={}", value.text()), "see the graph's nodes"))
     }
 
     /// Makes all nodes that can be steady over time so, from 0 to 1.
@@ -237,7 +253,7 @@ impl Style {
     /// [`Error::Failure`] when the library fails.
     pub fn takes(&self, guide: &str) -> Result<bool> {
         let json = self.graph.to_json().map_err(|e| e.at(&self.name, "choose another style"))?;
-        let graph: Value = serde_json::from_str(&json).unwrap_or_default();
+        let graph: Json = serde_json::from_str(&json).unwrap_or_default();
         let nodes = graph["nodes"].as_array().into_iter().flatten();
         let mut sources = nodes.filter_map(|node| node["inputs"].as_object()).flat_map(Map::values);
         Ok(sources.any(|source| *source == format!("@{guide}")))
@@ -314,7 +330,7 @@ fn open_text(library: &Library, path: &Path, text: &str, preset: Option<&Preset>
 /// The text of the graph file that the preset of the file `path` names, if it names one. Of a node and a file of one name the
 /// node counts.
 fn graph_beside(library: &Library, path: &Path, preset: &Preset) -> Result<Option<String>> {
-    let inner = preset::style_beside(preset, path);
+    let inner = preset::style_beside(&preset.style, path);
     let named = Path::new(&inner);
     let is_no_file = preset.style.is_empty()
         || preset::is_written_out(&preset.style)

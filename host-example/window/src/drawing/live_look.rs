@@ -9,8 +9,6 @@ use isophote_example::plan_runner::Counts;
 use isophote_files::error::{Error, Result};
 use isophote_finishing::stylize::Stylizer;
 use isophote_finishing::stylize::precision::Precision;
-use isophote_finishing::stylize::preset::Track;
-use isophote_finishing::stylize::style::Setting;
 use isophote_loader::Library;
 use isophote_loader::abi::{IsophoteRequest, IsophoteSpace};
 use isophote_loader::catalogue::Kind;
@@ -249,33 +247,20 @@ impl Ready {
         if !is_same || (self.recipe.asked, self.recipe.precision) != (wanted.asked, wanted.precision) {
             return Ok(false);
         }
-        let track = |look: &EditedLook, parameter: &Parameter| {
-            look.preset
-                .params
-                .iter()
-                .rev()
-                .find(|(name, _)| *name == parameter.name)
-                .map(|(_, track)| track.clone())
-        };
-        let mut settings = Vec::new();
+        let mut changed = Vec::new();
         for parameter in &self.parameters {
-            let (before, after) = (track(old, parameter), track(new, parameter));
+            let [before, after] = [old, new].map(|look| look.preset.params.get(&parameter.name));
             if before == after {
                 continue;
             }
-            let is_still = |track: &Option<Track>| !matches!(track, Some(Track::Keys { .. }));
-            if parameter.param.structural || !is_still(&before) || !is_still(&after) {
+            if parameter.param.structural || old.is_animated(parameter) || new.is_animated(parameter) {
                 return Ok(false);
             }
-            let (node, param) = match parameter.name.rsplit_once('.') {
-                Some((node, param)) => (Some(node.to_owned()), param),
-                None => (None, parameter.name.as_str()),
-            };
-            let value = new.value(parameter).text();
-            settings.push(Setting { node, param: param.to_owned(), value });
+            changed.push(parameter);
         }
-        for setting in &settings {
-            self.stylizer.set(setting)?;
+        for parameter in changed {
+            let Parameter { name, node, param, .. } = parameter;
+            self.stylizer.set_value(name, *node, param.id, &new.value(parameter))?;
         }
         self.recipe = wanted.clone();
         Ok(true)

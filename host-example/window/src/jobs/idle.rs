@@ -4,12 +4,12 @@ use std::collections::HashSet;
 use std::sync::Arc;
 
 use super::worker::{Wake, Worker};
-use crate::state::look::EditedLook;
+use crate::state::look::{EditedLook, Parameter};
 use crate::state::outcome::{IdleControls, Outcome};
 use crate::state::session::Session;
-use crate::state::value::Value;
 use isophote_files::error::Result;
 use isophote_finishing::stylize::frame_request;
+use isophote_finishing::stylize::value::Value;
 use isophote_loader::Library;
 use isophote_loader::Plan;
 use isophote_loader::abi::IsophoteRequest;
@@ -83,7 +83,8 @@ fn find(IdleRequest { library, look, asked }: &IdleRequest) -> Result<HashSet<St
     let now = Work::of(&style.plan(library, &request, known)?);
     for parameter in look.parameters(library)? {
         let present = look.value(&parameter);
-        let set = |value: &Value| style.graph.set(parameter.node, parameter.param.id, &value.text());
+        let Parameter { name, node, param, .. } = &parameter;
+        let set = |value: &Value| style.set_value(name, *node, param.id, value);
         let has_effect = present.others(&parameter.param.kind).iter().any(|other| {
             set(other).is_ok() && {
                 let known = style.past(library, &request).map_or(0, |past| past.frames.min(1));

@@ -6,12 +6,13 @@ use std::sync::Arc;
 use serde_json::Value as Json;
 
 use super::chain::{Chain, Watched};
-use super::value::Value;
+use super::values::{Held, TypedPreset, Values};
 use isophote_files::error::{AtPlace, Error, Result};
 use isophote_files::files::{self, Existing};
-use isophote_finishing::stylize::preset::{self, Preset, Title, Track};
+use isophote_finishing::stylize::preset::{self, Preset, Title};
 use isophote_finishing::stylize::source;
 use isophote_finishing::stylize::style::{Setting, Style};
+use isophote_finishing::stylize::value::Value;
 use isophote_loader::Library;
 use isophote_loader::catalogue::Param;
 
@@ -26,9 +27,9 @@ pub struct EditedLook {
     /// Name that it was opened by: the id of a node, or the path of a graph file or preset.
     pub source: PathBuf,
     /// Style and parameters. The paths of graph files are relative to `source`.
-    pub preset: Preset,
+    pub preset: TypedPreset,
     /// Preset that `source` gives by itself.
-    opened: Preset,
+    opened: TypedPreset,
     /// Content of the graph file that it was opened with.
     graph: Option<Arc<str>>,
 }
@@ -51,7 +52,7 @@ pub struct Parameter {
 impl EditedLook {
     /// The look that leaves pictures as they are.
     pub fn plain() -> Self {
-        let preset = bare(String::new());
+        let preset = TypedPreset::bare(String::new());
         Self { name: "Original".into(), source: PLAIN.into(), opened: preset.clone(), preset, graph: None }
     }
 
@@ -65,13 +66,16 @@ impl EditedLook {
         }
         let id = path.to_str().unwrap_or_default();
         let (name, preset) = match library.find_node(id) {
-            Ok(node) => (node.label.to_owned(), bare(node.id.to_owned())),
+            Ok(node) => (node.label.to_owned(), TypedPreset::bare(node.id.to_owned())),
             // Whatever is no node may be a file; if it is not, this says so in the best words.
             Err(_) => {
                 Style::load(library, path, &[])?;
                 let text = source::read(path)?;
                 let file = path.file_name().unwrap_or_default().to_string_lossy().into_owned();
-                let preset = if preset::is_graph(&text) { bare(file) } else { preset::parse(path, &text)? };
+                let preset = match preset::is_graph(&text) {
+                    true => TypedPreset::bare(file),
+                    false => TypedPreset::parse(path, &text)?,
+                };
                 let stem = path.file_stem().unwrap_or_default().to_string_lossy().into_owned();
                 (preset.title.name.clone().unwrap_or(stem), preset)
             }
@@ -80,6 +84,8 @@ impl EditedLook {
         look.style(library)?;
         let parameters = look.parameters(library)?;
         look.use_names_of(&parameters);
+        let named = |name: &str| parameters.iter().find(|parameter| parameter.name == name);
+        look.preset.params.take_types(|name| named(name).map(|parameter| &parameter.param.kind));
         look.opened = look.preset.clone();
         look.graph = look.graph_file().map(|file| source::read(&file)).transpose()?.map(Into::into);
         Ok(look)
@@ -98,7 +104,7 @@ impl EditedLook {
         if self.is_plain() {
             return Ok(None);
         }
-        Style::of_preset(library, &self.source, &self.preset).map(Some)
+        Style::of_preset(library, &self.source, &self.preset.written()).map(Some)
     }
 
     /// All parameters, in the order of the nodes and their declarations.
@@ -106,7 +112,8 @@ impl EditedLook {
     /// # Errors
     /// As [`Style::of_preset`].
     pub fn parameters(&self, library: &Library) -> Result<Vec<Parameter>> {
-        let bare = Self { preset: Preset { params: Vec::new(), ..self.preset.clone() }, ..self.clone() };
+        let bare =
+            Self { preset: TypedPreset { params: Values::default(), ..self.preset.clone() }, ..self.clone() };
         let Some(style) = bare.style(library)? else { return Ok(Vec::new()) };
         let failed = |e: isophote_loader::Error| e.at(&self.name, "choose another look");
         let is_single = library.find_node(&self.preset.style).is_ok();
@@ -131,32 +138,25 @@ impl EditedLook {
 
     /// Writes all values under the names of these parameters; presets may leave out the node where only one has it.
     fn use_names_of(&mut self, parameters: &[Parameter]) {
-        for (name, _) in &mut self.preset.params {
-            if parameters.iter().all(|parameter| parameter.name != *name)
-                && let Some(parameter) = parameters.iter().find(|parameter| parameter.param.id == *name)
-            {
-                name.clone_from(&parameter.name);
+        self.preset.params.rename(|name| {
+            if parameters.iter().any(|parameter| parameter.name == name) {
+                return None;
             }
-        }
+            let parameter = parameters.iter().find(|parameter| parameter.param.id == name)?;
+            Some(parameter.name.clone())
+        });
     }
 
     /// The value of a parameter at the first keyframe, or everywhere.
     pub fn value(&self, parameter: &Parameter) -> Value {
-        let track = self.preset.params.iter().rev().find(|(name, _)| *name == parameter.name);
-        let text = track.and_then(|(_, track)| match track {
-            Track::Still(text) => Some(text),
-            Track::Keys { keys, .. } => keys.first().map(|(_, text)| text),
-        });
-        text.and_then(|text| Value::parse(&parameter.param.kind, text))
-            .unwrap_or_else(|| parameter.default.clone())
+        let held = self.preset.params.get(&parameter.name);
+        let value = held.and_then(|held| held.first(&parameter.param.kind));
+        value.unwrap_or_else(|| parameter.default.clone())
     }
 
     /// True where a parameter changes from frame to frame.
     pub fn is_animated(&self, parameter: &Parameter) -> bool {
-        self.preset
-            .params
-            .iter()
-            .any(|(name, track)| *name == parameter.name && matches!(track, Track::Keys { .. }))
+        self.preset.params.get(&parameter.name).is_some_and(Held::is_animated)
     }
 
     /// True where a parameter is not what it is where nobody changes it.
@@ -166,18 +166,16 @@ impl EditedLook {
 
     /// Gives a parameter one value for all frames.
     pub fn set(&mut self, parameter: &Parameter, value: &Value) {
-        let track = Track::Still(value.text());
-        let place = self.preset.params.iter_mut().find(|(name, _)| *name == parameter.name);
-        match place {
-            _ if *value == parameter.default => self.reset(parameter),
-            Some((_, old)) => *old = track,
-            None => self.preset.params.push((parameter.name.clone(), track)),
+        if *value == parameter.default {
+            self.reset(parameter);
+        } else {
+            self.preset.params.set(&parameter.name, value);
         }
     }
 
     /// Gives a parameter its default.
     pub fn reset(&mut self, parameter: &Parameter) {
-        self.preset.params.retain(|(name, _)| *name != parameter.name);
+        self.preset.params.remove(&parameter.name);
     }
 
     /// Takes a setting of the command line over, if there is such a parameter.
@@ -193,7 +191,7 @@ impl EditedLook {
     }
 
     /// Preset that it was opened or saved as.
-    pub fn opened(&self) -> &Preset {
+    pub fn opened(&self) -> &TypedPreset {
         &self.opened
     }
 
@@ -264,7 +262,8 @@ impl EditedLook {
         if self.is_written_out() {
             return Ok(Chain::read(library, &self.preset.style));
         }
-        let bare = Self { preset: Preset { params: Vec::new(), ..self.preset.clone() }, ..self.clone() };
+        let bare =
+            Self { preset: TypedPreset { params: Values::default(), ..self.preset.clone() }, ..self.clone() };
         let Some(style) = bare.style(library)? else { return Ok(None) };
         let json = style
             .graph
@@ -282,11 +281,10 @@ impl EditedLook {
         look.preset.style = chain.json();
         if !self.is_written_out() && library.find_node(&self.preset.style).is_ok() {
             // A node on its own has parameters without a name before them.
-            for (name, _) in look.preset.params.iter_mut().filter(|(name, _)| !name.contains('.')) {
-                *name = format!("{}.{name}", self.preset.style);
-            }
+            let style = &self.preset.style;
+            look.preset.params.rename(|name| (!name.contains('.')).then(|| format!("{style}.{name}")));
         }
-        look.preset.params.retain(|(name, _)| name.rsplit_once('.').is_some_and(|(node, _)| chain.has(node)));
+        look.preset.params.retain(|name| name.rsplit_once('.').is_some_and(|(node, _)| chain.has(node)));
         look.style(library)?;
         Ok(look)
     }
@@ -294,7 +292,7 @@ impl EditedLook {
     /// The look as a part of its list shows it.
     pub fn watched(&self, library: &Library, chain: &Chain, watched: &Watched) -> Result<Self> {
         let look = self.with_chain(library, chain)?;
-        let preset = Preset { style: chain.watched(watched), ..look.preset };
+        let preset = TypedPreset { style: chain.watched(watched), ..look.preset };
         Ok(Self { preset, ..look })
     }
 
@@ -304,18 +302,16 @@ impl EditedLook {
         if self.rebuilt().is_some() {
             opened.preset.params.clear();
         }
-        let track = |look: &Self, name: &str| {
-            look.preset.params.iter().rev().find(|(own, _)| own == name).map(|(_, track)| track.clone())
-        };
+        let held = |look: &Self, name: &str| look.preset.params.get(name).cloned();
         let is_changed =
-            |parameter: &&Parameter| track(&opened, &parameter.name) != track(self, &parameter.name);
+            |parameter: &&Parameter| held(&opened, &parameter.name) != held(self, &parameter.name);
         let text = |parameter: &Parameter| format!("{}={}", parameter.name, self.value(parameter).text());
         parameters.iter().filter(is_changed).map(text).collect()
     }
 
     /// Name of the style for `apply` and `render`: the id of a node, or the path of a graph file.
     pub fn style_name(&self) -> PathBuf {
-        preset::style_beside(&self.preset, &self.source).into()
+        preset::style_beside(&self.preset.style, &self.source).into()
     }
 
     /// The preset as it can be read from anywhere: the path of its graph file is absolute.
@@ -325,14 +321,14 @@ impl EditedLook {
     pub fn whole(&self) -> Result<Preset> {
         let graph = self.style_name();
         if self.is_written_out() || graph.extension().is_none() {
-            return Ok(self.preset.clone());
+            return Ok(self.preset.written());
         }
         let whole =
             std::path::absolute(&graph).unwrap_or_else(|_| graph.clone()).into_os_string().into_string();
         let style = whole.map_err(|_| {
             Error::file(&graph, "has a path that is no UTF-8, which no preset can hold", "rename it")
         })?;
-        Ok(Preset { style, ..self.preset.clone() })
+        Ok(Preset { style, ..self.preset.written() })
     }
 
     /// Writes the look as a preset with a title, and is what is in that file from then on.
@@ -344,11 +340,11 @@ impl EditedLook {
         if !is_json(file) {
             return Err(Error::file(file, "is no name of a look", "end it in .json"));
         }
-        let mut preset = Preset { title, ..self.preset.clone() };
+        let mut preset = TypedPreset { title, ..self.preset.clone() };
         if self.source.parent() != file.parent() {
             preset.style = self.whole()?.style;
         }
-        let text = preset::text(&preset)?;
+        let text = preset::text(&preset.written())?;
         files::write_bytes(file, Existing::Replace, text.as_bytes())?;
         self.opened = preset.clone();
         self.preset = preset;
@@ -360,11 +356,6 @@ impl EditedLook {
 
 fn is_json(path: &Path) -> bool {
     path.extension().is_some_and(|extension| extension.eq_ignore_ascii_case("json"))
-}
-
-/// A style without any settings.
-fn bare(style: String) -> Preset {
-    Preset { title: Title::default(), style, lengths: None, params: Vec::new() }
 }
 
 /// A value of a graph file as people write it.

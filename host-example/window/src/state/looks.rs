@@ -7,8 +7,9 @@ use std::sync::Arc;
 
 use super::chain::{self, Chain, Watched};
 use super::look::{EditedLook, Parameter};
+use super::values::TypedPreset;
 use isophote_files::error::Result;
-use isophote_finishing::stylize::preset::{Lengths, Preset, Title};
+use isophote_finishing::stylize::preset::{Lengths, Title};
 use isophote_finishing::stylize::style::Setting;
 use isophote_loader::Library;
 use isophote_loader::catalogue::Node;
@@ -35,7 +36,7 @@ pub struct Looks {
     fitting: Vec<Node>,
     /// Looks as their files have them, or as the command line has made them: that much is not lost with the window.
     /// Others are as they were opened.
-    kept: HashMap<PathBuf, Preset>,
+    kept: HashMap<PathBuf, TypedPreset>,
 }
 
 impl Looks {
@@ -225,18 +226,8 @@ impl Looks {
         let is_lost = |index: &usize| {
             let look = &self.list[*index];
             let kept = self.kept.get(&look.source).unwrap_or_else(|| look.opened());
-            !look.is_plain() && !says_the_same(kept, &look.preset)
+            !look.is_plain() && !kept.says_the_same(&look.preset)
         };
         (0..self.list.len()).filter(is_lost).collect()
     }
-}
-
-/// True where two looks give the same pictures by the same words. Names and tags are written when they are typed.
-fn says_the_same(a: &Preset, b: &Preset) -> bool {
-    let sorted = |preset: &Preset| {
-        let mut params = preset.params.clone();
-        params.sort_by(|(a, _), (b, _)| a.cmp(b));
-        params
-    };
-    a.style == b.style && a.lengths == b.lengths && sorted(a) == sorted(b)
 }

@@ -25,6 +25,6 @@ pub mod saving;
 pub mod scenery;
 pub mod session;
 pub mod settings;
-pub mod value;
+pub mod values;
 pub mod viewport;
 pub mod work;

@@ -5,7 +5,7 @@ use egui::{Align, Button, Color32, DragValue, Layout, Response, RichText, Sense,
 use super::theme;
 use crate::state::look::Parameter;
 use crate::state::session::Session;
-use crate::state::value::Value;
+use isophote_finishing::stylize::value::Value;
 use isophote_loader::catalogue::{Choice, ParamKind};
 
 /// Width of the label in points.

@@ -1,5 +1,7 @@
 //! The panel at the side: which look, and all of its parameters.
 
+use std::sync::Arc;
+
 use egui::{CollapsingHeader, RichText, ScrollArea, Ui};
 
 use super::{chain, control, layers, lighting, theme};
@@ -15,7 +17,7 @@ pub fn show(ui: &mut Ui, session: &mut Session) {
     ui.add_space(6.0);
     ScrollArea::vertical().auto_shrink([false, false]).show(ui, |ui| {
         ui.set_width(ui.available_width() - 10.0);
-        let parameters = session.looks.parameters().clone();
+        let parameters = Arc::clone(session.looks.parameters());
         if session.look().is_plain() {
             ui.label(
                 RichText::new("The picture as it is. Choose a look above, or press Tab.").color(theme::FAINT),
@@ -75,21 +77,24 @@ fn chooser(ui: &mut Ui, session: &mut Session) {
 }
 
 /// Parameters of the node that is selected, or of all.
-fn selected(session: &Session, parameters: &[Parameter]) -> Vec<Parameter> {
-    let Some(node) = session.looks.selected() else { return parameters.to_vec() };
+fn selected<'p>(session: &Session, parameters: &'p [Parameter]) -> Vec<&'p Parameter> {
+    let Some(node) = session.looks.selected() else { return parameters.iter().collect() };
     let own = |parameter: &&Parameter| parameter.name.rsplit_once('.').is_none_or(|(of, _)| of == node);
-    parameters.iter().filter(own).cloned().collect()
+    parameters.iter().filter(own).collect()
 }
 
+/// A heading with its id, and the parameters below it.
+type Section<'p> = (String, String, Vec<&'p Parameter>);
+
 /// Parameters by their headings, in the order of the declarations; nodes of a graph one after the other.
-fn sections(parameters: &[Parameter]) -> Vec<(String, String, Vec<Parameter>)> {
+fn sections<'p>(parameters: &[&'p Parameter]) -> Vec<Section<'p>> {
     let several = parameters.iter().any(|parameter| parameter.node != parameters[0].node);
-    let mut sections: Vec<(String, String, Vec<Parameter>)> = Vec::new();
-    for parameter in parameters {
+    let mut sections: Vec<Section<'p>> = Vec::new();
+    for parameter in parameters.iter().copied() {
         let group = parameter.param.group;
         let id = format!("{} {group}", parameter.node);
         match sections.iter_mut().find(|(_, known, _)| *known == id) {
-            Some((.., list)) => list.push(parameter.clone()),
+            Some((.., list)) => list.push(parameter),
             None => {
                 let heading = match (several, group) {
                     (false, "") => "Look".to_owned(),
@@ -97,14 +102,14 @@ fn sections(parameters: &[Parameter]) -> Vec<(String, String, Vec<Parameter>)> {
                     (true, "") => parameter.of.to_owned(),
                     (true, group) => format!("{}: {group}", parameter.of),
                 };
-                sections.push((heading, id, vec![parameter.clone()]));
+                sections.push((heading, id, vec![parameter]));
             }
         }
     }
     sections
 }
 
-fn section(ui: &mut Ui, session: &mut Session, heading: &str, id: String, parameters: &[Parameter]) {
+fn section(ui: &mut Ui, session: &mut Session, heading: &str, id: String, parameters: &[&Parameter]) {
     let differing = parameters.iter().filter(|parameter| session.look().differs(parameter)).count();
     let mut text = RichText::new(heading).strong();
     if differing > 0 {

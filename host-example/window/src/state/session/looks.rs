@@ -7,8 +7,8 @@ use super::Session;
 use crate::state::chain::Chain;
 use crate::state::look::{EditedLook, Parameter};
 use crate::state::looks::Looks;
-use crate::state::value::Value;
 use isophote_files::error::Result;
+use isophote_finishing::stylize::value::Value;
 use isophote_loader::Library;
 
 impl Session {

@@ -1,6 +1,6 @@
 //! Values of parameters as controls hold them, and as text that `--set` and presets take.
 
-use isophote_finishing::stylize::preset;
+use super::preset;
 use isophote_loader::catalogue::ParamKind;
 
 /// A value of a parameter.
