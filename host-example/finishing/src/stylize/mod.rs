@@ -99,12 +99,14 @@ impl Stylizer {
         Ok(())
     }
 
-    /// As [`Stylizer::set`], by a value of the parameter's type.
+    /// Sets the parameter `id` of a node, which has no keyframes, by a value of its type; it takes effect with the next
+    /// [`Stylizer::update`]. `name` is what presets call it.
     ///
     /// # Errors
-    /// As [`Style::set_value`].
+    /// [`isophote_files::error::Error::Input`] when there is no such parameter, or it cannot have this value.
     pub fn set_value(&mut self, name: &str, node: u32, id: &str, value: &Value) -> Result<()> {
-        self.style.set_value(name, node, id, value)?;
+        let set = value.put(&self.style.graph, node, id);
+        set.map_err(|e| e.at(format!("--set {name}={}", value.text()), "see the graph's nodes"))?;
         self.edited = true;
         Ok(())
     }

@@ -4,11 +4,10 @@ use std::ffi::OsStr;
 use std::path::Path;
 use std::str::FromStr;
 
-use serde_json::{Map, Value as Json};
+use serde_json::{Map, Value};
 
 use super::preset::{self, Lengths, Preset};
 use super::source;
-use super::value::Value;
 use isophote_files::error::{AtPlace, Error, Result};
 use isophote_files::{frames, output};
 use isophote_loader::abi::IsophoteRequest;
@@ -193,22 +192,6 @@ impl Style {
         Ok(())
     }
 
-    /// Sets the parameter `id` of a node, which has no keyframes, by a value of its type. `name` is what presets call it.
-    ///
-    /// # Errors
-    /// As [`Style::set`].
-    pub fn set_value(&self, name: &str, node: u32, id: &str, value: &Value) -> Result<()> {
-        let graph = &self.graph;
-        let set = match value {
-            Value::Float(value) => graph.set_float(node, id, *value),
-            Value::Int(value) => graph.set_int(node, id, *value),
-            Value::Bool(value) => graph.set_bool(node, id, *value),
-            Value::Choice(option) => graph.set_choice(node, id, option),
-            Value::Color(color) => graph.set_color(node, id, color),
-        };
-        set.map_err(|e| e.at(format!("--set {name}={}", value.text()), "see the graph's nodes"))
-    }
-
     /// Makes all nodes that can be steady over time so, from 0 to 1.
     ///
     /// # Errors
@@ -253,7 +236,7 @@ impl Style {
     /// [`Error::Failure`] when the library fails.
     pub fn takes(&self, guide: &str) -> Result<bool> {
         let json = self.graph.to_json().map_err(|e| e.at(&self.name, "choose another style"))?;
-        let graph: Json = serde_json::from_str(&json).unwrap_or_default();
+        let graph: Value = serde_json::from_str(&json).unwrap_or_default();
         let nodes = graph["nodes"].as_array().into_iter().flatten();
         let mut sources = nodes.filter_map(|node| node["inputs"].as_object()).flat_map(Map::values);
         Ok(sources.any(|source| *source == format!("@{guide}")))

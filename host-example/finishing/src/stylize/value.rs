@@ -2,6 +2,7 @@
 
 use super::preset;
 use isophote_loader::catalogue::ParamKind;
+use isophote_loader::{Graph, Result};
 
 /// A value of a parameter.
 #[derive(Clone, Debug, PartialEq)]
@@ -58,6 +59,20 @@ impl Value {
             Self::Bool(value) => value.to_string(),
             Self::Choice(id) => id.clone(),
             Self::Color(color) => color_text(*color),
+        }
+    }
+
+    /// Sets a parameter of a node of a graph to it, by its type.
+    ///
+    /// # Errors
+    /// As [`Graph::set_float`].
+    pub fn put(&self, graph: &Graph, node: u32, param: &str) -> Result<()> {
+        match self {
+            Self::Float(value) => graph.set_float(node, param, *value),
+            Self::Int(value) => graph.set_int(node, param, *value),
+            Self::Bool(value) => graph.set_bool(node, param, *value),
+            Self::Choice(option) => graph.set_choice(node, param, option),
+            Self::Color(color) => graph.set_color(node, param, color),
         }
     }
 

@@ -4,7 +4,7 @@ use std::collections::HashSet;
 use std::sync::Arc;
 
 use super::worker::{Wake, Worker};
-use crate::state::look::{EditedLook, Parameter};
+use crate::state::look::EditedLook;
 use crate::state::outcome::{IdleControls, Outcome};
 use crate::state::session::Session;
 use isophote_files::error::Result;
@@ -83,8 +83,7 @@ fn find(IdleRequest { library, look, asked }: &IdleRequest) -> Result<HashSet<St
     let now = Work::of(&style.plan(library, &request, known)?);
     for parameter in look.parameters(library)? {
         let present = look.value(&parameter);
-        let Parameter { name, node, param, .. } = &parameter;
-        let set = |value: &Value| style.set_value(name, *node, param.id, value);
+        let set = |value: &Value| value.put(&style.graph, parameter.node, parameter.param.id);
         let has_effect = present.others(&parameter.param.kind).iter().any(|other| {
             set(other).is_ok() && {
                 let known = style.past(library, &request).map_or(0, |past| past.frames.min(1));

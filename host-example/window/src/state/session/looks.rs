@@ -47,6 +47,14 @@ impl Session {
         }
     }
 
+    /// Changes the look; changes of the same thing are one step until [`Session::let_go`].
+    pub fn edit(&mut self, what: &str, change: impl FnOnce(&mut EditedLook)) {
+        let before = self.state();
+        if self.looks.edit(change) {
+            self.edits.record(what, &before);
+        }
+    }
+
     /// Gives a parameter a value.
     pub fn set(&mut self, parameter: &Parameter, value: &Value) {
         self.edit(&parameter.name, |look| look.set(parameter, value));

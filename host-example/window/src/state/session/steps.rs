@@ -3,7 +3,6 @@
 use std::path::Path;
 
 use super::{Session, State};
-use crate::state::look::EditedLook;
 use crate::state::scenery::Lighting;
 use isophote_files::error::Result;
 
@@ -61,14 +60,6 @@ impl Session {
         let mut now = self.state();
         now.lighting = None;
         self.edits.strip(&now, |state| state.lighting = None);
-    }
-
-    /// Changes the look; changes of the same thing are one step until [`Session::let_go`].
-    pub fn edit(&mut self, what: &str, change: impl FnOnce(&mut EditedLook)) {
-        let before = self.state();
-        if self.looks.edit(change) {
-            self.edits.record(what, &before);
-        }
     }
 
     /// Changes the light.
