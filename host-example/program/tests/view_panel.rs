@@ -79,6 +79,26 @@ fn every_parameter_of_every_style_is_found_by_its_label() {
 }
 
 #[test]
+fn a_value_of_a_type_is_set_as_its_words_are() {
+    let session = session();
+    let [mut tried, mut refused] = [0, 0];
+    for look in session.looks.list().iter().filter(|look| !look.is_plain()) {
+        let [typed, written] = [0; 2].map(|_| look.style(&session.library).unwrap().unwrap().graph);
+        for parameter in look.parameters(&session.library).unwrap() {
+            for value in parameter.default.others(&parameter.param.kind) {
+                let (node, id) = (parameter.node, parameter.param.id);
+                let of_words = written.set(node, id, &value.text());
+                assert_eq!(value.put(&typed, node, id).is_ok(), of_words.is_ok(), "{id}: {value:?}");
+                assert_eq!(typed.to_json().unwrap(), written.to_json().unwrap(), "{id}: {value:?}");
+                tried += 1;
+                refused += usize::from(of_words.is_err());
+            }
+        }
+    }
+    assert!(tried > 500 && refused < tried / 10, "{refused} of {tried}");
+}
+
+#[test]
 fn a_value_is_undone_redone_and_set_back() {
     let mut harness = harness(session());
     harness.state_mut().choose(1);
@@ -197,7 +217,7 @@ fn layers_are_chosen_from_a_list() {
     harness.run_ok();
     let requests = harness.state().work.requests();
     assert!(
-        matches!(&requests[..], [Request::ChooseLayer(layer, None)] if layer.name == "beauty"),
+        matches!(requests, [Request::ChooseLayer(layer, None)] if layer.name == "beauty"),
         "{requests:?}"
     );
 }

@@ -1,6 +1,6 @@
 //! The work beside the window as a whole: what it is asked for, and what comes of it. Nothing of it holds the window up.
 
-use std::path::PathBuf;
+use std::path::Path;
 use std::sync::Arc;
 
 use egui::ColorImage;
@@ -105,8 +105,8 @@ impl Background {
     }
 
     /// Opens the file that was chosen in a dialog, where it is one to be opened.
-    fn open_chosen(&mut self, dialog: Dialog, path: &PathBuf) {
-        let (library, path) = (self.library.clone(), path.clone());
+    fn open_chosen(&mut self, dialog: Dialog, path: &Path) {
+        let (library, path) = (self.library.clone(), path.to_owned());
         match dialog {
             Dialog::File => self.opener.ask(OpenJob::Files(library, vec![path])),
             Dialog::Look => self.opener.ask(OpenJob::Look(library, path)),

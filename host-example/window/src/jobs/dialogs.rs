@@ -1,4 +1,4 @@
-//! SystemDialogs of the system, each on a thread of its own: they may stay open for long. The crate that shows them tells in the log
+//! Dialogs of the system, each on a thread of its own: they may stay open for long. The crate that shows them tells in the log
 //! alone why one was not shown.
 
 use std::cell::RefCell;
@@ -15,7 +15,7 @@ use isophote_files::error::{Error, Result};
 /// Answer to a dialog: its purpose, and what was chosen, if anything was.
 type Answer = (Dialog, Result<Option<PathBuf>>);
 
-/// SystemDialogs, of which one is open at a time.
+/// Dialogs, of which one is open at a time.
 pub struct SystemDialogs {
     chosen: Receiver<Answer>,
     choose: Sender<Answer>,
@@ -25,7 +25,7 @@ pub struct SystemDialogs {
 }
 
 impl SystemDialogs {
-    /// None is open yet.
+    /// Dialogs of which none is open yet.
     pub fn new(wake: &Wake) -> Self {
         let (choose, chosen) = channel();
         Self { chosen, choose, is_open: false, wake: Arc::clone(wake) }

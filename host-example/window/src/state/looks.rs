@@ -40,7 +40,7 @@ pub struct Looks {
 }
 
 impl Looks {
-    /// These looks, of which the first is shown.
+    /// Looks of which the first is shown.
     ///
     /// # Errors
     /// As [`EditedLook::parameters`].

@@ -1,4 +1,4 @@
-//! What is open in the window: a scene, or pictures, or nothing.
+//! Content of the window: the scene or the pictures that are open, or nothing.
 
 use std::path::{Path, PathBuf};
 
@@ -7,7 +7,7 @@ use super::playback::Playback;
 use super::scenery::Scenery;
 use isophote_pictures::exr::Guide;
 
-/// What is open.
+/// Content of the window.
 #[derive(Default)]
 pub struct Open {
     content: Content,

@@ -59,7 +59,7 @@ pub struct Session {
     pub library: Library,
     /// Precision in which looks are computed.
     pub precision: Precision,
-    /// What is open.
+    /// The scene or the pictures that are open.
     pub open: Open,
     /// Looks at hand, and the one that is shown.
     pub looks: Looks,

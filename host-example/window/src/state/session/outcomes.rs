@@ -125,7 +125,7 @@ impl Session {
         }
     }
 
-    /// Says how far the export is, and what became of it.
+    /// The export has come so far, which is said when it has ended.
     fn follow_export(&mut self, Progress { done, total, state }: Progress) {
         self.work.exported = Some((done / total.max(1.0)) as f32);
         let is_done = state == State::Done;
