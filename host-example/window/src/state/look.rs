@@ -6,7 +6,7 @@ use std::sync::Arc;
 use serde_json::Value as Json;
 
 use super::chain::{Chain, Watched};
-use super::values::{Held, TypedPreset, Values};
+use super::values::{ParamValue, TypedPreset, Values};
 use isophote_files::error::{AtPlace, Error, Result};
 use isophote_files::files::{self, Existing};
 use isophote_finishing::stylize::preset::{self, Preset, Title};
@@ -149,14 +149,14 @@ impl EditedLook {
 
     /// The value of a parameter at the first keyframe, or everywhere.
     pub fn value(&self, parameter: &Parameter) -> Value {
-        let held = self.preset.params.get(&parameter.name);
-        let value = held.and_then(|held| held.first(&parameter.param.kind));
+        let given = self.preset.params.get(&parameter.name);
+        let value = given.and_then(|given| given.first(&parameter.param.kind));
         value.unwrap_or_else(|| parameter.default.clone())
     }
 
     /// True where a parameter changes from frame to frame.
     pub fn is_animated(&self, parameter: &Parameter) -> bool {
-        self.preset.params.get(&parameter.name).is_some_and(Held::is_animated)
+        self.preset.params.get(&parameter.name).is_some_and(ParamValue::is_animated)
     }
 
     /// True where a parameter is not what it is where nobody changes it.
@@ -302,9 +302,9 @@ impl EditedLook {
         if self.rebuilt().is_some() {
             opened.preset.params.clear();
         }
-        let held = |look: &Self, name: &str| look.preset.params.get(name).cloned();
-        let is_changed =
-            |parameter: &&Parameter| held(&opened, &parameter.name) != held(self, &parameter.name);
+        let is_changed = |parameter: &&Parameter| {
+            opened.preset.params.get(&parameter.name) != self.preset.params.get(&parameter.name)
+        };
         let text = |parameter: &Parameter| format!("{}={}", parameter.name, self.value(parameter).text());
         parameters.iter().filter(is_changed).map(text).collect()
     }

@@ -9,32 +9,32 @@ use isophote_loader::catalogue::ParamKind;
 
 /// Value of one parameter.
 #[derive(Clone, Debug)]
-pub enum Held {
+pub enum ParamValue {
     /// The same for all frames.
-    Value(Value),
+    Typed(Value),
     /// Words of a file that are no such value, or another spelling of it, so that they are written as they were read.
-    Read(Track),
+    Text(Track),
 }
 
-impl PartialEq for Held {
+impl PartialEq for ParamValue {
     fn eq(&self, other: &Self) -> bool {
         match (self, other) {
-            (Self::Value(a), Self::Value(b)) => a == b,
-            (Self::Read(a), Self::Read(b)) => a == b,
-            (Self::Value(value), Self::Read(Track::Still(text)))
-            | (Self::Read(Track::Still(text)), Self::Value(value)) => value.text() == *text,
+            (Self::Typed(a), Self::Typed(b)) => a == b,
+            (Self::Text(a), Self::Text(b)) => a == b,
+            (Self::Typed(value), Self::Text(Track::Still(text)))
+            | (Self::Text(Track::Still(text)), Self::Typed(value)) => value.text() == *text,
             _ => false,
         }
     }
 }
 
-impl Held {
+impl ParamValue {
     /// The value at the first keyframe, or everywhere.
     pub fn first(&self, kind: &ParamKind) -> Option<Value> {
         match self {
-            Self::Value(value) => Some(value.clone()),
-            Self::Read(Track::Still(text)) => Value::parse(kind, text),
-            Self::Read(Track::Keys { keys, .. }) => {
+            Self::Typed(value) => Some(value.clone()),
+            Self::Text(Track::Still(text)) => Value::parse(kind, text),
+            Self::Text(Track::Keys { keys, .. }) => {
                 keys.first().and_then(|(_, text)| Value::parse(kind, text))
             }
         }
@@ -42,52 +42,52 @@ impl Held {
 
     /// True where it changes from frame to frame.
     pub fn is_animated(&self) -> bool {
-        matches!(self, Self::Read(Track::Keys { .. }))
+        matches!(self, Self::Text(Track::Keys { .. }))
     }
 
     fn track(&self) -> Track {
         match self {
-            Self::Value(value) => Track::Still(value.text()),
-            Self::Read(track) => track.clone(),
+            Self::Typed(value) => Track::Still(value.text()),
+            Self::Text(track) => track.clone(),
         }
     }
 }
 
 /// Values under the names of their parameters, in the order of a file.
 #[derive(Clone, Debug, Default, PartialEq)]
-pub struct Values(Vec<(String, Held)>);
+pub struct Values(Vec<(String, ParamValue)>);
 
 impl Values {
     fn read(params: Vec<(String, Track)>) -> Self {
-        Self(params.into_iter().map(|(name, track)| (name, Held::Read(track))).collect())
+        Self(params.into_iter().map(|(name, track)| (name, ParamValue::Text(track))).collect())
     }
 
     fn written(&self) -> Vec<(String, Track)> {
-        self.0.iter().map(|(name, held)| (name.clone(), held.track())).collect()
+        self.0.iter().map(|(name, param)| (name.clone(), param.track())).collect()
     }
 
     /// Gives all values the types of their parameters, whose kinds are given by their names.
     pub fn take_types<'k>(&mut self, kind: impl Fn(&str) -> Option<&'k ParamKind>) {
-        for (name, held) in &mut self.0 {
-            let Held::Read(Track::Still(text)) = held else { continue };
+        for (name, param) in &mut self.0 {
+            let ParamValue::Text(Track::Still(text)) = param else { continue };
             let value = kind(name).and_then(|kind| Value::parse(kind, text));
             if let Some(value) = value.filter(|value| value.text() == *text) {
-                *held = Held::Value(value);
+                *param = ParamValue::Typed(value);
             }
         }
     }
 
     /// The value of a parameter, if it has one.
-    pub fn get(&self, name: &str) -> Option<&Held> {
-        self.0.iter().rev().find(|(known, _)| known == name).map(|(_, held)| held)
+    pub fn get(&self, name: &str) -> Option<&ParamValue> {
+        self.0.iter().rev().find(|(known, _)| known == name).map(|(_, param)| param)
     }
 
     /// Gives a parameter a value.
     pub fn set(&mut self, name: &str, value: &Value) {
-        let held = Held::Value(value.clone());
+        let param = ParamValue::Typed(value.clone());
         match self.0.iter_mut().find(|(known, _)| known == name) {
-            Some((_, old)) => *old = held,
-            None => self.0.push((name.to_owned(), held)),
+            Some((_, old)) => *old = param,
+            None => self.0.push((name.to_owned(), param)),
         }
     }
 
@@ -187,11 +187,11 @@ mod tests {
         let untyped = values.clone();
         values.take_types(|name| (name != "d").then_some(&kind));
         assert_eq!((&values, values.written()), (&untyped, params));
-        let is_typed = |name: &str| matches!(values.get(name), Some(Held::Value(_)));
+        let is_typed = |name: &str| matches!(values.get(name), Some(ParamValue::Typed(_)));
         assert_eq!(["a", "b", "c", "d"].map(is_typed), [true, false, false, false]);
-        let first = |name: &str| values.get(name).and_then(|held| held.first(&kind));
+        let first = |name: &str| values.get(name).and_then(|param| param.first(&kind));
         assert_eq!(["a", "b", "c"].map(first), [2.5, 2.5, 2.0].map(|v| Some(Value::Float(v))));
-        assert!(values.get("c").is_some_and(Held::is_animated));
+        assert!(values.get("c").is_some_and(ParamValue::is_animated));
     }
 
     #[test]
