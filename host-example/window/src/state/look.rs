@@ -298,12 +298,11 @@ impl EditedLook {
 
     /// Settings that turn what it was opened as into it.
     pub fn settings(&self, parameters: &[Parameter]) -> Vec<String> {
-        let mut opened = Self { preset: self.opened.clone(), ..self.clone() };
-        if self.rebuilt().is_some() {
-            opened.preset.params.clear();
-        }
+        // Of another graph nothing is set yet.
+        let opened = Some(&self.opened.params).filter(|_| self.rebuilt().is_none());
         let is_changed = |parameter: &&Parameter| {
-            opened.preset.params.get(&parameter.name) != self.preset.params.get(&parameter.name)
+            let before = opened.and_then(|opened| opened.get(&parameter.name));
+            before != self.preset.params.get(&parameter.name)
         };
         let text = |parameter: &Parameter| format!("{}={}", parameter.name, self.value(parameter).text());
         parameters.iter().filter(is_changed).map(text).collect()
