@@ -30,15 +30,13 @@ fn no_file_is_taken_from_another_package() {
     assert!(taken.is_empty(), "import these by the name of their crate:\n{}", taken.join("\n"));
 }
 
-#[test]
-fn rooms_of_the_library_import_only_what_stands_below_them() {
+/// Holds that rooms below `source` import only those before them in the list.
+fn import_only_what_stands_below(source: &str, rooms: &[&str]) {
     let root = root();
     let between = |from: &str, to: &str| {
-        let [from, to] = [from, to].map(|room| format!("nodes/library/src/{room}"));
+        let [from, to] = [from, to].map(|room| format!("{source}/{room}"));
         between(&root, &from, &to)
     };
-    // Each with what may import it, and never the other way round.
-    let rooms = ["kernels/simd", "kernels/shared", "kernels/trace", "stages", "nodes"];
     for (at, above) in rooms.iter().enumerate() {
         let below = &rooms[..at];
         assert!(
@@ -50,7 +48,37 @@ fn rooms_of_the_library_import_only_what_stands_below_them() {
             assert!(wrong.is_empty(), "{room} stands below {above}: {wrong:#?}");
         }
     }
-    let mut wrong = between("nodes", "nodes");
+}
+
+#[test]
+fn floors_of_the_window_import_only_what_stands_below_them() {
+    let source = "host-example/window/src";
+    let floors = ["state", "jobs", "drawing", "widgets", "app"];
+    import_only_what_stands_below(source, &floors);
+    // The window's events are in a file and a folder of one name, and nothing imports the crate's root.
+    for floor in floors {
+        for top in ["app.rs", "lib.rs"] {
+            let wrong = between(&root(), &format!("{source}/{floor}"), &format!("{source}/{top}"));
+            assert!(floor == "app" || wrong.is_empty(), "{floor} stands below {top}: {wrong:#?}");
+        }
+    }
+    // A module beside the floors would stand on none.
+    let text = std::fs::read_to_string(root().join(source).join("lib.rs")).unwrap();
+    let modules = text.lines().filter_map(|line| line.trim_start_matches("pub ").strip_prefix("mod "));
+    let mut modules: Vec<&str> = modules.map(|module| module.trim_end_matches(';')).collect();
+    modules.sort_by_key(|module| floors.iter().position(|floor| floor == module));
+    assert_eq!(modules, floors);
+}
+
+#[test]
+fn rooms_of_the_library_import_only_what_stands_below_them() {
+    let source = "nodes/library/src";
+    import_only_what_stands_below(
+        source,
+        &["kernels/simd", "kernels/shared", "kernels/trace", "stages", "nodes"],
+    );
+    let nodes = format!("{source}/nodes");
+    let mut wrong = between(&root(), &nodes, &nodes);
     // What has a single user lies in a folder of its name.
     wrong.retain(|[node, other]| !other.starts_with(node.with_extension("")));
     assert!(wrong.is_empty(), "nodes import stages and kernels, never each other: {wrong:#?}");

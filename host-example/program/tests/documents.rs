@@ -25,9 +25,9 @@ use isophote_pictures::space::Space;
 use isophote_pictures::write::Format;
 use isophote_render::gpu::Gpu;
 use isophote_render::readback::Readback;
-use isophote_window::document::frame::Frame;
-use isophote_window::document::kind::Kind;
-use isophote_window::document::{Document, Options};
+use isophote_window::jobs::document::{Document, Options};
+use isophote_window::state::document::frame::Frame;
+use isophote_window::state::document::kind::Kind;
 
 use support::{assets, folder, has_ffmpeg, isophote, picture, succeeds};
 
@@ -238,19 +238,19 @@ fn guides_are_found_by_their_names() {
     assert_eq!(channels(Guide::RestPosition), Some(4));
     assert!(frame.guides.iter().all(|image| image.data.len() == 72 * 48 * image.channels as usize));
     let document = Document::open(&path, &Options::default()).expect("a picture");
-    let offers = document.offers();
+    let offers = &document.info().offers;
     assert_eq!(offers.layer, "");
     let names: Vec<(&str, bool)> = offers.layers.iter().map(|l| (l.name.as_str(), l.is_data)).collect();
     assert!(names.contains(&("", false)) && names.contains(&("N", true)), "{names:?}");
     let normal = offers.guides.iter().find(|(guide, _)| *guide == Guide::Normal).expect("normals");
     assert_eq!(normal.1, ["N.X", "N.Y", "N.Z"]);
-    assert_eq!(document.sequence().as_deref(), Some(pattern.as_path()));
+    assert_eq!(document.info().sequence().as_deref(), Some(pattern.as_path()));
     // A layer of data is shown where that is insisted on.
     let layer = |force| {
         let selection = Selection { layer: Some("N".into()), force, ..Selection::default() };
         Document::open(&path, &Options { selection, ..Options::default() })
     };
-    assert_eq!(layer(true).expect("normals").offers().layer, "N");
+    assert_eq!(layer(true).expect("normals").info().offers.layer, "N");
     assert!(layer(false).unwrap_err().to_string().contains("--force-layer"));
 }
 
@@ -270,7 +270,7 @@ fn real_files_are_what_apply_hands_over() {
     }
     let beachball = assets.join("exr/Beachball/multipart.0001.exr");
     let document = Document::open(&beachball, &Options::default()).expect("a picture");
-    let offers = document.offers();
+    let offers = &document.info().offers;
     let main =
         offers.layers.iter().find(|layer| layer.name == offers.layer).expect("the layer that was read");
     assert_eq!(main.views, ["right", "left"], "{offers:?}");

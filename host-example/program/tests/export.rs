@@ -6,9 +6,10 @@ use std::fs;
 use std::path::{Path, PathBuf};
 use std::time::{Duration, Instant};
 
-use isophote_window::document::kind::Kind;
-use isophote_window::document::{Document, Options};
-use isophote_window::export::{Export, ExportJob, Progress, State};
+use isophote_window::jobs::document::{Document, Options};
+use isophote_window::jobs::export::{Export, ExportJob};
+use isophote_window::state::document::kind::Kind;
+use isophote_window::state::progress::{Progress, State};
 
 use support::{cube, folder, isophote, listing, picture, succeeds};
 

@@ -7,7 +7,7 @@ use std::fs::{self, File};
 use std::path::Path;
 use std::process::{Command, Stdio};
 
-use isophote_window::document::{Document, Options};
+use isophote_window::jobs::document::{Document, Options};
 
 use support::{IN_PIXELS, cube, errors, fails, isophote, listing, succeeds, video_folder};
 

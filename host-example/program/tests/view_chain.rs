@@ -4,15 +4,16 @@ mod support;
 
 use egui_kittest::Harness;
 use egui_kittest::kittest::Queryable;
+use isophote_finishing::stylize::value::Value;
 use isophote_loader::Library;
 use isophote_scene::Scene;
-use isophote_window::chain::{self, Chain, Watched};
-use isophote_window::look::EditedLook;
-use isophote_window::scenery::{Scenery, Staging};
-use isophote_window::session::Session;
-use isophote_window::settings::Settings;
-use isophote_window::value::Value;
-use isophote_window::{command, ui};
+use isophote_window::state::chain::{self, Chain, Watched};
+use isophote_window::state::command;
+use isophote_window::state::look::EditedLook;
+use isophote_window::state::scenery::{Scenery, Staging};
+use isophote_window::state::session::Session;
+use isophote_window::state::settings::Settings;
+use isophote_window::widgets;
 
 fn library() -> Library {
     Library::from_file(support::library()).unwrap()
@@ -25,7 +26,7 @@ fn session(look: &str) -> Session {
 }
 
 fn names(session: &Session) -> Vec<String> {
-    session.chain.as_ref().unwrap().links.iter().map(|link| link.name.clone()).collect()
+    session.looks.chain().unwrap().links.iter().map(|link| link.name.clone()).collect()
 }
 
 fn add(session: &mut Session, node: &str) {
@@ -73,7 +74,8 @@ fn every_node_that_fits_can_follow_every_look() {
 fn nodes_are_added_moved_passed_by_and_removed_step_by_step() {
     let mut session = session("cartoon");
     let parameter = session
-        .parameters
+        .looks
+        .parameters()
         .iter()
         .find(|parameter| matches!(parameter.default, Value::Float(_)))
         .unwrap()
@@ -84,8 +86,12 @@ fn nodes_are_added_moved_passed_by_and_removed_step_by_step() {
     add(&mut session, "bilateral");
     add(&mut session, "bilateral");
     assert_eq!(names(&session), ["cartoon", "bilateral", "bilateral_2"]);
-    let kept =
-        session.parameters.iter().find(|own| own.name == format!("cartoon.{}", parameter.name)).unwrap();
+    let kept = session
+        .looks
+        .parameters()
+        .iter()
+        .find(|own| own.name == format!("cartoon.{}", parameter.name))
+        .unwrap();
     assert_eq!(session.look().value(kept), value);
 
     session.relink(|chain, _| {
@@ -97,13 +103,13 @@ fn nodes_are_added_moved_passed_by_and_removed_step_by_step() {
         assert!(chain.toggle(1));
         Ok(())
     });
-    let chain = session.chain.clone().unwrap();
+    let chain = session.looks.chain().unwrap();
     assert!(chain.links[1].bypassed);
-    assert_eq!(Chain::read(&session.library, &chain.json()).unwrap(), chain);
-    session.watched = Some(Watched::After("bilateral".into()));
-    assert!(session.seen().preset.style.contains(r#""output":"bilateral""#));
-    session.watched = Some(Watched::Alone("cartoon".into()));
-    assert_ne!(*session.seen(), *session.look());
+    assert_eq!(Chain::read(&session.library, &chain.json()).unwrap(), *chain);
+    session.looks.watch(Some(Watched::After("bilateral".into())));
+    assert!(session.looks.seen().preset.style.contains(r#""output":"bilateral""#));
+    session.looks.watch(Some(Watched::Alone("cartoon".into())));
+    assert_ne!(*session.looks.seen(), *session.look());
 
     session.relink(|chain, _| {
         assert!(chain.remove(2), "one is left");
@@ -111,7 +117,7 @@ fn nodes_are_added_moved_passed_by_and_removed_step_by_step() {
         Ok(())
     });
     assert_eq!(names(&session), ["bilateral", "bilateral_2"]);
-    assert_eq!(session.watched, None, "its node is gone");
+    assert_eq!(session.looks.watched(), None, "its node is gone");
     assert!(session.look().preset.params.is_empty());
     for _ in 0..5 {
         session.undo();
@@ -128,8 +134,13 @@ fn what_the_window_saves_and_copies_is_what_apply_reads() {
     let mut session = session("cartoon");
     add(&mut session, "bilateral");
     session.relink(|chain, library| chain.add(library, "kuwahara", 0).map(drop));
-    let parameter =
-        session.parameters.iter().find(|parameter| parameter.name.starts_with("kuwahara.")).unwrap().clone();
+    let parameter = session
+        .looks
+        .parameters()
+        .iter()
+        .find(|parameter| parameter.name.starts_with("kuwahara."))
+        .unwrap()
+        .clone();
     let value = parameter.default.others(&parameter.param.kind).swap_remove(0);
     session.set(&parameter, &value);
     let line = command::line(&session);
@@ -142,7 +153,7 @@ fn what_the_window_saves_and_copies_is_what_apply_reads() {
     assert_eq!(opened, look);
     assert_eq!(
         opened.chain(&session.library).unwrap().unwrap().json(),
-        session.chain.clone().unwrap().json()
+        session.looks.chain().unwrap().json()
     );
 
     let apply = |style: &std::ffi::OsStr, settings: &[String], name: &str| {
@@ -156,7 +167,8 @@ fn what_the_window_saves_and_copies_is_what_apply_reads() {
     };
     let saved = apply(file.as_os_str(), &[], "saved.png");
     let live = session.look();
-    let written = apply(live.preset.style.as_ref(), &live.settings(&session.parameters), "written.png");
+    let written =
+        apply(live.preset.style.as_ref(), &live.settings(session.looks.parameters()), "written.png");
     assert!(saved == written);
     assert!(saved != apply("cartoon".as_ref(), &[], "plain.png"));
 }
@@ -169,8 +181,8 @@ fn the_panel_adds_and_removes_nodes() {
     session.show_scene(Scenery::new(scene, Staging::default(), 1.5), None, "cube".into());
     let mut harness = Harness::builder()
         .with_size(egui::vec2(1200.0, 1600.0))
-        .build_ui_state(|ui, session: &mut Session| ui::show(ui, session), session);
-    ui::theme::apply(&harness.ctx);
+        .build_ui_state(|ui, session: &mut Session| widgets::show(ui, session), session);
+    widgets::theme::apply(&harness.ctx);
     harness.run_ok();
     for label in ["Nodes", "Add a node", "Smoothing", "Bilateral"] {
         harness.get_by_label(label).click();
@@ -182,10 +194,10 @@ fn the_panel_adds_and_removes_nodes() {
     assert_eq!(names(harness.state()), ["bilateral", "cartoon"]);
     harness.get_by_label("Bypass cartoon").click();
     harness.run_ok();
-    assert!(harness.state().chain.as_ref().unwrap().links[1].bypassed);
+    assert!(harness.state().looks.chain().unwrap().links[1].bypassed);
     harness.get_by_label("Solo cartoon").click();
     harness.run_ok();
-    assert_eq!(harness.state().watched, Some(Watched::Alone("cartoon".into())));
+    assert_eq!(harness.state().looks.watched(), Some(&Watched::Alone("cartoon".into())));
     harness.get_by_label("Remove cartoon").click();
     harness.run_ok();
     assert_eq!(names(harness.state()), ["bilateral"]);
@@ -206,7 +218,7 @@ fn files_that_change_are_read_again_and_broken_ones_leave_the_look() {
     assert_eq!((session.look(), session.can()), (&look, steps), "nothing has changed");
 
     let parameter =
-        session.parameters.iter().find(|parameter| parameter.name == "posterize").unwrap().clone();
+        session.looks.parameters().iter().find(|parameter| parameter.name == "posterize").unwrap().clone();
     session.set(&parameter, &Value::parse(&parameter.param.kind, "7").unwrap());
     session.let_go();
     let edited = session.look().clone();
@@ -233,6 +245,7 @@ fn a_graph_file_that_changes_beside_its_preset_is_another_look() {
     std::fs::write(&graph, ink.replace("2.5", "4.5")).unwrap();
     let read = EditedLook::open(&session.library, &file);
     session.reload(&file, read);
-    let parameter = session.parameters.iter().find(|parameter| parameter.name == "tensor.rho").unwrap();
+    let parameter =
+        session.looks.parameters().iter().find(|parameter| parameter.name == "tensor.rho").unwrap();
     assert_eq!(session.look().value(parameter).text(), "4.5");
 }

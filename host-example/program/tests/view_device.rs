@@ -9,17 +9,16 @@ use std::process::Command;
 use std::rc::Rc;
 use std::time::{Duration, Instant};
 
+use isophote_finishing::stylize::value::Value;
 use isophote_loader::Library;
 use isophote_render::gpu::Gpu;
 use isophote_scene::Scene;
 use isophote_window::app::{App, Event};
-use isophote_window::document::{Document, Options};
-use isophote_window::look::EditedLook;
-use isophote_window::playback::Playback;
-use isophote_window::scenery::{Scenery, Staging};
-use isophote_window::session::Session;
-use isophote_window::settings::Settings;
-use isophote_window::value::Value;
+use isophote_window::jobs::document::{Document, Options};
+use isophote_window::state::look::EditedLook;
+use isophote_window::state::scenery::{Scenery, Staging};
+use isophote_window::state::session::Session;
+use isophote_window::state::settings::Settings;
 use winit::application::ApplicationHandler;
 use winit::event::{StartCause, WindowEvent};
 use winit::event_loop::{ActiveEventLoop, ControlFlow, EventLoop};
@@ -120,7 +119,7 @@ fn session(folder: &Path, styles: &[&str], size: (u32, u32)) -> Session {
     let file = folder.join("photo.png");
     support::picture(size.0, size.1).save(&file).unwrap();
     let document = Document::open(&file, &Options::default()).unwrap();
-    session.show_playback(Playback::new(document).unwrap());
+    session.show_playback(document.playback().unwrap());
     session
 }
 
@@ -136,7 +135,8 @@ fn is_at_rest(app: &mut App) -> bool {
 /// Gives a parameter a value, as a slider does.
 fn set(app: &mut App, name: &str, value: f32) {
     let session = app.session_mut();
-    let parameter = session.parameters.iter().find(|parameter| parameter.name == name).unwrap().clone();
+    let parameter =
+        session.looks.parameters().iter().find(|parameter| parameter.name == name).unwrap().clone();
     session.set(&parameter, &Value::Float(value));
 }
 
@@ -172,9 +172,10 @@ fn lost_at_rest(folder: &Path, loss: &Loss) -> Vec<(&'static str, Step)> {
             return false;
         }
         let session = app.session();
-        let parameter = session.parameters.iter().find(|parameter| parameter.name == "line_amount").unwrap();
+        let parameter =
+            session.looks.parameters().iter().find(|parameter| parameter.name == "line_amount").unwrap();
         assert_eq!(session.look().value(parameter), Value::Float(0.9));
-        assert_eq!((session.name.as_str(), session.can()), ("photo.png", [true, true]));
+        assert_eq!((session.open.name(), session.can()), ("photo.png", [true, true]));
         see_after() == *picture
     };
     vec![
@@ -208,7 +209,7 @@ fn lost_while_it_plays(scene: PathBuf, loss: &Loss) -> Vec<(&'static str, Step)>
     };
     vec![
         ("undo, and a scene that plays", Box::new(open)),
-        ("frames", Box::new(|app| app.session().name == "scene" && frames(app) > 5)),
+        ("frames", Box::new(|app| app.session().open.name() == "scene" && frames(app) > 5)),
         ("the loss while it plays", Box::new(lose)),
         ("more frames", Box::new(plays_on)),
     ]
@@ -247,7 +248,7 @@ fn a_device_that_is_lost_at_once_again_and_again_ends_the_window_with_the_reason
             }
             assert!(losses < 20, "the window goes on for ever");
             if losses == 6 {
-                assert!(!app.session().has_picture(), "what is open is put away first");
+                assert!(!app.session().open.has_picture(), "what is open is put away first");
             }
             false
         });

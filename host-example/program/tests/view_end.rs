@@ -12,15 +12,14 @@ use std::time::Duration;
 use egui::accesskit::Role;
 use egui_kittest::Harness;
 use egui_kittest::kittest::Queryable;
+use isophote_finishing::stylize::value::Value;
 use isophote_loader::Library;
-use isophote_window::document::{Document, Options};
-use isophote_window::leaving::Leaving;
-use isophote_window::look::EditedLook;
-use isophote_window::playback::Playback;
-use isophote_window::session::Session;
-use isophote_window::settings::Settings;
-use isophote_window::ui;
-use isophote_window::value::Value;
+use isophote_window::jobs::document::{Document, Options};
+use isophote_window::state::leaving::Leaving;
+use isophote_window::state::look::EditedLook;
+use isophote_window::state::session::Session;
+use isophote_window::state::settings::Settings;
+use isophote_window::widgets;
 use winit::keyboard::{Key, NamedKey};
 
 use support::others;
@@ -48,7 +47,7 @@ fn session(styles: &[&Path], file: &Path) -> Session {
     let library = Library::from_file(support::library()).unwrap();
     let looks = styles.iter().map(|style| EditedLook::open(&library, style).unwrap()).collect();
     let mut session = Session::new(library, looks, Settings::default()).unwrap();
-    session.show_playback(Playback::new(Document::open(file, &Options::default()).unwrap()).unwrap());
+    session.show_playback(Document::open(file, &Options::default()).unwrap().playback().unwrap());
     session
 }
 
@@ -239,7 +238,8 @@ fn a_window_closes_when_its_export_is_done_if_that_was_answered() {
 /// Gives the first parameter of a look another value.
 fn change(session: &mut Session) {
     let number = |value: &Value| matches!(value, Value::Float(_));
-    let parameter = session.parameters.iter().find(|parameter| number(&parameter.default)).unwrap().clone();
+    let parameter =
+        session.looks.parameters().iter().find(|parameter| number(&parameter.default)).unwrap().clone();
     session.set(&parameter, &parameter.default.others(&parameter.param.kind)[0]);
     session.let_go();
 }
@@ -247,8 +247,8 @@ fn change(session: &mut Session) {
 fn shown(session: Session) -> Harness<'static, Session> {
     let mut harness = Harness::builder()
         .with_size(egui::vec2(1000.0, 640.0))
-        .build_ui_state(|ui, session: &mut Session| ui::show(ui, session), session);
-    ui::theme::apply(&harness.ctx);
+        .build_ui_state(|ui, session: &mut Session| widgets::show(ui, session), session);
+    widgets::theme::apply(&harness.ctx);
     harness.run_ok();
     harness
 }
@@ -266,8 +266,8 @@ fn every_look_that_would_be_lost_is_named_and_can_be_saved_in_turn() {
     let mut session = session(&[&mine, "cartoon".as_ref(), "ink".as_ref()], &folder.path().join("photo.png"));
     session.settings.look_folder = Some(folder.path().to_owned());
     session.leave();
-    assert_eq!(session.leaving, Leaving::Closes, "nothing was changed");
-    session.leaving = Leaving::Stays;
+    assert_eq!(session.dialogs.leaving, Leaving::Closes, "nothing was changed");
+    session.dialogs.leaving = Leaving::Stays;
     change(&mut session);
     session.choose(1);
     change(&mut session);
@@ -277,19 +277,22 @@ fn every_look_that_would_be_lost_is_named_and_can_be_saved_in_turn() {
     assert!(harness.query_by_label_contains("2 looks are not saved: “mine”, “Cartoon”.").is_some());
     // One has a file, the other must be given one; whoever changes his mind there stays.
     click(&mut harness, "Save the look…");
-    assert_eq!((harness.state().leaving, harness.state().unsaved()), (Leaving::Asks, vec![1]));
+    assert_eq!((harness.state().dialogs.leaving, harness.state().looks.unsaved()), (Leaving::Asks, vec![1]));
     assert_ne!(fs::read_to_string(&mine).unwrap(), MINE);
     harness.run_ok();
     click(&mut harness, "Save the look…");
-    assert_eq!((harness.state().leaving, harness.state().look().name.as_str()), (Leaving::Saves, "Cartoon"));
-    ui::keys::press(harness.state_mut(), &Key::Named(NamedKey::Escape));
+    assert_eq!(
+        (harness.state().dialogs.leaving, harness.state().look().name.as_str()),
+        (Leaving::Saves, "Cartoon")
+    );
+    widgets::keys::press(harness.state_mut(), &Key::Named(NamedKey::Escape));
     harness.run_ok();
-    assert_eq!((harness.state().leaving, harness.state().unsaved()), (Leaving::Stays, vec![1]));
+    assert_eq!((harness.state().dialogs.leaving, harness.state().looks.unsaved()), (Leaving::Stays, vec![1]));
     harness.state_mut().leave();
     harness.run_ok();
     click(&mut harness, "Save the look…");
     click(&mut harness, "Save");
-    assert_eq!(harness.state().leaving, Leaving::Closes);
+    assert_eq!(harness.state().dialogs.leaving, Leaving::Closes);
     assert_eq!(listing(folder.path()), ["cartoon.json", "mine.json", "photo.png"]);
 }
 
@@ -300,24 +303,24 @@ fn what_is_taken_back_is_lost_no_more_and_what_was_saved_before_is_again() {
     let mine = folder.path().join("mine.json");
     let mut session = session(&[&mine], &folder.path().join("photo.png"));
     change(&mut session);
-    assert_eq!(session.unsaved(), [0]);
+    assert_eq!(session.looks.unsaved(), [0]);
     session.undo();
-    assert!(session.unsaved().is_empty());
+    assert!(session.looks.unsaved().is_empty());
     session.redo();
     session.save_look(false);
-    assert!(session.unsaved().is_empty());
+    assert!(session.looks.unsaved().is_empty());
     // The file has what was saved, not what the window shows now.
     session.undo();
-    assert_eq!(session.unsaved(), [0]);
+    assert_eq!(session.looks.unsaved(), [0]);
     session.redo();
-    assert!(session.unsaved().is_empty());
+    assert!(session.looks.unsaved().is_empty());
     // Somebody else writes the file, and the look of before is brought back.
     fs::write(&mine, r#"{"style": "blueprint", "parameters": {"line_width": 5}}"#).unwrap();
     let read = EditedLook::open(&session.library, &mine);
     session.reload(&mine, read);
-    assert!(session.unsaved().is_empty());
+    assert!(session.looks.unsaved().is_empty());
     session.undo();
-    assert_eq!(session.unsaved(), [0]);
+    assert_eq!(session.looks.unsaved(), [0]);
 }
 
 #[test]
@@ -325,21 +328,21 @@ fn a_question_about_an_export_alone_offers_to_wait_and_what_fails_meanwhile_is_s
     let folder = folder();
     prepare(folder.path());
     let mut session = session(&["cartoon".as_ref()], &folder.path().join("photo.png"));
-    session.exported = Some(0.347);
+    session.work.exported = Some(0.347);
     session.leave();
     let mut harness = shown(session);
     assert!(harness.query_by_label_contains("An export is running, 34 % of it done.").is_some());
     click(&mut harness, "Close when it is done");
-    assert_eq!(harness.state().leaving, Leaving::Waits);
+    assert_eq!(harness.state().dialogs.leaving, Leaving::Waits);
     harness.run_ok();
     // The bar at the bottom has one for the export.
     harness.get_all_by_role_and_label(Role::Button, "Cancel").last().unwrap().click();
     harness.run_ok();
-    assert_eq!(harness.state().leaving, Leaving::Stays);
+    assert_eq!(harness.state().dialogs.leaving, Leaving::Stays);
     for (is_done, then) in [(false, Leaving::Stays), (true, Leaving::Closes)] {
         let session = harness.state_mut();
-        (session.exported, session.leaving) = (Some(0.9), Leaving::Waits);
+        (session.work.exported, session.dialogs.leaving) = (Some(0.9), Leaving::Waits);
         session.end_export(is_done);
-        assert_eq!((session.leaving, session.exported), (then, None));
+        assert_eq!((session.dialogs.leaving, session.work.exported), (then, None));
     }
 }

@@ -8,9 +8,9 @@ use std::process::Command;
 use std::sync::Arc;
 use std::time::{Duration, Instant};
 
-use isophote_window::document::frame::Frame;
-use isophote_window::document::kind::Kind;
-use isophote_window::document::{Document, Options};
+use isophote_window::jobs::document::{Document, Options};
+use isophote_window::state::document::frame::Frame;
+use isophote_window::state::document::kind::Kind;
 
 use support::{folder, has_ffmpeg, picture, succeeds};
 

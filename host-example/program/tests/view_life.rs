@@ -9,11 +9,10 @@ use std::time::Duration;
 
 use egui::accesskit::Role;
 use isophote_loader::Library;
-use isophote_window::document::{Document, Options};
-use isophote_window::look::EditedLook;
-use isophote_window::playback::Playback;
-use isophote_window::session::Session;
-use isophote_window::settings::Settings;
+use isophote_window::jobs::document::{Document, Options};
+use isophote_window::state::look::EditedLook;
+use isophote_window::state::session::Session;
+use isophote_window::state::settings::Settings;
 
 use support::others::{Cover, drop_files};
 use support::places::{places, tabs_to};
@@ -36,7 +35,7 @@ fn session(style: &Path, file: &Path) -> Session {
     let library = Library::from_file(support::library()).unwrap();
     let look = EditedLook::open(&library, style).unwrap();
     let mut session = Session::new(library, vec![look], Settings::default()).unwrap();
-    session.show_playback(Playback::new(Document::open(file, &Options::default()).unwrap()).unwrap());
+    session.show_playback(Document::open(file, &Options::default()).unwrap().playback().unwrap());
     session
 }
 

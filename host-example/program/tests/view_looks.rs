@@ -10,17 +10,19 @@ use egui::accesskit::Role;
 use egui_kittest::Harness;
 use egui_kittest::kittest::{NodeT, Queryable};
 use isophote_finishing::stylize::preset::{self as file, Preset};
+use isophote_finishing::stylize::value::Value;
 use isophote_loader::Library;
-use isophote_window::browser::entry::{Content, Group};
-use isophote_window::browser::listing::{self, Listing, ListingRequest};
-use isophote_window::document::{Document, Options};
-use isophote_window::leaving::Leaving;
-use isophote_window::look::EditedLook;
-use isophote_window::playback::Playback;
-use isophote_window::session::{Request, Session};
-use isophote_window::settings::Settings;
-use isophote_window::ui;
-use isophote_window::value::Value;
+use isophote_window::jobs::document::{Document, Options};
+use isophote_window::jobs::listing::{self, ListingRequest};
+use isophote_window::state::browser::entry::{Content, Group};
+use isophote_window::state::browser::listing::Listing;
+use isophote_window::state::leaving::Leaving;
+use isophote_window::state::look::EditedLook;
+use isophote_window::state::outcome::Dialog;
+use isophote_window::state::session::Session;
+use isophote_window::state::settings::Settings;
+use isophote_window::state::work::Request;
+use isophote_window::widgets;
 use tempfile::TempDir;
 use winit::keyboard::{Key, NamedKey};
 
@@ -58,7 +60,7 @@ fn session(folder: &Path) -> Session {
     let picture = folder.join("picture.png");
     support::picture(90, 60).save(&picture).expect("the folder is writable");
     let document = Document::open(&picture, &Options::default()).expect("a picture");
-    session.show_playback(Playback::new(document).expect("a picture"));
+    session.show_playback(document.playback().expect("a picture"));
     session.settings.add_look_folder(folder);
     session.toggle_browser();
     session.list(read(folder));
@@ -69,8 +71,8 @@ fn session(folder: &Path) -> Session {
 fn harness(session: Session) -> Harness<'static, Session> {
     let mut harness = Harness::builder()
         .with_size(egui::vec2(1400.0, 4000.0))
-        .build_ui_state(|ui, session: &mut Session| ui::show(ui, session), session);
-    ui::theme::apply(&harness.ctx);
+        .build_ui_state(|ui, session: &mut Session| widgets::show(ui, session), session);
+    widgets::theme::apply(&harness.ctx);
     harness.run_ok();
     harness
 }
@@ -178,7 +180,8 @@ fn a_click_shows_a_look_and_undo_brings_back_what_it_replaced() {
     let mut session = session(folder.path());
     session.choose(1);
     let parameter = session
-        .parameters
+        .looks
+        .parameters()
         .iter()
         .find(|parameter| matches!(parameter.default, Value::Float(_)))
         .expect("a number")
@@ -194,9 +197,9 @@ fn a_click_shows_a_look_and_undo_brings_back_what_it_replaced() {
     assert_eq!(harness.state().look().source, Path::new("cartoon"));
     click(&mut harness, Role::Button, "Dusk");
     assert_eq!(harness.state().look().name, "Dusk");
-    let count = harness.state().looks.len();
+    let count = harness.state().looks.list().len();
     harness.state_mut().undo();
-    assert_eq!(harness.state().looks.len(), count - 1, "what was new is gone");
+    assert_eq!(harness.state().looks.list().len(), count - 1, "what was new is gone");
     harness.state_mut().undo();
     assert_eq!(harness.state().look().source, Path::new("ink"));
     harness.state_mut().choose(1);
@@ -212,7 +215,7 @@ fn keys_go_from_card_to_card() {
     let mut session = session(folder.path());
     session.browser.columns = 4;
     session.browser.selected = None;
-    let press = |session: &mut Session, key: NamedKey| ui::keys::press(session, &Key::Named(key));
+    let press = |session: &mut Session, key: NamedKey| widgets::keys::press(session, &Key::Named(key));
     let selected = |session: &Session| {
         session.browser.selected.and_then(|id| session.browser.entry(id)).map(|entry| entry.name.clone())
     };
@@ -234,11 +237,11 @@ fn keys_go_from_card_to_card() {
     press(&mut session, NamedKey::Enter);
     assert!(!session.browser.is_open);
     assert_eq!(session.look().name, all[4]);
-    ui::keys::press(&mut session, &Key::Character("l".into()));
+    widgets::keys::press(&mut session, &Key::Character("l".into()));
     assert!(session.browser.is_open && session.browser.is_outdated, "the looks are read again");
     assert_eq!(selected(&session).as_deref(), Some(all[4].as_str()));
     press(&mut session, NamedKey::Escape);
-    assert!(!session.browser.is_open && session.leaving == Leaving::Stays, "the window stays open");
+    assert!(!session.browser.is_open && session.dialogs.leaving == Leaving::Stays, "the window stays open");
 }
 
 #[test]
@@ -305,7 +308,7 @@ fn a_file_is_deleted_only_when_that_was_asked_and_undo_brings_it_back() {
     // It is kept until the window is closed, whatever is opened meanwhile.
     let session = harness.state_mut();
     let picture = Document::open(&folder.path().join("picture.png"), &Options::default()).expect("a picture");
-    session.show_playback(Playback::new(picture).expect("a picture"));
+    session.show_playback(picture.playback().expect("a picture"));
     session.undo();
     assert_eq!(fs::read(&file).expect("it is back"), bytes);
     session.redo();
@@ -330,7 +333,7 @@ fn a_look_is_saved_with_its_name_and_nothing_is_replaced_unasked() {
     type_into(&mut harness, "Name", "Late Evening");
     type_into(&mut harness, "Tags", "calm");
     let file = looks.join("late-evening.json");
-    assert_eq!(harness.state().saving.as_ref().map(|saving| saving.file()), Some(file.clone()));
+    assert_eq!(harness.state().dialogs.saving.as_ref().map(|saving| saving.file()), Some(file.clone()));
     click(&mut harness, Role::Button, "Save");
     let saved = preset(&file);
     assert_eq!(
@@ -345,14 +348,15 @@ fn a_look_is_saved_with_its_name_and_nothing_is_replaced_unasked() {
     assert!(session.settings.look_folders.contains(&looks), "its folder is offered");
     // To its own file it is saved at once, under its name.
     let parameter = session
-        .parameters
+        .looks
+        .parameters()
         .iter()
         .find(|parameter| matches!(parameter.default, Value::Float(_)))
         .expect("a number")
         .clone();
     session.set(&parameter, &parameter.default.others(&parameter.param.kind)[0]);
     session.save_look(false);
-    assert!(session.saving.is_none() && !session.look().is_changed());
+    assert!(session.dialogs.saving.is_none() && !session.look().is_changed());
     assert_eq!(preset(&file).title.name.as_deref(), Some("Late Evening"));
     // Another of that name asks first.
     session.choose(2);
@@ -426,12 +430,12 @@ fn up_to_six_looks_are_compared_and_one_is_taken() {
     // Another picture is seen by the same looks.
     let other = folder.path().join("picture.png");
     let document = Document::open(&other, &Options::default()).expect("a picture");
-    harness.state_mut().show_playback(Playback::new(document).expect("a picture"));
+    harness.state_mut().show_playback(document.playback().expect("a picture"));
     harness.run_ok();
     assert!(harness.query_by_role_and_label(Role::Button, "Take Linocut").is_some());
     // Escape goes back to where it came from.
-    ui::keys::press(harness.state_mut(), &Key::Named(NamedKey::Escape));
-    assert!(harness.state().browser.is_open && harness.state().comparison.is_none());
+    widgets::keys::press(harness.state_mut(), &Key::Named(NamedKey::Escape));
+    assert!(harness.state().browser.is_open && harness.state().browser.comparison.is_none());
     harness.state_mut().compare_marked();
     harness.run_ok();
     click(&mut harness, Role::Button, "Take Linocut");
@@ -446,7 +450,7 @@ fn folders_are_added_and_taken_off_the_list() {
     let folder = presets();
     let mut harness = harness(session(folder.path()));
     click(&mut harness, Role::Button, "Add a folder…");
-    assert_eq!(harness.state().requests, [Request::ChooseFolder]);
+    assert_eq!(harness.state().work.requests(), [Request::Choose(Dialog::LookFolder)]);
     let shown: PathBuf = folder.path().components().collect();
     click(&mut harness, Role::Button, &format!("Remove {} from the list", shown.display()));
     assert!(harness.state().settings.look_folders.is_empty() && harness.state().browser.is_outdated);

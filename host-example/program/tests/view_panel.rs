@@ -8,17 +8,17 @@ use std::collections::HashMap;
 use egui_kittest::Harness;
 use egui_kittest::kittest::{NodeT, Queryable};
 use isophote_files::files::Existing;
+use isophote_finishing::stylize::value::Value;
 use isophote_loader::Library;
 use isophote_pictures::floats::{self, Layer, Picture, Precision};
 use isophote_scene::Scene;
-use isophote_window::document::{Document, Options};
-use isophote_window::look::EditedLook;
-use isophote_window::playback::Playback;
-use isophote_window::scenery::{Scenery, Staging};
-use isophote_window::session::{Request, Session};
-use isophote_window::settings::Settings;
-use isophote_window::ui;
-use isophote_window::value::Value;
+use isophote_window::jobs::document::{Document, Options};
+use isophote_window::state::look::EditedLook;
+use isophote_window::state::scenery::{Scenery, Staging};
+use isophote_window::state::session::Session;
+use isophote_window::state::settings::Settings;
+use isophote_window::state::work::Request;
+use isophote_window::widgets;
 
 /// A session of all styles with a scene.
 fn session() -> Session {
@@ -38,8 +38,8 @@ fn session() -> Session {
 fn harness(session: Session) -> Harness<'static, Session> {
     let mut harness = Harness::builder()
         .with_size(egui::vec2(1200.0, 2400.0))
-        .build_ui_state(|ui, session: &mut Session| ui::show(ui, session), session);
-    ui::theme::apply(&harness.ctx);
+        .build_ui_state(|ui, session: &mut Session| widgets::show(ui, session), session);
+    widgets::theme::apply(&harness.ctx);
     harness.run_ok();
     harness
 }
@@ -57,13 +57,13 @@ fn open_headings(harness: &mut Harness<'_, Session>, closed: &mut Vec<&str>) {
 fn every_parameter_of_every_style_is_found_by_its_label() {
     let mut harness = harness(session());
     let mut closed = vec!["Advanced", "Time", "Output", "Scene and light"];
-    for index in 1..harness.state().looks.len() {
+    for index in 1..harness.state().looks.list().len() {
         harness.state_mut().choose(index);
         harness.run_ok();
         open_headings(&mut harness, &mut closed);
         let session = harness.state();
         let mut labels: HashMap<&str, usize> = HashMap::new();
-        for parameter in &session.parameters {
+        for parameter in session.looks.parameters().iter() {
             *labels.entry(parameter.param.label).or_default() += 1;
         }
         assert!(labels.len() > 10);
@@ -79,13 +79,34 @@ fn every_parameter_of_every_style_is_found_by_its_label() {
 }
 
 #[test]
+fn a_value_of_a_type_is_set_as_its_words_are() {
+    let session = session();
+    let [mut tried, mut refused] = [0, 0];
+    for look in session.looks.list().iter().filter(|look| !look.is_plain()) {
+        let [typed, written] = [0; 2].map(|_| look.style(&session.library).unwrap().unwrap().graph);
+        for parameter in look.parameters(&session.library).unwrap() {
+            for value in parameter.default.others(&parameter.param.kind) {
+                let (node, id) = (parameter.node, parameter.param.id);
+                let of_words = written.set(node, id, &value.text());
+                assert_eq!(value.put(&typed, node, id).is_ok(), of_words.is_ok(), "{id}: {value:?}");
+                assert_eq!(typed.to_json().unwrap(), written.to_json().unwrap(), "{id}: {value:?}");
+                tried += 1;
+                refused += usize::from(of_words.is_err());
+            }
+        }
+    }
+    assert!(tried > 500 && refused < tried / 10, "{refused} of {tried}");
+}
+
+#[test]
 fn a_value_is_undone_redone_and_set_back() {
     let mut harness = harness(session());
     harness.state_mut().choose(1);
     harness.run_ok();
     let session = harness.state_mut();
     let parameter = session
-        .parameters
+        .looks
+        .parameters()
         .iter()
         .find(|parameter| matches!(parameter.default, Value::Float(_)))
         .unwrap()
@@ -114,12 +135,13 @@ fn a_value_is_undone_redone_and_set_back() {
 #[test]
 fn controls_can_be_used_by_programs_that_read_windows_aloud() {
     let mut harness = harness(session());
-    let index = harness.state().looks.iter().position(|look| look.name == "Cartoon").unwrap();
+    let index = harness.state().looks.list().iter().position(|look| look.name == "Cartoon").unwrap();
     harness.state_mut().choose(index);
     harness.run_ok();
     let parameter = harness
         .state()
-        .parameters
+        .looks
+        .parameters()
         .iter()
         .find(|parameter| parameter.param.label == "Posterize")
         .unwrap()
@@ -144,7 +166,7 @@ fn a_saved_look_is_the_same_look_and_its_command_is_short() {
     let file = folder.path().join("mine.json");
     let mut session = session();
     session.choose(1);
-    let parameters = session.parameters.clone();
+    let parameters = session.looks.parameters().clone();
     let changed = parameters.iter().filter(|parameter| !matches!(parameter.default, Value::Choice(_)));
     for parameter in changed.take(4) {
         let other = parameter.default.others(&parameter.param.kind).swap_remove(0);
@@ -165,17 +187,19 @@ fn a_saved_look_is_the_same_look_and_its_command_is_short() {
 fn an_export_is_asked_for_in_a_window_of_its_own() {
     let folder = support::folder();
     let mut session = session();
-    session.file = Some(folder.path().join("cube.gltf"));
+    let scene = Scene::load(&support::cube(folder.path()), None).unwrap();
+    let file = folder.path().join("cube.gltf");
+    session.show_scene(Scenery::new(scene, Staging::default(), 1.5), Some(file), "cube".into());
     session.plan_export();
     let mut harness = harness(session);
     harness.get_by_label("A turntable").click();
     harness.run_ok();
-    let plan = harness.state().plan.clone().expect("a plan");
+    let plan = harness.state().dialogs.plan.clone().expect("a plan");
     assert!(plan.path.ends_with("cube-look.####.png"), "{}", plan.path);
     assert_eq!(plan.frames().as_deref(), Some("96"));
     harness.get_by_label("Start the export").click();
     harness.run_ok();
-    assert_eq!(harness.state().requests, [Request::Export]);
+    assert_eq!(harness.state().work.requests(), [Request::Export]);
 }
 
 #[test]
@@ -185,15 +209,15 @@ fn layers_are_chosen_from_a_list() {
     write_layers(&file);
     let mut session = session();
     let document = Document::open(&file, &Options::default()).unwrap();
-    session.show_playback(Playback::new(document).unwrap());
+    session.show_playback(document.playback().unwrap());
     let mut harness = harness(session);
     harness.get_by_role_and_label(egui::accesskit::Role::ComboBox, "Layer").click();
     harness.run_ok();
     harness.get_by_label("beauty").click();
     harness.run_ok();
-    let requests = &harness.state().requests;
+    let requests = harness.state().work.requests();
     assert!(
-        matches!(&requests[..], [Request::ChooseLayer(layer, None)] if layer.name == "beauty"),
+        matches!(requests, [Request::ChooseLayer(layer, None)] if layer.name == "beauty"),
         "{requests:?}"
     );
 }

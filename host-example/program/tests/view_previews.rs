@@ -9,12 +9,14 @@ use std::time::{Duration, Instant};
 
 use egui::{Color32, ColorImage};
 use isophote_loader::Library;
-use isophote_window::document::{Document, Options, reduce};
-use isophote_window::look::EditedLook;
-use isophote_window::preview::picture::Picture;
-use isophote_window::preview::queue::Queue;
-use isophote_window::preview::render::{FINENESS, Order, Renderer};
-use isophote_window::preview::{Place, Previews};
+use isophote_window::jobs::document::{Document, Options};
+use isophote_window::jobs::preview::queue::Queue;
+use isophote_window::jobs::preview::render::Renderer;
+use isophote_window::state::document::reduce;
+use isophote_window::state::look::EditedLook;
+use isophote_window::state::preview::order::{FINENESS, Order};
+use isophote_window::state::preview::picture::Picture;
+use isophote_window::state::preview::{Place, Previews};
 
 /// This only ends a test that hangs.
 const PATIENCE: Duration = Duration::from_secs(120);

@@ -10,11 +10,10 @@ use std::time::{Duration, Instant};
 
 use egui::accesskit::Role;
 use isophote_loader::Library;
-use isophote_window::document::{Document, Options};
-use isophote_window::look::EditedLook;
-use isophote_window::playback::Playback;
-use isophote_window::session::Session;
-use isophote_window::settings::Settings;
+use isophote_window::jobs::document::{Document, Options};
+use isophote_window::state::look::EditedLook;
+use isophote_window::state::session::Session;
+use isophote_window::state::settings::Settings;
 
 use support::others::drop_files;
 use support::places::places;
@@ -45,7 +44,7 @@ fn a_photograph_is_dropped_looked_at_saved_reopened_and_exported() {
         let look = EditedLook::open(&library, &at("mine.json")).unwrap();
         let mut session = Session::new(library, vec![look], Settings::default()).unwrap();
         let document = Document::open(&at("photo.png"), &Options::default()).unwrap();
-        session.show_playback(Playback::new(document).unwrap());
+        session.show_playback(document.playback().unwrap());
         session
     };
 

@@ -1,7 +1,9 @@
 //! The window: its events, and when a frame is drawn.
 
+mod clicks;
 mod keys;
 mod opening;
+mod pace;
 
 use std::sync::Arc;
 use std::time::{Duration, Instant};
@@ -13,17 +15,18 @@ use winit::event_loop::{ActiveEventLoop, ControlFlow, EventLoopProxy};
 use winit::keyboard::ModifiersState;
 use winit::window::{Window, WindowId};
 
-use super::background::Background;
-use super::clicks;
-use super::leaving::Leaving;
-use super::pace::Pace;
-use super::panel::Textures;
-use super::playback::Playback;
-use super::record::Hold;
-use super::session::{Request, Session};
-use super::stage::{Drawn, Stage};
-use super::ui;
-use super::worker::Wake;
+use self::pace::Pace;
+use crate::drawing::panel::Textures;
+use crate::drawing::stage::{Drawn, Stage};
+use crate::jobs::background::Background;
+use crate::jobs::document::Document;
+use crate::jobs::worker::Wake;
+use crate::state::leaving::Leaving;
+use crate::state::playback::Playback;
+use crate::state::record::Hold;
+use crate::state::session::Session;
+use crate::state::work::Request;
+use crate::widgets;
 use isophote_example::plan_runner::Counts;
 use isophote_files::error::{Error, Result};
 use isophote_render::gpu::Gpu;
@@ -88,7 +91,7 @@ impl App {
     pub fn new(session: Session, size: Option<(u32, u32)>, proxy: EventLoopProxy<Event>) -> Result<Self> {
         let wake = waker(&proxy, || Event::Done);
         Ok(Self {
-            background: Background::new(&wake)?,
+            background: Background::new(&session.library, &wake)?,
             pace: Pace::default(),
             session,
             size,
@@ -120,6 +123,11 @@ impl App {
     pub fn session_mut(&mut self) -> &mut Session {
         self.due = Some(Instant::now());
         &mut self.session
+    }
+
+    /// Reads frames of the document that the session shows from now on.
+    pub fn read_frames(&mut self, document: Document) {
+        self.background.read_frames(document);
     }
 
     /// The device, while there is one.
@@ -157,11 +165,11 @@ impl App {
         let started = Instant::now();
         self.due = None;
         let session = &mut self.session;
-        self.background.collect(session);
+        collect(&mut self.background, session);
         let context = input.egui_ctx().clone();
         let mut raw = input.take_egui_input(window);
         self.late = clicks::one_at_a_time(&mut raw.events, std::mem::take(&mut self.late));
-        let output = context.run_ui(raw, |ui| ui::show(ui, session));
+        let output = context.run_ui(raw, |ui| widgets::show(ui, session));
         input.handle_platform_output(window, output.platform_output);
         let delay =
             output.viewport_output.get(&egui::ViewportId::ROOT).map(|viewport| viewport.repaint_delay);
@@ -172,17 +180,19 @@ impl App {
         if !context.egui_is_using_pointer() && !context.text_edit_focused() {
             session.let_go();
         }
-        let copied = self.background.carry_out(session);
-        copied.into_iter().for_each(|text| input.set_clipboard_text(text));
+        hand_over(&mut self.background, session);
         session.advance();
+        if let Some(frames) = self.background.frames(session) {
+            session.take_over(frames);
+        }
         let scale = self.pace.scale(session);
         let problems = stage.follow(session, scale)?;
         problems.iter().for_each(|problem| session.notes.complain(problem));
-        let was_busy = session.busy;
-        session.busy = stage.is_busy().then_some("Preparing the look").or(self.background.busy());
+        let was_busy = session.work.busy;
+        session.work.busy = stage.is_busy().then_some("Preparing the look").or(self.background.busy());
         let looks = started.elapsed() - controls;
         let always =
-            session.record.limit.is_some() || session.scenery.as_ref().is_some_and(|scenery| scenery.playing);
+            session.record.limit.is_some() || session.open.scenery().is_some_and(|scenery| scenery.playing);
         let drawn = stage.draw(window, session, always)?;
         session.record.hold(Hold { controls, looks, drawing: started.elapsed() - controls - looks });
         let delay = delay.filter(|delay| *delay < Duration::from_secs(3600));
@@ -191,10 +201,10 @@ impl App {
             self.update_title();
             self.want(Duration::from_millis(10));
         }
-        if self.session.playback.as_ref().is_some_and(Playback::is_waiting) {
+        if self.session.open.playback().is_some_and(Playback::is_waiting) {
             self.want(Duration::from_millis(20));
         }
-        if !problems.is_empty() || !self.late.is_empty() || self.session.busy != was_busy {
+        if !problems.is_empty() || !self.late.is_empty() || self.session.work.busy != was_busy {
             self.want(Duration::ZERO);
         }
         Ok(())
@@ -221,8 +231,8 @@ impl App {
             return Ok(());
         }
         stage.panel_time.take().into_iter().for_each(|time| session.record.count_panel(time));
-        let is_probed = session.probed != stage.probed;
-        session.probed = stage.probed;
+        let is_probed = session.viewport.probed != stage.probed;
+        session.viewport.probed = stage.probed;
         if let Some(frame) = stage.snapshot(session)? {
             session.show_scene_frame(frame);
             self.due = Some(Instant::now());
@@ -245,21 +255,20 @@ impl App {
 
     /// Does the window's work that is not seen: opens what was dropped on it, and has its title say so.
     fn attend(&mut self) {
-        self.background.collect(&mut self.session);
-        // There is nothing to copy from what is not seen.
-        let _ = self.background.carry_out(&mut self.session);
+        collect(&mut self.background, &mut self.session);
+        hand_over(&mut self.background, &mut self.session);
         self.update_title();
     }
 
     /// Follows the export that the window waits for before it closes; says whether it closes now.
     fn is_leaving(&mut self) -> bool {
-        if self.session.leaving == Leaving::Waits {
-            self.background.collect(&mut self.session);
-            if self.session.leaving != Leaving::Waits {
+        if self.session.dialogs.leaving == Leaving::Waits {
+            collect(&mut self.background, &mut self.session);
+            if self.session.dialogs.leaving != Leaving::Waits {
                 self.due = Some(Instant::now());
             }
         }
-        self.session.leaving == Leaving::Closes && self.background.end_export()
+        self.session.dialogs.leaving == Leaving::Closes && self.background.end_export()
     }
 
     /// Lets the title tell what is shown: at once, or with a later frame where it did so a moment ago.
@@ -339,8 +348,8 @@ impl ApplicationHandler<Event> for App {
                 Ok(())
             }
             WindowEvent::DroppedFile(path) => {
-                if !self.session.leaving.is_shown() {
-                    self.session.requests.push(Request::Open(path));
+                if !self.session.dialogs.leaving.is_shown() {
+                    self.session.work.ask(Request::Open(path));
                 }
                 Ok(())
             }
@@ -360,7 +369,7 @@ impl ApplicationHandler<Event> for App {
             self.attend();
         }
         let revival = self.revive(event_loop);
-        let always = self.session.is_playing() || self.session.record.limit.is_some();
+        let always = self.session.open.is_playing() || self.session.record.limit.is_some();
         let due = if always { Some(Instant::now()) } else { self.due };
         // The device tells when it is there for the next frame.
         let is_ready = self.stage.as_ref().is_some_and(|stage| !stage.is_waiting());
@@ -372,7 +381,7 @@ impl ApplicationHandler<Event> for App {
             }
             return;
         }
-        let waits = matches!(self.session.leaving, Leaving::Waits | Leaving::Closes);
+        let waits = matches!(self.session.dialogs.leaving, Leaving::Waits | Leaving::Closes);
         let closing = waits.then(|| Instant::now() + CLOSING);
         // A picture that stands still costs nothing.
         let unseen = self.due.filter(|_| self.hidden);
@@ -389,6 +398,23 @@ impl ApplicationHandler<Event> for App {
         self.stage = None;
         self.input = None;
         self.window = None;
+    }
+}
+
+/// Takes over what was done beside the window since the last call.
+fn collect(background: &mut Background, session: &mut Session) {
+    for outcome in background.collect() {
+        session.take_over(outcome);
+    }
+    session.follow_picture();
+    background.follow(session);
+}
+
+/// Has done beside the window what the controls have asked for.
+fn hand_over(background: &mut Background, session: &mut Session) {
+    let (requests, previews) = (session.take_requests(), session.previews.tasks());
+    for outcome in background.carry_out(session, requests, previews) {
+        session.take_over(outcome);
     }
 }
 

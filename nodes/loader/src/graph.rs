@@ -167,6 +167,65 @@ impl Graph {
         self.check(status)
     }
 
+    /// Sets a parameter that is a number.
+    ///
+    /// # Errors
+    /// [`Error`](crate::Error) when there is no such parameter, it is of another type, or it cannot have this value.
+    pub fn set_float(&self, node: u32, param: &str, value: f32) -> Result<()> {
+        let param = text::argument(param)?;
+        // SAFETY: the handle is this object's, and the text ends with a zero.
+        let status =
+            unsafe { (self.api.graph_set_float)(self.handle, node, param.as_ptr(), f64::from(value)) };
+        self.check(status)
+    }
+
+    /// Sets a parameter that is a whole number, or a number.
+    ///
+    /// # Errors
+    /// As [`Graph::set_float`].
+    pub fn set_int(&self, node: u32, param: &str, value: i64) -> Result<()> {
+        let param = text::argument(param)?;
+        // No parameter's range ends beyond those of the contract's numbers.
+        let value = value.clamp(i32::MIN.into(), i32::MAX.into()) as i32;
+        // SAFETY: the handle is this object's, and the text ends with a zero.
+        let status = unsafe { (self.api.graph_set_int)(self.handle, node, param.as_ptr(), value) };
+        self.check(status)
+    }
+
+    /// Sets a switch.
+    ///
+    /// # Errors
+    /// As [`Graph::set_float`].
+    pub fn set_bool(&self, node: u32, param: &str, value: bool) -> Result<()> {
+        let param = text::argument(param)?;
+        // SAFETY: the handle is this object's, and the text ends with a zero.
+        let status = unsafe { (self.api.graph_set_bool)(self.handle, node, param.as_ptr(), value.into()) };
+        self.check(status)
+    }
+
+    /// Sets a choice by the id of the option.
+    ///
+    /// # Errors
+    /// As [`Graph::set_float`].
+    pub fn set_choice(&self, node: u32, param: &str, option: &str) -> Result<()> {
+        let (param, option) = (text::argument(param)?, text::argument(option)?);
+        // SAFETY: the handle is this object's; both texts end with a zero.
+        let status =
+            unsafe { (self.api.graph_set_choice)(self.handle, node, param.as_ptr(), option.as_ptr()) };
+        self.check(status)
+    }
+
+    /// Sets a colour: red, green, blue and alpha, gamma-encoded sRGB, 0 to 1.
+    ///
+    /// # Errors
+    /// As [`Graph::set_float`].
+    pub fn set_color(&self, node: u32, param: &str, color: &[f32; 4]) -> Result<()> {
+        let param = text::argument(param)?;
+        // SAFETY: the handle is this object's, the text ends with a zero, and there are four numbers.
+        let status = unsafe { (self.api.graph_set_color)(self.handle, node, param.as_ptr(), color.as_ptr()) };
+        self.check(status)
+    }
+
     /// Kind of image that leaves the graph.
     ///
     /// # Errors

@@ -8,10 +8,12 @@ pub mod precision;
 pub mod preset;
 pub mod source;
 pub mod style;
+pub mod value;
 
 use std::sync::Arc;
 
 use self::style::{Setting, Style};
+use self::value::Value;
 use isophote_example::frame_runner::{FrameRunner, Named};
 use isophote_example::guides;
 use isophote_example::history::Past;
@@ -93,6 +95,18 @@ impl Stylizer {
     /// As [`Style::set`].
     pub fn set(&mut self, setting: &Setting) -> Result<()> {
         self.style.set(setting)?;
+        self.edited = true;
+        Ok(())
+    }
+
+    /// Sets the parameter `id` of a node, which has no keyframes, by a value of its type; it takes effect with the next
+    /// [`Stylizer::update`]. `name` is what presets call it.
+    ///
+    /// # Errors
+    /// [`isophote_files::error::Error::Input`] when there is no such parameter, or it cannot have this value.
+    pub fn set_value(&mut self, name: &str, node: u32, id: &str, value: &Value) -> Result<()> {
+        let set = value.put(&self.style.graph, node, id);
+        set.map_err(|e| e.at(format!("--set {name}={}", value.text()), "see the graph's nodes"))?;
         self.edited = true;
         Ok(())
     }

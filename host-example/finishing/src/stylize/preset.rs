@@ -69,13 +69,13 @@ pub fn is_line(line: &str) -> bool {
     read.is_ok()
 }
 
-/// The style of a preset as it is to be opened by a program whose folder is another than that of the preset at `path`: graph
+/// The `style` of a preset as it is to be opened by a program whose folder is another than that of the preset at `path`: graph
 /// files lie beside the preset.
-pub fn style_beside(preset: &Preset, path: &Path) -> OsString {
-    let is_file = preset.style.to_ascii_lowercase().ends_with(".json");
+pub fn style_beside(style: &str, path: &Path) -> OsString {
+    let is_file = style.to_ascii_lowercase().ends_with(".json");
     match path.parent() {
-        Some(folder) if is_file => folder.join(&preset.style).into(),
-        _ => preset.style.clone().into(),
+        Some(folder) if is_file => folder.join(style).into(),
+        _ => style.into(),
     }
 }
 

@@ -11,7 +11,7 @@ use super::source;
 use isophote_files::error::{AtPlace, Error, Result};
 use isophote_files::{frames, output};
 use isophote_loader::abi::IsophoteRequest;
-use isophote_loader::catalogue::{Kind, Node};
+use isophote_loader::catalogue::Kind;
 use isophote_loader::{Graph, Library, Style as Tracks};
 
 /// One `--set`: `id=value`, or `node.id=value` for one node of a graph.
@@ -177,20 +177,19 @@ impl Style {
         self.tracks.value(name, frame)
     }
 
-    /// Sets a parameter of the node that is named, or of the only one that has it. Returns the index of the node
-    /// and what it says about itself.
+    /// Sets a parameter of the node that is named, or of the only one that has it.
     ///
     /// # Errors
     /// [`Error::Input`] when there is no such node or parameter, several nodes have the parameter, or it cannot
     /// have the value.
-    pub fn set(&self, setting: &Setting) -> Result<(u32, Node)> {
+    pub fn set(&self, setting: &Setting) -> Result<()> {
         let name = match &setting.node {
             Some(node) => format!("{node}.{}", setting.param),
             None => setting.param.clone(),
         };
         let fail = |e: isophote_loader::Error| e.at(format!("--set {setting}"), "see the graph's nodes");
-        let node = self.tracks.set(self.graph.handle(), &name, &setting.value).map_err(fail)?;
-        Ok((node, self.graph.spec(node).map_err(fail)?))
+        self.tracks.set(self.graph.handle(), &name, &setting.value).map_err(fail)?;
+        Ok(())
     }
 
     /// Makes all nodes that can be steady over time so, from 0 to 1.
@@ -314,7 +313,7 @@ fn open_text(library: &Library, path: &Path, text: &str, preset: Option<&Preset>
 /// The text of the graph file that the preset of the file `path` names, if it names one. Of a node and a file of one name the
 /// node counts.
 fn graph_beside(library: &Library, path: &Path, preset: &Preset) -> Result<Option<String>> {
-    let inner = preset::style_beside(preset, path);
+    let inner = preset::style_beside(&preset.style, path);
     let named = Path::new(&inner);
     let is_no_file = preset.style.is_empty()
         || preset::is_written_out(&preset.style)

@@ -180,7 +180,7 @@ fn base(library: &Library, style: &Style, args: &SaveArgs) -> Result<Preset> {
         return Ok(plain(from(file, base)?));
     }
     let preset = preset::parse(base, &text)?;
-    let inner = preset::style_beside(&preset, base);
+    let inner = preset::style_beside(&preset.style, base);
     let is_same = inner == *preset.style;
     let style = if is_same { preset.style } else { from(file, Path::new(&inner))? };
     Ok(Preset { style, ..preset })

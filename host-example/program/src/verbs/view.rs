@@ -9,13 +9,12 @@ use isophote_files::error::{AtPlace, Result};
 use isophote_finishing::staging::{ReadingArgs, StagingArgs};
 use isophote_finishing::stylize::style::{Setting, Style};
 use isophote_loader::Library;
-use isophote_window::document::kind::Kind;
-use isophote_window::document::{self, Document};
-use isophote_window::look::{EditedLook, PLAIN};
-use isophote_window::playback::Playback;
-use isophote_window::scenery::{Lighting, Scenery, Staging};
-use isophote_window::session::Session;
-use isophote_window::settings::Settings;
+use isophote_window::jobs::document::{self, Document};
+use isophote_window::state::document::kind::Kind;
+use isophote_window::state::look::{EditedLook, PLAIN};
+use isophote_window::state::scenery::{Lighting, Scenery, Staging};
+use isophote_window::state::session::Session;
+use isophote_window::state::settings::Settings;
 
 /// The look of a window that was never open.
 const FIRST: &str = "cartoon";
@@ -66,22 +65,23 @@ pub fn run(args: &ViewArgs) -> Result<()> {
     let last = Some(last).filter(|_| args.style.is_empty());
     let mut session = Session::new(library, looks, settings)?;
     problem.iter().for_each(|problem| session.notes.complain(problem));
-    session.prepare(&args.set, args.lengths.lengths);
+    session.looks.prepare(&args.set, args.lengths.lengths);
     session.record.limit = args.frames;
     session.precision = args.precision.precision;
     session.resume(last.as_deref());
-    if let Some(path) = &args.file {
-        open(&mut session, path, args)?;
-    }
-    isophote_window::show(session, args.size, args.report)
+    let document = match &args.file {
+        Some(path) => open(&mut session, path, args)?,
+        None => None,
+    };
+    isophote_window::show(session, document, args.size, args.report)
 }
 
-/// Opens what was named, before there is a window.
-fn open(session: &mut Session, path: &Path, args: &ViewArgs) -> Result<()> {
+/// Opens what was named, before there is a window; returns the document where that is pictures.
+fn open(session: &mut Session, path: &Path, args: &ViewArgs) -> Result<Option<Document>> {
     let document = Document::open(path, &document::Options::default())?;
     if document.kind() != Kind::Scene {
-        session.show_playback(Playback::new(document)?);
-        return Ok(());
+        session.show_playback(document.playback()?);
+        return Ok(Some(document));
     }
     let scene = args.reading.load(path)?;
     let staging = Staging {
@@ -100,7 +100,7 @@ fn open(session: &mut Session, path: &Path, args: &ViewArgs) -> Result<()> {
     let scenery = Scenery::new(scene, staging, width as f32 / height as f32);
     let name = path.file_name().unwrap_or_default().to_string_lossy().into_owned();
     session.show_scene(scenery, Some(path.to_owned()), name);
-    Ok(())
+    Ok(None)
 }
 
 /// The looks of the keys, checked to be usable.

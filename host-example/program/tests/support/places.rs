@@ -3,8 +3,8 @@
 use egui::accesskit::Role;
 use egui_kittest::Harness;
 use egui_kittest::kittest::{NodeT, Queryable};
-use isophote_window::session::Session;
-use isophote_window::ui;
+use isophote_window::state::session::Session;
+use isophote_window::widgets;
 
 /// Places of controls in a window of a size that shows a session: the same controls are laid out once more and found by their
 /// labels and roles.
@@ -32,8 +32,8 @@ pub fn tabs_to(session: Session, size: (u32, u32), label: &str) -> usize {
 fn laid_out(session: Session, (width, height): (u32, u32)) -> Harness<'static, Session> {
     let mut harness = Harness::builder()
         .with_size(egui::vec2(width as f32, height as f32))
-        .build_ui_state(|ui, session: &mut Session| ui::show(ui, session), session);
-    ui::theme::apply(&harness.ctx);
+        .build_ui_state(|ui, session: &mut Session| widgets::show(ui, session), session);
+    widgets::theme::apply(&harness.ctx);
     harness.run_ok();
     harness
 }

@@ -7,9 +7,10 @@ use winit::event::{ElementState, KeyEvent, WindowEvent};
 use winit::keyboard::{Key, NamedKey};
 
 use super::App;
-use crate::leaving::Leaving;
-use crate::session::Request;
-use crate::ui;
+use crate::state::leaving::Leaving;
+use crate::state::outcome::Dialog;
+use crate::state::work::Request;
+use crate::widgets;
 
 impl App {
     /// Does what a key stands for.
@@ -21,7 +22,7 @@ impl App {
         let pressed = event.state == ElementState::Pressed;
         let session = &mut self.session;
         if key == Key::Character("\\") {
-            session.viewport.peek = pressed && !session.leaving.is_shown();
+            session.viewport.peek = pressed && !session.dialogs.leaving.is_shown();
             return;
         }
         if !pressed {
@@ -29,16 +30,16 @@ impl App {
         }
         self.due = Some(Instant::now());
         if !self.is_command() {
-            return ui::keys::press(&mut self.session, &event.logical_key);
+            return widgets::keys::press(&mut self.session, &event.logical_key);
         }
         let session = &mut self.session;
         match key {
             Key::Character("q" | "Q") => self.leave(),
-            _ if session.leaving.is_shown() => {}
+            _ if session.dialogs.leaving.is_shown() => {}
             Key::Character("z") if !self.modifiers.shift_key() => session.undo(),
             Key::Character("z" | "Z" | "y") => session.redo(),
             Key::Character("e") => session.plan_export(),
-            Key::Character("o") => session.requests.push(Request::ChooseFile),
+            Key::Character("o") => session.work.ask(Request::Choose(Dialog::File)),
             Key::Character("s") => session.save_look(self.modifiers.shift_key()),
             Key::Character("S") => session.save_look(true),
             _ => {}
@@ -50,7 +51,7 @@ impl App {
         self.session.leave();
         self.due = Some(Instant::now());
         if let Some(window) = self.window.as_ref().filter(|_| self.hidden)
-            && self.session.leaving == Leaving::Asks
+            && self.session.dialogs.leaving == Leaving::Asks
         {
             window.set_minimized(false);
             window.focus_window();
@@ -68,7 +69,7 @@ impl App {
         let closes = self.is_command() && matches!(key.as_ref(), Key::Character("q" | "Q"));
         let closes_dialog = *key == Key::Named(NamedKey::Escape) && self.session.has_dialog();
         let is_typing = context.text_edit_focused() && !closes_dialog;
-        closes || self.session.leaving.is_shown() || !egui::Popup::is_any_open(context) && !is_typing
+        closes || self.session.dialogs.leaving.is_shown() || !egui::Popup::is_any_open(context) && !is_typing
     }
 
     /// Lets the controls see an event first.
@@ -78,8 +79,8 @@ impl App {
             if event.logical_key == Key::Named(NamedKey::Tab));
         // Tab goes from style to style, unless nothing is open or something is being typed, asked or chosen.
         let session = &self.session;
-        let is_asked = session.is_covered() || session.has_dialog() || session.leaving.is_shown();
-        if tab && session.has_picture() && !is_asked && !input.egui_ctx().text_edit_focused() {
+        let is_asked = session.is_covered() || session.has_dialog() || session.dialogs.leaving.is_shown();
+        if tab && session.open.has_picture() && !is_asked && !input.egui_ctx().text_edit_focused() {
             return;
         }
         if input.on_window_event(window, event).repaint && !matches!(event, WindowEvent::RedrawRequested) {

@@ -9,8 +9,8 @@ use winit::event_loop::ActiveEventLoop;
 use winit::window::Window;
 
 use super::{App, FIX};
-use crate::stage::Stage;
-use crate::ui;
+use crate::drawing::stage::Stage;
+use crate::widgets;
 use isophote_example::desktop;
 use isophote_files::error::Result;
 
@@ -65,7 +65,7 @@ impl App {
     /// State of the controls, by which they hear of events; their textures are at most so many texels across.
     fn controls(&self, event_loop: &ActiveEventLoop, window: &Window, texels: usize) -> State {
         let context = egui::Context::default();
-        ui::theme::apply(&context);
+        widgets::theme::apply(&context);
         // Where frames are slow, a click takes as long as two of them.
         context.options_mut(|options| {
             options.input_options.max_click_duration = f64::INFINITY;
@@ -82,7 +82,7 @@ impl App {
     pub(super) fn handle(&mut self, event_loop: &ActiveEventLoop, result: Result<()>) {
         let Err(error) = result else { return };
         let was_open = self.stage.take().is_some() || self.revival.is_some();
-        if self.revivals >= REVIVALS && self.session.has_picture() {
+        if self.revivals >= REVIVALS && self.session.open.has_picture() {
             self.session.close();
             self.revivals = 0;
         }

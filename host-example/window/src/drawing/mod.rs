@@ -1,0 +1,14 @@
+//! Drawing: everything of the window that lives on the graphics device.
+
+mod canvas;
+mod live_look;
+mod made;
+pub(crate) mod panel;
+mod pictures;
+mod probe;
+mod screen;
+mod shown;
+mod snapshot;
+mod source;
+mod sources;
+pub(crate) mod stage;

@@ -1,0 +1,182 @@
+//! Dialogs of the system, each on a thread of its own: they may stay open for long. The crate that shows them tells in the log
+//! alone why one was not shown.
+
+use std::cell::RefCell;
+use std::path::{Path, PathBuf};
+use std::sync::mpsc::{Receiver, Sender, channel};
+use std::sync::{Arc, Once};
+
+use super::worker::Wake;
+use crate::state::outcome::Dialog;
+use crate::state::saving::Saving;
+use crate::state::session::Session;
+use isophote_files::error::{Error, Result};
+
+/// Answer to a dialog: its purpose, and what was chosen, if anything was.
+type Answer = (Dialog, Result<Option<PathBuf>>);
+
+/// Dialogs, of which one is open at a time.
+pub struct SystemDialogs {
+    chosen: Receiver<Answer>,
+    choose: Sender<Answer>,
+    /// True while one is open.
+    is_open: bool,
+    wake: Wake,
+}
+
+impl SystemDialogs {
+    /// Dialogs of which none is open yet.
+    pub fn new(wake: &Wake) -> Self {
+        let (choose, chosen) = channel();
+        Self { chosen, choose, is_open: false, wake: Arc::clone(wake) }
+    }
+
+    /// Answer since the last call.
+    pub fn answer(&mut self) -> Option<Answer> {
+        let answer = self.chosen.try_recv().ok()?;
+        self.is_open = false;
+        Some(answer)
+    }
+
+    /// Shows a dialog, unless one is open.
+    ///
+    /// # Errors
+    /// [`Error::Failure`] when the system has no thread to give.
+    pub fn show(&mut self, dialog: Dialog, session: &Session) -> Result<()> {
+        if self.is_open {
+            return Ok(());
+        }
+        let (folder, name) = proposed(dialog, session);
+        let (choose, wake) = (self.choose.clone(), Arc::clone(&self.wake));
+        let asked = std::thread::Builder::new().name("dialog".into()).spawn(move || {
+            let path = shown(|| ask(dialog, folder, &name), otherwise(dialog));
+            // The window may be closed by now.
+            let _ = choose.send((dialog, path));
+            wake();
+        });
+        asked.map_err(|e| {
+            Error::failure(format!("no dialog can be opened: {e}"), "drop the file on the window")
+        })?;
+        self.is_open = true;
+        Ok(())
+    }
+}
+
+/// Folder and name of a file that a dialog begins with.
+fn proposed(dialog: Dialog, session: &Session) -> (Option<PathBuf>, String) {
+    let saved = session.dialogs.saving.as_ref().map(Saving::file);
+    let folder = match dialog {
+        Dialog::Save => saved.as_deref().and_then(Path::parent).map(Path::to_owned),
+        Dialog::Look | Dialog::LookFolder => session.settings.look_folder.clone(),
+        Dialog::File | Dialog::Surroundings | Dialog::Export => session.settings.folder.clone(),
+    };
+    let file = match (dialog, &session.dialogs.plan) {
+        (Dialog::Export, Some(plan)) => PathBuf::from(&plan.path),
+        _ => saved.unwrap_or_default(),
+    };
+    (folder, file.file_name().unwrap_or_default().to_string_lossy().into_owned())
+}
+
+/// Advice where the system has no dialogs.
+const fn otherwise(dialog: Dialog) -> &'static str {
+    match dialog {
+        Dialog::File | Dialog::Look => "drop the file on the window, or install zenity or xdg-desktop-portal",
+        Dialog::Export => "type where it is to go, or install zenity or xdg-desktop-portal",
+        Dialog::LookFolder | Dialog::Save | Dialog::Surroundings => "install zenity or xdg-desktop-portal",
+    }
+}
+
+/// Shows a dialog of the system and waits for its answer.
+fn ask(dialog: Dialog, folder: Option<PathBuf>, name: &str) -> Option<PathBuf> {
+    let mut shown = rfd::FileDialog::new();
+    if let Some(folder) = folder {
+        shown = shown.set_directory(folder);
+    }
+    match dialog {
+        Dialog::File => shown.set_title("Open").pick_file(),
+        Dialog::Look => shown.set_title("Open a look").add_filter("Looks", &["json"]).pick_file(),
+        Dialog::LookFolder => shown.set_title("Add a folder of looks").pick_folder(),
+        Dialog::Save => {
+            let shown = shown.set_title("Save the look").set_file_name(name).add_filter("Looks", &["json"]);
+            let path = shown.save_file()?;
+            Some(if path.extension().is_some() { path } else { path.with_extension("json") })
+        }
+        Dialog::Export => shown.set_title("Export").set_file_name(name).save_file(),
+        Dialog::Surroundings => shown
+            .set_title("Surroundings")
+            .add_filter("Pictures of the surroundings", &["hdr", "exr"])
+            .pick_file(),
+    }
+}
+
+/// Origin of the messages of the crate that shows dialogs.
+const SHOWS: &str = "rfd";
+/// Program that it tries last, after which there is no dialog.
+const LAST: &str = "zenity";
+
+thread_local! {
+    /// Problem with the dialog of this thread.
+    static PROBLEM: RefCell<Option<String>> = const { RefCell::new(None) };
+}
+
+/// Keeps what goes wrong with dialogs; other messages are for nobody.
+struct Listener;
+
+impl log::Log for Listener {
+    fn enabled(&self, metadata: &log::Metadata<'_>) -> bool {
+        metadata.level() == log::Level::Error && metadata.target().starts_with(SHOWS)
+    }
+
+    fn log(&self, record: &log::Record<'_>) {
+        let text = record.args().to_string();
+        if self.enabled(record.metadata()) && text.contains(LAST) {
+            PROBLEM.set(Some(text));
+        }
+    }
+
+    fn flush(&self) {}
+}
+
+/// Response to a dialog, which is nothing when it was closed.
+///
+/// # Errors
+/// [`Error::Failure`] when there was none to answer; `otherwise` says what to do then.
+fn shown<T>(ask: impl FnOnce() -> Option<T>, otherwise: &str) -> Result<Option<T>> {
+    static LISTENS: Once = Once::new();
+    LISTENS.call_once(|| {
+        // Where a program has a log of its own, it is told there.
+        if log::set_logger(&Listener).is_ok() {
+            log::set_max_level(log::LevelFilter::Error);
+        }
+    });
+    PROBLEM.take();
+    let answer = ask();
+    match PROBLEM.take() {
+        Some(problem) => {
+            Err(Error::failure(format!("the system cannot show a dialog: {problem}"), otherwise))
+        }
+        None => Ok(answer),
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn what_was_not_shown_is_no_answer() {
+        let refused = || {
+            log::error!(target: "rfd::backend", "no bus");
+            log::error!(target: "rfd::backend", "no zenity");
+            None::<u8>
+        };
+        let error = shown(refused, "drop the file").unwrap_err().to_string();
+        assert!(error.contains("no zenity") && error.ends_with("; drop the file"), "{error}");
+        let fallback = || {
+            log::error!(target: "rfd::backend", "no bus");
+            Some(1)
+        };
+        assert_eq!(shown(fallback, "").unwrap(), Some(1));
+        assert_eq!(shown(|| None::<u8>, "").unwrap(), None, "it was closed");
+    }
+}

@@ -1,0 +1,320 @@
+//! Export of what the window shows into files: a picture, a sequence, a turntable or a video.
+//!
+//! The work is done by another process of this program, by its verbs `apply` and `render` with a preset file. So the window
+//! stays alive whatever becomes of it, and the result is the one that the command line gives.
+
+use std::ffi::OsString;
+use std::fs;
+use std::io::{BufRead, BufReader, Read, Seek};
+use std::path::{Path, PathBuf};
+use std::process::{Child, Command, Stdio};
+use std::sync::atomic::{AtomicBool, Ordering};
+use std::sync::{Arc, Mutex, MutexGuard, PoisonError};
+use std::thread::{self, Builder};
+use std::time::Duration;
+
+use serde_json::Value;
+
+use crate::state::document::kind::Kind;
+use crate::state::progress::{Progress, State};
+use isophote_files::error::{Error, Result};
+use isophote_files::files::{self, Existing};
+use isophote_files::frames::Pattern;
+use isophote_finishing::video::{self, Film};
+use isophote_pictures::exr::Selection;
+use isophote_pictures::read;
+
+/// Time between two looks at whether a process has ended that says no more.
+const TICK: Duration = Duration::from_millis(5);
+/// Time that a process has to end and to remove what it has begun.
+const GRACE: Duration = Duration::from_secs(2);
+/// Frames of a sequence on their way into a video.
+const FRAMES: &str = "frame.######.png";
+
+/// An export to be made.
+#[derive(Clone, Debug)]
+pub struct ExportJob {
+    /// Kind of the input: scenes are rendered, the others filtered.
+    pub kind: Kind,
+    /// The document's path.
+    pub input: PathBuf,
+    /// The picture, the pattern of the pictures or the video.
+    pub output: PathBuf,
+    /// The look as the text of a preset file, in which paths are absolute; only scenes are something without.
+    pub preset: Option<String>,
+    /// Frames, as `--frames` takes them.
+    pub frames: Option<String>,
+    /// True where the camera turns once around the scene over all frames.
+    pub turntable: bool,
+    /// Frames per second of scenes and of sequences that become videos.
+    pub rate: f64,
+    /// More options of the verb.
+    pub arguments: Vec<OsString>,
+    /// The program instead of this one.
+    pub program: Option<PathBuf>,
+}
+
+impl ExportJob {
+    /// The whole of a document into a file, at full resolution and 24 frames a second.
+    pub fn new(kind: Kind, input: &Path, output: &Path, preset: Option<String>) -> Self {
+        Self {
+            kind,
+            input: input.to_owned(),
+            output: output.to_owned(),
+            preset,
+            frames: None,
+            turntable: false,
+            rate: 24.0,
+            arguments: Vec::new(),
+            program: None,
+        }
+    }
+
+    /// True where pictures of a sequence are made first, and a video of them.
+    fn is_in_two_steps(&self) -> bool {
+        self.kind == Kind::Sequence && video::is_video(&self.output)
+    }
+
+    /// The process that does it, with its preset and other files in `folder`.
+    fn command(&self, folder: &Path) -> Result<Command> {
+        let preset = folder.join("look.json");
+        if let Some(text) = &self.preset {
+            fs::write(&preset, text).map_err(|e| {
+                Error::file(&preset, format!("cannot be written: {e}"), "make room on the disk")
+            })?;
+        }
+        let program = match &self.program {
+            Some(program) => program.clone(),
+            None => std::env::current_exe().map_err(|e| {
+                Error::failure(format!("the program does not find itself: {e}"), "start it again")
+            })?,
+        };
+        let mut command = Command::new(program);
+        match self.kind {
+            Kind::Scene => {
+                command.arg("render").arg("--fps").arg(self.rate.to_string());
+                if self.preset.is_some() {
+                    command.arg("--style").arg(&preset);
+                }
+                if self.turntable {
+                    command.arg("--turntable");
+                }
+            }
+            _ => {
+                command.arg("apply").arg("--preset").arg(&preset);
+                // Whoever chose the document itself was asked; of a video the sound is read to the end.
+                if self.kind != Kind::Video {
+                    command.arg("--in-place");
+                }
+            }
+        }
+        if let Some(frames) = &self.frames {
+            command.arg("--frames").arg(frames);
+        }
+        let output = if self.is_in_two_steps() { folder.join(FRAMES) } else { self.output.clone() };
+        // What is there may go: the dialog has asked.
+        command.args(&self.arguments).args(["--force", "--json", "--"]).arg(&self.input).arg(output);
+        Ok(command)
+    }
+}
+
+/// An export at work. Dropped, it is cancelled.
+#[derive(Debug)]
+pub struct Export {
+    shared: Arc<Shared>,
+}
+
+#[derive(Debug, Default)]
+struct Shared {
+    progress: Mutex<Progress>,
+    child: Mutex<Option<Child>>,
+    is_cancelled: AtomicBool,
+}
+
+impl Export {
+    /// Starts it.
+    ///
+    /// # Errors
+    /// [`Error::Input`] for jobs without a look that need one, [`Error::Failure`] when the system gives no thread; what else
+    /// is wrong is told by [`Export::poll`].
+    pub fn start(job: ExportJob) -> Result<Self> {
+        if job.preset.is_none() && job.kind != Kind::Scene {
+            return Err(Error::input("the export", "has no look", "choose a style first"));
+        }
+        let shared = Arc::new(Shared::default());
+        let own = Arc::clone(&shared);
+        let work = move || {
+            let result = own.run(&job);
+            let is_cancelled = own.is_cancelled();
+            if is_cancelled || result.is_err() {
+                // What the process had begun when it was ended; nobody writes it any more.
+                files::sweep(&job.output);
+            }
+            own.progress().state = match result {
+                // What was done before it could be ended is done.
+                Ok(()) => State::Done,
+                Err(_) if is_cancelled => State::Cancelled,
+                Err(problem) => State::Failed(problem),
+            };
+        };
+        Builder::new()
+            .name("export".into())
+            .spawn(work)
+            .map_err(|e| Error::failure(format!("a thread cannot be started: {e}"), "try again"))?;
+        Ok(Self { shared })
+    }
+
+    /// Progress of it.
+    pub fn poll(&self) -> Progress {
+        self.shared.progress().clone()
+    }
+
+    /// Ends it, and removes what is not whole; [`Export::poll`] tells when that is done.
+    pub fn cancel(&mut self) {
+        if self.shared.is_cancelled.swap(true, Ordering::SeqCst) {
+            return;
+        }
+        if !self.shared.child().as_mut().is_some_and(ask_to_end) {
+            return;
+        }
+        let shared = Arc::clone(&self.shared);
+        let end = move || {
+            thread::sleep(GRACE);
+            if let Some(child) = shared.child().as_mut() {
+                // One that has ended needs no end.
+                let _ = child.kill();
+            }
+        };
+        // Without a thread it has all the time that it needs.
+        let _ = Builder::new().name("end of export".into()).spawn(end);
+    }
+}
+
+/// Asks a process to end, and says whether it has not ended yet.
+#[cfg(unix)]
+fn ask_to_end(child: &mut Child) -> bool {
+    use rustix::process::{Pid, Signal, kill_process};
+    let is_running = matches!(child.try_wait(), Ok(None));
+    let id = i32::try_from(child.id()).ok().and_then(Pid::from_raw);
+    // As long as nobody has waited for it, no other process has its number.
+    is_running && id.is_some_and(|id| kill_process(id, Signal::TERM).is_ok())
+}
+
+/// Ends a process: there is no way to ask.
+#[cfg(not(unix))]
+fn ask_to_end(child: &mut Child) -> bool {
+    child.kill().is_ok()
+}
+
+impl Drop for Export {
+    fn drop(&mut self) {
+        self.cancel();
+    }
+}
+
+impl Shared {
+    fn progress(&self) -> MutexGuard<'_, Progress> {
+        self.progress.lock().unwrap_or_else(PoisonError::into_inner)
+    }
+
+    fn child(&self) -> MutexGuard<'_, Option<Child>> {
+        self.child.lock().unwrap_or_else(PoisonError::into_inner)
+    }
+
+    fn is_cancelled(&self) -> bool {
+        self.is_cancelled.load(Ordering::SeqCst)
+    }
+
+    /// Does a job, or says why it cannot be done.
+    fn run(&self, job: &ExportJob) -> std::result::Result<(), String> {
+        let folder = tempfile::tempdir().map_err(|e| format!("no folder for the time being: {e}"))?;
+        self.process(job.command(folder.path()).map_err(|e| e.to_string())?)?;
+        if job.is_in_two_steps() {
+            self.film(job, &folder.path().join(FRAMES)).map_err(|e| e.to_string())?;
+        }
+        Ok(())
+    }
+
+    /// Runs a process to its end.
+    fn process(&self, mut command: Command) -> std::result::Result<(), String> {
+        let failed = |e: std::io::Error| format!("the export cannot be started: {e}");
+        let mut complaints = tempfile::tempfile().map_err(failed)?;
+        command.stdin(Stdio::null()).stdout(Stdio::piped()).stderr(complaints.try_clone().map_err(failed)?);
+        let out = {
+            // Held so that whoever cancels finds the process, or it is not started.
+            let mut child = self.child();
+            if self.is_cancelled() {
+                return Err(String::new());
+            }
+            child.insert(command.spawn().map_err(failed)?).stdout.take()
+        };
+        let (mut frames, mut first) = (0, None);
+        for line in out.into_iter().flat_map(|out| BufReader::new(out).split(b'\n')).map_while(|l| l.ok()) {
+            if let Ok(event) = serde_json::from_slice::<Value>(&line) {
+                frames += u32::from(event["event"] == "frame");
+                self.note(&event, frames.into());
+                first = first.or_else(|| event["error"].as_str().map(str::to_owned));
+            }
+        }
+        let status = loop {
+            let mut child = self.child();
+            if let Some(status) = child.as_mut().map_or(Ok(None), Child::try_wait).map_err(failed)? {
+                *child = None;
+                break status;
+            }
+            drop(child);
+            thread::sleep(TICK);
+        };
+        if status.success() {
+            return Ok(());
+        }
+        let mut text = String::new();
+        // What cannot be read is not told.
+        let _ = complaints.rewind().and_then(|()| complaints.read_to_string(&mut text));
+        let last = text.lines().rev().find_map(|line| line.strip_prefix("error: "));
+        let last = last.map_or_else(|| format!("the export ended early: {status}"), str::to_owned);
+        Err(first.map_or_else(|| last.clone(), |first| format!("{first} ({last})")))
+    }
+
+    /// Takes over what a process tells when so many frames are over.
+    fn note(&self, event: &Value, frames: f64) {
+        let mut progress = self.progress();
+        match event["event"].as_str() {
+            Some("start") => progress.total = event["frames"].as_f64().unwrap_or(0.0),
+            Some("progress") => progress.done = event["done"].as_f64().unwrap_or(0.0),
+            Some("frame") => {
+                progress.done = frames;
+                // Of a video the number may be a guess.
+                progress.total = progress.total.max(frames);
+            }
+            _ => {}
+        }
+    }
+
+    /// Makes a video of pictures.
+    fn film(&self, job: &ExportJob, pictures: &Path) -> Result<()> {
+        let none =
+            || Error::file(pictures, "has no place for a frame number", "report this mistake in the program");
+        let pattern = Pattern::new(pictures)?.ok_or_else(none)?;
+        let frames = pattern.on_disk()?;
+        files::check_writable(&job.output, Existing::Replace)?;
+        files::write_by_path(&job.output, Existing::Replace, |place| {
+            let mut film = None::<Film<'_>>;
+            for number in frames {
+                if self.is_cancelled() {
+                    return Err(Error::failure("the export was cancelled", "start it again"));
+                }
+                let source = read::read(&pattern.file(number), &Selection::default())?;
+                let Some(picture) = source.pictures.first() else { continue };
+                let film = match &mut film {
+                    Some(film) => film,
+                    None => film.insert(Film::start(&picture.pixels, job.rate, (&job.output, place), None)?),
+                };
+                if !film.put(&picture.pixels)? {
+                    break;
+                }
+            }
+            Film::end(film, &job.output)
+        })
+    }
+}

@@ -1,0 +1,86 @@
+//! The export of what the window shows, by what is planned.
+
+use std::path::Path;
+
+use super::export::{Export, ExportJob};
+use crate::state::command;
+use crate::state::outcome::Outcome;
+use crate::state::plan::{Plan, What};
+use crate::state::progress::State;
+use crate::state::session::Session;
+use isophote_files::error::Result;
+use isophote_finishing::stylize::preset;
+
+/// An export, while there is one.
+#[derive(Debug, Default)]
+pub struct Exporting {
+    export: Option<Export>,
+}
+
+impl Exporting {
+    /// Begins to write what is shown, by another process, where something is planned.
+    pub fn begin(&mut self, session: &Session) -> Option<Outcome> {
+        let job = job(session, session.dialogs.plan.as_ref()?, session.open.file()?);
+        let begun = job.and_then(Export::start).map(|export| self.export = Some(export));
+        Some(Outcome::ExportBegun(begun))
+    }
+
+    /// Progress of it; it is the last one when it has ended.
+    pub fn progress(&mut self) -> Option<Outcome> {
+        let progress = self.export.as_ref()?.poll();
+        if progress.state != State::Running {
+            self.export = None;
+        }
+        Some(Outcome::Export(progress))
+    }
+
+    /// Ends it, and removes what is not whole.
+    pub fn cancel(&mut self) {
+        self.export.iter_mut().for_each(Export::cancel);
+    }
+
+    /// Ends it; says whether it has ended, so that nothing of it is left.
+    pub fn has_ended(&mut self) -> bool {
+        self.cancel();
+        self.export.as_ref().is_none_or(|export| export.poll().state != State::Running)
+    }
+
+    /// True while there is one.
+    pub fn is_running(&self) -> bool {
+        self.export.is_some()
+    }
+}
+
+/// The export of a file that is open.
+///
+/// # Errors
+/// [`isophote_files::error::Error::Input`] for looks that no preset can hold.
+fn job(session: &Session, plan: &Plan, file: &Path) -> Result<ExportJob> {
+    let look = session.look();
+    let preset = match look.is_plain() {
+        true => None,
+        false => Some(preset::text(&look.whole()?)?),
+    };
+    let mut job = ExportJob::new(plan.kind, file, Path::new(&plan.path), preset);
+    let is_turntable = plan.what == What::Turntable;
+    (job.frames, job.turntable) = (plan.frames(), is_turntable);
+    let mut words: Vec<String> = match session.open.playback() {
+        Some(playback) => {
+            job.rate = playback.rate;
+            command::selection(playback)
+        }
+        None => {
+            let [width, height] = plan.size;
+            let size = ["--size".to_owned(), format!("{width}x{height}")];
+            size.into_iter().chain(command::staging(session, is_turntable)).collect()
+        }
+    };
+    match plan.what {
+        What::Animation => words.extend(command::animation(session)),
+        What::Picture if session.open.playback().is_none() => words.extend(command::moment(session)),
+        What::Picture | What::Turntable | What::Frames => {}
+    }
+    words.extend(command::precision(session));
+    job.arguments = words.into_iter().map(Into::into).collect();
+    Ok(job)
+}

@@ -1,0 +1,15 @@
+//! Work beside the window: threads and processes, and the channels on which their results come back.
+
+pub(crate) mod background;
+mod dialogs;
+pub mod document;
+pub mod export;
+mod exporting;
+mod idle;
+pub mod listing;
+mod look_work;
+mod opening;
+pub mod preview;
+mod reader;
+mod watch;
+pub(crate) mod worker;

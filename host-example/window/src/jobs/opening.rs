@@ -1,0 +1,97 @@
+//! Opening of files, scenes, looks and surroundings, one after the other on a thread of its own.
+
+use std::path::{Path, PathBuf};
+use std::sync::Arc;
+
+use super::document::{Document, Options};
+use crate::state::demo;
+use crate::state::document::kind::Kind;
+use crate::state::look::EditedLook;
+use crate::state::outcome::Opened;
+use crate::state::samples::Sample;
+use isophote_files::error::Result;
+use isophote_loader::Library;
+use isophote_pictures::exr::Selection;
+use isophote_render::background::Background as Surround;
+use isophote_scene::Scene;
+use isophote_scene::environment::Environment;
+
+/// Something to be opened.
+pub enum OpenJob {
+    /// The scene that comes with the program.
+    Demo,
+    /// A picture that comes with the program, whose file is in a folder.
+    Sample(&'static Sample, PathBuf),
+    /// The first of them that can be opened.
+    Files(Library, Vec<PathBuf>),
+    /// The file that is open, read in another way.
+    Again(PathBuf, Box<Selection>),
+    /// A look.
+    Look(Library, PathBuf),
+    /// Surroundings of a scene.
+    Surroundings(PathBuf),
+}
+
+/// Something that was opened, with the document whose frames are to be read while it is shown.
+pub type WithFrames = (Opened, Option<Document>);
+
+fn is_look(path: &Path) -> bool {
+    path.extension().is_some_and(|extension| extension.eq_ignore_ascii_case("json"))
+}
+
+/// Opens something.
+///
+/// # Errors
+/// The reason why it cannot be opened.
+pub fn open(job: OpenJob) -> Result<WithFrames> {
+    let opened = match job {
+        OpenJob::Demo => Opened::Scene(Box::new(demo::scene()?), None),
+        OpenJob::Sample(sample, folder) => {
+            return pictures(Document::open(&sample.file_in(&folder)?, &Options::default())?);
+        }
+        OpenJob::Files(library, files) => return first_of(&library, files),
+        OpenJob::Again(path, selection) => {
+            let options = Options { selection: *selection, ..Options::default() };
+            let document = Document::open(&path, &options)?;
+            return Ok((Opened::Again(Box::new(document.playback()?)), Some(document)));
+        }
+        OpenJob::Look(library, path) => Opened::Look(Box::new(EditedLook::open(&library, &path)?)),
+        OpenJob::Surroundings(path) => {
+            let environment = Arc::new(Environment::read(&path)?);
+            Opened::Surroundings(Surround::Environment(environment), path)
+        }
+    };
+    Ok((opened, None))
+}
+
+fn pictures(document: Document) -> Result<WithFrames> {
+    Ok((Opened::Pictures(Box::new(document.playback()?)), Some(document)))
+}
+
+/// Opens the first file that can be opened.
+fn first_of(library: &Library, files: Vec<PathBuf>) -> Result<WithFrames> {
+    let mut problems = Vec::new();
+    let mut files = files.into_iter();
+    while let Some(path) = files.next() {
+        match file(library, path) {
+            Ok(opened) if problems.is_empty() && files.len() == 0 => return Ok(opened),
+            Ok((opened, document)) => {
+                return Ok((Opened::Among(Box::new(opened), problems, files.len()), document));
+            }
+            Err(problem) => problems.push(problem),
+        }
+    }
+    Err(problems.swap_remove(0))
+}
+
+/// Opens a scene, a picture, a sequence, a video or a look.
+fn file(library: &Library, path: PathBuf) -> Result<WithFrames> {
+    if is_look(&path) {
+        return Ok((Opened::Look(Box::new(EditedLook::open(library, &path)?)), None));
+    }
+    let document = Document::open(&path, &Options::default())?;
+    match document.kind() {
+        Kind::Scene => Ok((Opened::Scene(Box::new(Scene::load(&path, None)?), Some(path)), None)),
+        _ => pictures(document),
+    }
+}

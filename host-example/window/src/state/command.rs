@@ -1,0 +1,183 @@
+//! The command line that gives the picture that is shown.
+
+use std::path::{Path, PathBuf};
+
+use super::playback::Playback;
+use super::scenery::Scenery;
+use super::session::Session;
+use isophote_finishing::staging::{Behind, MotionArgs, StagingArgs};
+use isophote_finishing::stylize::precision::Precision;
+use isophote_finishing::stylize::preset::Lengths;
+use isophote_render::background::Background;
+use isophote_scene::floor;
+
+/// The command line, quoted for a shell.
+pub fn line(session: &Session) -> String {
+    let look = session.looks.seen();
+    let style = look.rebuilt().map_or_else(|| quoted_path(&look.source), quoted);
+    let mut words = vec!["isophote".to_owned()];
+    let input = session.open.file().map_or_else(|| "SCENE.gltf".into(), quoted_path);
+    match session.open.playback() {
+        Some(playback) => {
+            words.extend(["apply".to_owned(), style, input]);
+            words.push(quoted_path(&output(playback)));
+            words.extend(selection(playback).iter().map(|word| quoted(word)));
+        }
+        None => {
+            words.extend(["render".to_owned(), input, "picture.png".to_owned()]);
+            let (width, height) = session.nominal_size();
+            words.extend(["--size".to_owned(), format!("{width}x{height}")]);
+            words.extend(staging(session, false).iter().chain(&moment(session)).map(|word| quoted(word)));
+            if !look.is_plain() {
+                words.push(format!("--style {style}"));
+            }
+        }
+    }
+    let parameters = look.parameters(&session.library).unwrap_or_default();
+    words.extend(look.settings(&parameters).iter().map(|setting| format!("--set {}", quoted(setting))));
+    if look.preset.lengths == Some(Lengths::Pixels) {
+        words.push("--lengths pixels".into());
+    }
+    words.extend(precision(session));
+    words.join(" ")
+}
+
+/// The command line as it is put on the clipboard, of which the window tells.
+pub fn copied(session: &mut Session) -> String {
+    session.notes.say("Copied the command line of this picture");
+    line(session)
+}
+
+/// The option for a precision that is not the usual one.
+pub fn precision(session: &Session) -> Vec<String> {
+    match session.precision {
+        Precision::Exact => Vec::new(),
+        precision => vec!["--precision".into(), precision.name().into()],
+    }
+}
+
+/// A name for the result beside the input.
+pub fn output(playback: &Playback) -> PathBuf {
+    let path = playback.path();
+    let stem = path.file_stem().unwrap_or_default().to_string_lossy();
+    // The place of a sequence's numbers stays at the end.
+    let name = match stem.split_once('.') {
+        Some((name, number)) => format!("{name}-look.{number}"),
+        None => format!("{stem}-look"),
+    };
+    let known = ["png", "jpg", "jpeg", "tif", "tiff", "exr"];
+    let extension = path.extension().unwrap_or_default().to_string_lossy().to_lowercase();
+    let is_kept = known.contains(&extension.as_str()) || playback.frames().is_some();
+    path.with_file_name(format!("{name}.{}", if is_kept { &extension } else { "png" }))
+}
+
+/// Options of `apply` for the layer and the view that were chosen.
+pub fn selection(playback: &Playback) -> Vec<String> {
+    let selection = &playback.info().selection;
+    let mut words = Vec::new();
+    for (option, value) in [("--layer", &selection.layer), ("--view", &selection.view)] {
+        words.extend(value.iter().flat_map(|value| [option.to_owned(), value.clone()]));
+    }
+    words.extend(selection.force.then(|| "--force-layer".to_owned()));
+    words
+}
+
+/// Options of `render` for the time of an animated scene.
+pub fn moment(session: &Session) -> Vec<String> {
+    let Some(scenery) = session.open.scenery().filter(|scenery| !scenery.scene.animations.is_empty()) else {
+        return Vec::new();
+    };
+    MotionArgs { start: scenery.time().0, ..motion(scenery) }.words()
+}
+
+/// Options of `render` that play the animation from its start.
+pub fn animation(session: &Session) -> Vec<String> {
+    session.open.scenery().map_or_else(Vec::new, |scenery| motion(scenery).words())
+}
+
+fn motion(scenery: &Scenery) -> MotionArgs {
+    // The first plays where none is named.
+    let animation = Some(scenery.animation).filter(|index| *index > 0).map(|index| index.to_string());
+    MotionArgs { animate: true, animation, start: 0.0 }
+}
+
+/// Options of `render` for the file, camera and light, where they are not as they are without being asked for. A turntable
+/// goes around by itself, wherever the file's camera stands.
+pub fn staging(session: &Session, is_turntable: bool) -> Vec<String> {
+    let [_, area] = session.viewport.halves();
+    let Some(scenery) = session.open.scenery() else { return Vec::new() };
+    let mut staging = StagingArgs {
+        light: scenery.sun_from_here(),
+        exposure: scenery.lighting.exposure,
+        background: behind(scenery),
+        ..StagingArgs::default()
+    };
+    match scenery.camera() {
+        Some(node) => {
+            let index = scenery.cameras().into_iter().position(|(known, _)| known == node);
+            let index = index.filter(|index| *index > 0 && !is_turntable);
+            staging.camera = index.map(|index| index.to_string());
+        }
+        None => {
+            let framed = scenery.framed(area.width / area.height);
+            staging.azimuth = Some(framed.azimuth);
+            staging.elevation = Some(framed.elevation);
+            staging.distance = Some(framed.distance);
+            (staging.target, staging.fov) = (framed.target, framed.fov);
+        }
+    }
+    if scenery.ground != floor::lacks_floor(&scenery.scene) {
+        (staging.ground, staging.no_ground) = (scenery.ground, !scenery.ground);
+    }
+    [scenery.reading.words(), staging.words()].concat()
+}
+
+/// Background of the scene, as it is written.
+fn behind(scenery: &Scenery) -> Behind {
+    match (&scenery.lighting.background, &scenery.lighting.surroundings) {
+        (Background::Transparent, _) => Behind::Transparent,
+        (Background::Color(color), _) => Behind::Color(*color),
+        (Background::Environment(_), Some(file)) => Behind::File(file.clone()),
+        (Background::Environment(_), None) | (Background::Sky, _) => Behind::Sky,
+    }
+}
+
+/// A path as a shell takes it, and the program not for an option.
+fn quoted_path(path: &Path) -> String {
+    let path = path.to_string_lossy();
+    quoted(&if path.starts_with('-') { format!("./{path}") } else { path.into_owned() })
+}
+
+/// A word as a shell takes it. A terminal would obey control characters when the line is pasted.
+fn quoted(word: &str) -> String {
+    let is_plain = |c: char| c.is_ascii_alphanumeric() || "-_./=,:@%+".contains(c);
+    if !word.is_empty() && word.chars().all(is_plain) {
+        return word.to_owned();
+    }
+    if !word.chars().any(char::is_control) {
+        return format!("'{}'", word.replace('\'', r"'\''"));
+    }
+    let escaped = word.chars().map(|c| match c {
+        '\'' | '\\' => format!("\\{c}"),
+        c if c.is_control() => {
+            c.encode_utf8(&mut [0; 4]).bytes().map(|byte| format!("\\{byte:03o}")).collect()
+        }
+        c => c.into(),
+    });
+    format!("$'{}'", escaped.collect::<String>())
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn words_are_quoted_where_a_shell_needs_it() {
+        assert_eq!(quoted("line_color=#102030"), "'line_color=#102030'");
+        assert_eq!(quoted("a/b-c.json"), "a/b-c.json");
+        assert_eq!(quoted("it's"), r"'it'\''s'");
+        assert_eq!(quoted(""), "''");
+        assert_eq!(quoted("a\u{1b}[2J\n'\\\u{9b}"), r"$'a\033[2J\012\'\\\302\233'");
+        assert_eq!(quoted_path(Path::new("-o.png")), "./-o.png");
+    }
+}

@@ -1,0 +1,189 @@
+//! A picture in main memory as the library takes it, with everything that `apply` would hand over beside it.
+
+use isophote_files::error::{Error, Result};
+use isophote_files::limits;
+use isophote_finishing::apply::picture_request::PictureRequest;
+use isophote_loader::abi::{
+    ISOPHOTE_ALPHA_EMISSIVE, ISOPHOTE_GUIDE_DEPTH, ISOPHOTE_GUIDE_FLOW, ISOPHOTE_GUIDE_MOTION,
+    ISOPHOTE_GUIDE_MOTION_FORWARD, ISOPHOTE_GUIDE_NORMAL, ISOPHOTE_GUIDE_OBJECT_ID,
+    ISOPHOTE_GUIDE_REST_POSITION, IsophoteRequest,
+};
+use isophote_pictures::convert;
+use isophote_pictures::exr::Guide;
+use isophote_pictures::pixels::Pixels;
+use isophote_pictures::read::{ImageState, Source};
+use isophote_pictures::space::Space;
+use isophote_pictures::working::WorkingSpace;
+
+/// Number that an infinity becomes when the library reads it.
+const LARGEST_HALF: f32 = 65504.0;
+
+/// A frame, or a picture by itself. The same bits as those that the library makes of what `apply` hands over.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Frame {
+    /// Its number in a sequence or a video.
+    pub number: Option<i64>,
+    /// Pixels across.
+    pub width: u32,
+    /// Pixels down.
+    pub height: u32,
+    /// Red, green, blue and alpha, rows from the top. Colour is multiplied by alpha where the picture is scene-referred, and
+    /// is apart from it where it is display-referred: multiplied and divided again it would not be the same.
+    pub color: Vec<[f32; 4]>,
+    /// Properties of the picture that the request names.
+    pub asked: PictureRequest,
+    /// True where colour has light where alpha is 0 or little, which is filtered by itself.
+    pub has_light: bool,
+    /// Guides that the file holds beside colour.
+    pub guides: Vec<GuideImage>,
+    /// Samples of the colour that were NaN or infinite and were replaced.
+    pub replaced: u64,
+}
+
+/// A guide over the pixels of its frame.
+#[derive(Clone, Debug, PartialEq)]
+pub struct GuideImage {
+    /// The guide; its id names the graph's input.
+    pub guide: Guide,
+    /// Numbers a pixel: 4 of normals and rest positions, of which the last is 0 where there is no surface, 2 of motion, which
+    /// is no number where it is unknown, else 1.
+    pub channels: u32,
+    /// The numbers, rows from the top.
+    pub data: Vec<f32>,
+}
+
+impl Frame {
+    /// The first picture of a file. `space` says what its numbers mean where it is not the file that does.
+    ///
+    /// # Errors
+    /// [`Error::Failure`] when memory is short, [`Error::Input`] for files without pictures.
+    pub fn of(name: &str, mut source: Source, number: Option<i64>, space: Option<Space>) -> Result<Self> {
+        let Some(picture) = source.pictures.first_mut() else {
+            return Err(Error::input(name, "has no picture", "name another file"));
+        };
+        let size = u64::from(picture.pixels.width()) * u64::from(picture.pixels.height());
+        limits::must_have(size * (16 + picture.guides.len() as u64 * 16), name)?;
+        let guides = std::mem::take(&mut picture.guides);
+        let working = WorkingSpace::of(space, source.state, picture);
+        let changed = working.change.map(|(there, _)| convert::changed(&picture.pixels, &there));
+        let (pixels, bad) = changed.as_ref().map_or((&picture.pixels, 0), |(pixels, bad)| (pixels, *bad));
+        let (color, replaced) = colors(pixels);
+        let named = guides.into_iter().filter_map(|(name, pixels)| {
+            let guide = Guide::ALL.into_iter().find(|guide| guide.id() == name)?;
+            Some(GuideImage { guide, channels: pixels.channels(), data: pixels.to_f32() })
+        });
+        Ok(Self {
+            number,
+            width: pixels.width(),
+            height: pixels.height(),
+            has_light: source.state == ImageState::SceneReferred && color.iter().any(is_beyond_coverage),
+            asked: PictureRequest::of(picture, source.state, working.space, number),
+            guides: named.collect(),
+            replaced: replaced + bad,
+            color,
+        })
+    }
+
+    /// True where colour is multiplied by alpha.
+    pub fn is_premultiplied(&self) -> bool {
+        self.asked.state == ImageState::SceneReferred
+    }
+
+    /// Request of `apply` to the library for this frame, of its size and with the guides that are wanted.
+    pub fn request(&self, usual: IsophoteRequest) -> IsophoteRequest {
+        let request = self.asked.request(usual);
+        let alpha = if self.has_light { ISOPHOTE_ALPHA_EMISSIVE } else { request.alpha };
+        IsophoteRequest { alpha, ..request }
+    }
+
+    /// Request of looks on a picture of so much of the size, with all of its guides, whichever frame it is.
+    pub fn request_of_all(&self, scale: f32, usual: IsophoteRequest) -> IsophoteRequest {
+        let guides = self.guides.iter().map(|image| match image.guide {
+            Guide::Normal => ISOPHOTE_GUIDE_NORMAL,
+            Guide::Depth => ISOPHOTE_GUIDE_DEPTH,
+            Guide::ObjectId => ISOPHOTE_GUIDE_OBJECT_ID,
+            Guide::Motion => ISOPHOTE_GUIDE_MOTION,
+            Guide::MotionForward => ISOPHOTE_GUIDE_MOTION_FORWARD,
+            Guide::RestPosition => ISOPHOTE_GUIDE_REST_POSITION,
+            Guide::Flow => ISOPHOTE_GUIDE_FLOW,
+        });
+        let guides = guides.fold(0, |all, guide| all | guide);
+        let Self { width, height, .. } = *self;
+        IsophoteRequest { width, height, scale, guides, frame: 0, ..self.request(usual) }
+    }
+
+    /// A guide, where the file has it.
+    pub fn guide(&self, guide: Guide) -> Option<&GuideImage> {
+        self.guides.iter().find(|image| image.guide == guide)
+    }
+
+    /// Bytes that it takes.
+    pub fn bytes(&self) -> u64 {
+        let guides: usize = self.guides.iter().map(|image| image.data.len() * size_of::<f32>()).sum();
+        (self.color.len() * size_of::<[f32; 4]>() + guides) as u64
+    }
+}
+
+/// Pixels as the library reads them: grey three times, opaque without alpha, 0 for what is no number and the largest half for
+/// infinities, which are counted.
+fn colors(pixels: &Pixels) -> (Vec<[f32; 4]>, u64) {
+    let numbers = pixels.to_f32();
+    let mut replaced = 0;
+    let mut color: Vec<[f32; 4]> = match pixels.channels() {
+        1 => numbers.iter().map(|v| [*v, *v, *v, 1.0]).collect(),
+        3 => numbers.as_chunks::<3>().0.iter().map(|[r, g, b]| [*r, *g, *b, 1.0]).collect(),
+        _ => numbers.as_chunks::<4>().0.to_vec(),
+    };
+    for value in color.as_flattened_mut().iter_mut().filter(|value| !value.is_finite()) {
+        *value = if value.is_nan() { 0.0 } else { LARGEST_HALF.copysign(*value) };
+        replaced += 1;
+    }
+    (color, replaced)
+}
+
+/// True where a premultiplied colour has more light than its coverage can explain, by the library's measure: more than
+/// alpha / (1 - alpha)^4.
+fn is_beyond_coverage(pixel: &[f32; 4]) -> bool {
+    let [r, g, b, alpha] = *pixel;
+    let alpha = alpha.clamp(0.0, 1.0);
+    let share = (1.0 - alpha) * (1.0 - alpha);
+    let most = alpha / (share * share).max(1e-30);
+    [r, g, b].iter().any(|v| v.abs().min(LARGEST_HALF) > most)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use isophote_pictures::exr::Picture;
+    use isophote_pictures::pixels::Samples;
+
+    fn frame(state: ImageState, pixels: Pixels) -> Frame {
+        let source = Source { pictures: vec![Picture::alone(pixels)], state, profile: None, exr: None };
+        Frame::of("a", source, None, None).unwrap()
+    }
+
+    #[test]
+    fn pixels_are_what_the_library_reads() {
+        let grey = frame(
+            ImageState::SceneReferred,
+            Pixels::new(2, 1, 1, Samples::F32(vec![f32::NAN, f32::NEG_INFINITY])).unwrap(),
+        );
+        assert_eq!(grey.color, [[0.0, 0.0, 0.0, 1.0], [-65504.0, -65504.0, -65504.0, 1.0]]);
+        let straight = frame(
+            ImageState::DisplayReferred,
+            Pixels::new(1, 1, 4, Samples::U8(vec![255, 51, 0, 0])).unwrap(),
+        );
+        assert_eq!(straight.color, [[1.0, 0.2, 0.0, 0.0]]);
+        assert!(!straight.is_premultiplied() && !straight.has_light, "apart from alpha it is no light");
+    }
+
+    #[test]
+    fn light_beyond_coverage_is_found() {
+        let light = |pixel: [f32; 4]| {
+            frame(ImageState::SceneReferred, Pixels::new(1, 1, 4, Samples::F32(pixel.to_vec())).unwrap())
+                .has_light
+        };
+        assert!(light([0.1, 0.0, 0.0, 0.0]) && light([9.0, 0.0, 0.0, 0.5]));
+        assert!(!light([7.9, 7.9, 7.9, 0.5]) && !light([0.0; 4]) && !light([60000.0, 0.0, 0.0, 1.0]));
+    }
+}

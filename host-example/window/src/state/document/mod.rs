@@ -1,0 +1,55 @@
+//! Documents that the window shows, as far as they are known without reading on: their kinds, choices and frames.
+
+pub mod frame;
+pub mod kind;
+pub mod reduce;
+
+use std::path::PathBuf;
+use std::sync::Arc;
+
+use self::kind::Kind;
+use isophote_files::frames;
+use isophote_pictures::exr::{Offers, Selection};
+
+/// Properties of an open document, which stay while it is open.
+#[derive(Debug)]
+pub struct Info {
+    /// Its kind.
+    pub kind: Kind,
+    /// Its file, or the pattern of its files, as `apply` and `render` take it.
+    pub path: PathBuf,
+    /// Choices that an EXR file offers, and those made.
+    pub offers: Offers,
+    /// Selection that was asked for of an EXR file.
+    pub selection: Selection,
+}
+
+impl Info {
+    /// The pattern of the sequence that a picture seems to be a frame of.
+    pub fn sequence(&self) -> Option<PathBuf> {
+        (self.kind == Kind::Picture).then(|| frames::sequence_of(&self.path)).flatten()
+    }
+}
+
+/// The frames of a sequence or a video.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Frames {
+    /// Their numbers, in order; at least one. Those of a video are a guess where its container does not tell.
+    pub numbers: Arc<[i64]>,
+    /// Numbers of those that are in memory.
+    pub cached: Vec<i64>,
+    /// Frames per second.
+    pub rate: f64,
+}
+
+impl Frames {
+    /// Number of the first.
+    pub fn first(&self) -> i64 {
+        self.numbers.first().copied().unwrap_or(1)
+    }
+
+    /// Number of the last.
+    pub fn last(&self) -> i64 {
+        self.numbers.last().copied().unwrap_or(1)
+    }
+}

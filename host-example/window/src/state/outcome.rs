@@ -1,0 +1,88 @@
+//! Outcomes of work beside the window: what was opened, chosen, read, found or made, for the session to take over.
+
+use std::collections::HashSet;
+use std::path::PathBuf;
+use std::sync::Arc;
+
+use egui::ColorImage;
+
+use super::browser::listing::Listing;
+use super::document::Frames;
+use super::document::frame::Frame;
+use super::look::EditedLook;
+use super::playback::Playback;
+use super::preview::order::Done;
+use super::progress::Progress;
+use isophote_files::error::{Error, Result};
+use isophote_loader::abi::IsophoteRequest;
+use isophote_render::background::Background;
+use isophote_scene::Scene;
+
+/// Outcome of one piece of work.
+pub enum Outcome {
+    /// Something was opened.
+    Opened(Opened),
+    /// This was chosen in a dialog of the system.
+    Chosen(Dialog, PathBuf),
+    /// The export that was planned has begun, or cannot.
+    ExportBegun(Result<()>),
+    /// An export has come so far.
+    Export(Progress),
+    /// These looks were found.
+    Listed(Listing),
+    /// A preview was made, or could not be.
+    Preview(Done),
+    /// Pictures that come with the program were made small.
+    Samples(Vec<Arc<ColorImage>>),
+    /// The files of a look were read again.
+    Reread(PathBuf, Result<EditedLook>),
+    /// Controls without effect were found.
+    Idle(IdleControls),
+    /// Frames that the document has, and the one that is wanted where it has been read.
+    Frames(Frames, Option<Result<Arc<Frame>>>),
+    /// Something could not be begun, or has failed.
+    Failed(Error),
+}
+
+/// Something that was opened.
+pub enum Opened {
+    /// A scene with its file; the one that comes with the program has none.
+    Scene(Box<Scene>, Option<PathBuf>),
+    /// A picture, sequence or video.
+    Pictures(Box<Playback>),
+    /// The document that was open, read in another way.
+    Again(Box<Playback>),
+    /// One of several, with what is wrong with others and how many were left.
+    Among(Box<Opened>, Vec<Error>, usize),
+    /// A look.
+    Look(Box<EditedLook>),
+    /// Surroundings of a scene with their file.
+    Surroundings(Background, PathBuf),
+}
+
+/// Purpose of a dialog of the system.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Dialog {
+    /// Open a file.
+    File,
+    /// Open a look.
+    Look,
+    /// Add a folder of looks.
+    LookFolder,
+    /// Save the look.
+    Save,
+    /// Open surroundings of the scene.
+    Surroundings,
+    /// Name the output of an export.
+    Export,
+}
+
+/// Controls of a look that have no effect.
+pub struct IdleControls {
+    /// The look.
+    pub look: EditedLook,
+    /// Request that it was found for.
+    pub asked: Option<IsophoteRequest>,
+    /// Names of the parameters without effect.
+    pub idle: HashSet<String>,
+}

@@ -1,0 +1,141 @@
+//! The looks of the window: which is shown, and what becomes of it.
+
+use std::path::Path;
+use std::sync::Arc;
+
+use super::Session;
+use crate::state::chain::Chain;
+use crate::state::look::{EditedLook, Parameter};
+use crate::state::looks::Looks;
+use isophote_files::error::Result;
+use isophote_finishing::stylize::value::Value;
+use isophote_loader::Library;
+
+impl Session {
+    /// The look was saved.
+    pub fn saved(&mut self, look: EditedLook) {
+        self.looks.replace(look);
+        self.turn_to(self.looks.current());
+    }
+
+    pub(super) fn turn_to(&mut self, index: usize) {
+        self.turn(index, |looks| looks.turn_to(index));
+    }
+
+    /// Turns to the look of an index by what `turn` does.
+    pub(super) fn turn(&mut self, index: usize, turn: impl FnOnce(&mut Looks) -> Result<()>) {
+        if index != self.looks.current() {
+            self.record.begin();
+        }
+        if let Err(error) = turn(&mut self.looks) {
+            self.notes.complain(&error);
+        }
+    }
+
+    /// Changes the list of nodes.
+    pub fn relink(&mut self, change: impl FnOnce(&mut Chain, &Library) -> Result<()>) {
+        let Some(mut chain) = self.looks.chain().cloned() else { return };
+        let changed = change(&mut chain, &self.library);
+        match changed.and_then(|()| self.look().with_chain(&self.library, &chain)) {
+            Ok(look) => {
+                self.let_go();
+                self.edit("nodes", |old| *old = look);
+                self.let_go();
+                self.turn_to(self.looks.current());
+            }
+            Err(error) => self.notes.complain(&error),
+        }
+    }
+
+    /// Changes the look; changes of the same thing are one step until [`Session::let_go`].
+    pub fn edit(&mut self, what: &str, change: impl FnOnce(&mut EditedLook)) {
+        let before = self.state();
+        if self.looks.edit(change) {
+            self.edits.record(what, &before);
+        }
+    }
+
+    /// Gives a parameter a value.
+    pub fn set(&mut self, parameter: &Parameter, value: &Value) {
+        self.edit(&parameter.name, |look| look.set(parameter, value));
+    }
+
+    /// Gives a parameter its default.
+    pub fn reset(&mut self, parameter: &Parameter) {
+        self.let_go();
+        self.edit(&parameter.name, |look| look.reset(parameter));
+        self.let_go();
+    }
+
+    /// Gives all parameters their defaults.
+    pub fn reset_all(&mut self) {
+        self.let_go();
+        self.edit("all", |look| look.preset.params.clear());
+        self.let_go();
+    }
+
+    /// Shows the look of an index.
+    pub fn choose(&mut self, index: usize) {
+        if index >= self.looks.list().len() || index == self.looks.current() {
+            return;
+        }
+        self.let_go();
+        let before = self.state();
+        self.edits.record("look", &before);
+        self.turn_to(index);
+        self.let_go();
+    }
+
+    /// Shows the next look.
+    pub fn choose_next(&mut self) {
+        self.choose((self.looks.current() + 1) % self.looks.list().len());
+    }
+
+    /// Shows a look that may be new here, as one step. A look that was opened as the same is replaced.
+    pub fn take(&mut self, look: Arc<EditedLook>) {
+        self.let_go();
+        let before = self.state();
+        self.looks.keep(&look);
+        let index = self.looks.put(look);
+        self.edits.record("look", &before);
+        self.turn_to(index);
+        self.let_go();
+    }
+
+    /// The files of the look that is shown may say something else now: this is what can be read of them.
+    pub fn reload(&mut self, source: &Path, read: Result<EditedLook>) {
+        if self.look().source != source {
+            return;
+        }
+        let name = source.file_name().unwrap_or_default().to_string_lossy();
+        match read {
+            // What the window has written itself is known.
+            Ok(look) if look.has_origin_of(self.look()) => self.looks.keep(&look),
+            Ok(look) => {
+                self.looks.keep(&look);
+                let lost = self.look().is_changed();
+                self.let_go();
+                self.edit("file", |old| *old = look);
+                self.let_go();
+                self.turn_to(self.looks.current());
+                let rest = if lost { "; undo brings your changes back" } else { "" };
+                self.notes.say(format!("{name} has changed and was read again{rest}"));
+            }
+            Err(error) => self.notes.complain(&error),
+        }
+    }
+
+    /// Shows the look that was shown last, if it is still there.
+    pub fn resume(&mut self, last: Option<&Path>) {
+        let Some(last) = last else { return };
+        match self.looks.find(last) {
+            Some(index) => self.turn_to(index),
+            None => {
+                if let Ok(look) = EditedLook::open(&self.library, last) {
+                    let index = self.looks.put(Arc::new(look));
+                    self.turn_to(index);
+                }
+            }
+        }
+    }
+}

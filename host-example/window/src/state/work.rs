@@ -1,0 +1,54 @@
+//! Work beside the window as far as it is seen: what is asked for, and what is being done.
+
+use std::path::PathBuf;
+
+use super::outcome::Dialog;
+use isophote_pictures::exr::Layer;
+
+/// Request of the controls for work beside the window.
+#[derive(Clone, Debug, PartialEq)]
+pub enum Request {
+    /// Open this file.
+    Open(PathBuf),
+    /// Open the scene that comes with the program.
+    OpenDemo,
+    /// Open a picture that comes with the program.
+    OpenSample(usize),
+    /// Show a dialog and take what is chosen.
+    Choose(Dialog),
+    /// Show this layer of the file, and a view of it.
+    ChooseLayer(Layer, Option<String>),
+    /// Read which looks there are.
+    ListLooks,
+    /// Make what is planned.
+    Export,
+    /// End the export.
+    CancelExport,
+}
+
+/// Work that is asked for and done.
+#[derive(Debug, Default)]
+pub struct Work {
+    /// Work that is being done, in words.
+    pub busy: Option<&'static str>,
+    /// The share of an export that is done, while there is one.
+    pub exported: Option<f32>,
+    requests: Vec<Request>,
+}
+
+impl Work {
+    /// Asks for something.
+    pub fn ask(&mut self, request: Request) {
+        self.requests.push(request);
+    }
+
+    /// Requests that nobody has taken yet.
+    pub fn requests(&self) -> &[Request] {
+        &self.requests
+    }
+
+    /// Requests since the last call.
+    pub fn take_requests(&mut self) -> Vec<Request> {
+        std::mem::take(&mut self.requests)
+    }
+}

@@ -1,0 +1,111 @@
+//! Keys and what they do. The help of the program and of the window say so too.
+
+use winit::keyboard::{Key, NamedKey};
+
+use crate::state::browser::Step;
+use crate::state::session::Session;
+use crate::state::viewport::Compare;
+
+/// Keys and what they do, for the help of the program and of the window.
+pub const KEYS: [(&str, &str); 28] = [
+    ("drag", "turns the scene; moves a picture"),
+    ("Shift+drag", "pans, as other buttons do"),
+    ("wheel", "zooms"),
+    ("Ctrl+wheel", "magnifies the pixels under the pointer"),
+    ("Ctrl+drag", "moves what is magnified"),
+    ("1, 2, ...", "show the style of that number"),
+    ("Tab", "shows the next style"),
+    ("l", "shows all looks as they make this picture, and the picture again"),
+    ("arrows, Enter", "among the looks: go from card to card; take one"),
+    ("m, c", "among the looks: marks one; compares those that are marked"),
+    ("\\ (hold)", "shows the original while it is held"),
+    ("w", "compares by a wipe"),
+    ("e", "compares side by side"),
+    ("z", "shows pixels as large as the screen's, or all of the picture"),
+    ("0", "shows all of the picture"),
+    ("Space", "plays and pauses"),
+    ("Left, Right", "show the frame before and the next"),
+    ("f", "frames the scene"),
+    ("c", "looks through the file's camera"),
+    ("p", "hides and shows the panel"),
+    ("Ctrl+Z, Ctrl+Y", "takes the last step back, and takes it again"),
+    ("Ctrl+O", "opens a file"),
+    ("Ctrl+E", "asks what is to be exported"),
+    ("Ctrl+S", "saves the look; with Shift under another name"),
+    ("r", "sets everything back to the style's defaults"),
+    ("?", "shows and hides the help"),
+    ("Escape", "closes what is open in front: a dialog, the help, the looks"),
+    ("Ctrl+Q", "closes the window, and asks before if something would be lost"),
+];
+
+/// A key was pressed, without Ctrl.
+pub fn press(session: &mut Session, key: &Key) {
+    if *key == Key::Named(NamedKey::Escape) {
+        return session.close_front();
+    }
+    let is_elsewhere = session.dialogs.leaving.is_shown() || session.has_dialog();
+    if is_elsewhere || session.is_covered() && cover(session, key) {
+        return;
+    }
+    let toggled = |now: Compare, wanted: Compare| if now == wanted { Compare::Off } else { wanted };
+    match key.as_ref() {
+        Key::Named(NamedKey::Space) => session.open.toggle_playing(),
+        // Before anything is open it goes from control to control.
+        Key::Named(NamedKey::Tab) if session.open.has_picture() => session.choose_next(),
+        Key::Named(key @ (NamedKey::ArrowLeft | NamedKey::ArrowRight)) => {
+            if let Some(playback) = session.open.playback_mut() {
+                playback.step(if key == NamedKey::ArrowLeft { -1 } else { 1 });
+            }
+        }
+        Key::Named(NamedKey::F1) | Key::Character("?") => {
+            session.dialogs.shows_help = !session.dialogs.shows_help
+        }
+        Key::Character("l") => session.toggle_browser(),
+        Key::Character("f") => session.frame_all(),
+        Key::Character("c") => {
+            if let Some(scenery) = session.open.scenery_mut() {
+                scenery.use_file_camera();
+            }
+        }
+        Key::Character("w") => session.viewport.compare = toggled(session.viewport.compare, Compare::Wipe),
+        Key::Character("e") => session.viewport.compare = toggled(session.viewport.compare, Compare::Side),
+        Key::Character("z") => session.viewport.toggle_actual(),
+        Key::Character("0") => session.viewport.fit(),
+        Key::Character("p") => session.settings.panel_hidden = !session.settings.panel_hidden,
+        Key::Character("r") => session.reset_all(),
+        Key::Character(text) => {
+            if let Some(number) = text.parse::<usize>().ok().filter(|number| *number > 0) {
+                session.choose(number - 1);
+            }
+        }
+        _ => {}
+    }
+}
+
+/// Handles a key where looks are shown instead of the picture; says whether it does anything there.
+fn cover(session: &mut Session, key: &Key) -> bool {
+    if session.dialogs.shows_help {
+        return false;
+    }
+    match key.as_ref() {
+        Key::Named(NamedKey::Tab) => {}
+        Key::Character("c") if session.browser.comparison.is_none() => session.compare_marked(),
+        _ if session.browser.comparison.is_some() => return false,
+        Key::Named(NamedKey::ArrowLeft) => session.browser.step(Step::Left),
+        Key::Named(NamedKey::ArrowRight) => session.browser.step(Step::Right),
+        Key::Named(NamedKey::ArrowUp) => session.browser.step(Step::Up),
+        Key::Named(NamedKey::ArrowDown) => session.browser.step(Step::Down),
+        Key::Named(NamedKey::Enter) => {
+            if let Some(id) = session.browser.selected {
+                session.apply(id, true);
+            }
+        }
+        Key::Character("m") => {
+            if let Some(id) = session.browser.selected {
+                session.mark(id);
+            }
+        }
+        _ => return false,
+    }
+    true
+}

@@ -1,0 +1,120 @@
+//! The question whether the window may be closed, in front of everything, while something would be lost.
+
+use egui::{Button, Context, Frame, Id, Margin, Modal, RichText, Ui};
+
+use super::theme;
+use crate::state::leaving::Leaving;
+use crate::state::session::Session;
+
+/// Width in points.
+const WIDTH: f32 = 420.0;
+/// Most looks that are named.
+const MOST: usize = 4;
+
+/// Answer to the question.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+enum Answer {
+    Save,
+    Wait,
+    Close,
+    Cancel,
+}
+
+/// Shows the question while it is asked.
+pub fn show(context: &Context, session: &mut Session) {
+    if !session.dialogs.leaving.is_shown() {
+        return;
+    }
+    egui::Popup::close_all(context);
+    let frame = Frame::popup(&context.global_style()).inner_margin(Margin::same(18));
+    let shown = Modal::new(Id::unique("leaving")).frame(frame).show(context, |ui| {
+        ui.set_width(WIDTH.min(context.content_rect().width() - 60.0));
+        ui.label(RichText::new("Close the window?").size(17.0).color(theme::BRIGHT));
+        ui.add_space(8.0);
+        reasons(ui, session);
+        ui.add_space(12.0);
+        ui.horizontal_wrapped(|ui| answers(ui, session)).inner
+    });
+    match shown.inner {
+        Some(Answer::Save) => session.save_and_leave(),
+        Some(Answer::Wait) => session.dialogs.leaving = Leaving::Waits,
+        Some(Answer::Close) => session.dialogs.leaving = Leaving::Closes,
+        Some(Answer::Cancel) => session.dialogs.leaving = Leaving::Stays,
+        None => return,
+    }
+    context.request_repaint();
+}
+
+/// Says what would be lost, or what is waited for.
+fn reasons(ui: &mut Ui, session: &Session) {
+    let mut say = |text: String| ui.add(egui::Label::new(text).wrap());
+    let percent = session.work.exported.map(|share| format!("{:.0} %", (share * 100.0).floor()));
+    match (session.dialogs.leaving, &percent) {
+        (Leaving::Closes, _) => {
+            say("The export is being ended.".into());
+            return;
+        }
+        (Leaving::Waits, Some(percent)) => {
+            say(format!("It closes when the export is done, of which there is {percent}."));
+        }
+        (_, Some(percent)) => {
+            say(format!(
+                "An export is running, {percent} of it done. Closing ends it, and removes what is not whole."
+            ));
+        }
+        (_, None) => {}
+    }
+    let unsaved = session.looks.unsaved();
+    let names = unsaved.iter().take(MOST).map(|index| format!("“{}”", session.looks.list()[*index].name));
+    let names = names.collect::<Vec<_>>().join(", ");
+    match unsaved.len() {
+        0 if percent.is_none() => drop(say("Nothing would be lost.".into())),
+        0 => {}
+        1 => drop(say(format!("The look {names} is not saved."))),
+        count if count <= MOST => drop(say(format!("{count} looks are not saved: {names}."))),
+        count => drop(say(format!("{count} looks are not saved: {names} and {} more.", count - MOST))),
+    }
+    if session.work.exported.is_some() {
+        ui.ctx().request_repaint_after(std::time::Duration::from_millis(200));
+    }
+}
+
+/// The buttons. Return presses the first, which loses nothing, unless Tab has gone to another; Escape cancels.
+fn answers(ui: &mut Ui, session: &Session) -> Option<Answer> {
+    let unsaved = session.looks.unsaved().len();
+    let is_exporting = session.work.exported.is_some();
+    let close = match (unsaved > 0, is_exporting) {
+        (true, _) => "Discard and close",
+        (false, true) => "End the export and close",
+        (false, false) => "Close",
+    };
+    let offered: &[(Answer, &str)] = match session.dialogs.leaving {
+        Leaving::Closes => &[],
+        Leaving::Waits => &[(Answer::Cancel, "Cancel"), (Answer::Close, close)],
+        _ if unsaved > 0 => {
+            &[(Answer::Save, "Save the look…"), (Answer::Close, close), (Answer::Cancel, "Cancel")]
+        }
+        _ if is_exporting => {
+            &[(Answer::Wait, "Close when it is done"), (Answer::Close, close), (Answer::Cancel, "Cancel")]
+        }
+        _ => &[(Answer::Close, close), (Answer::Cancel, "Cancel")],
+    };
+    let mut answer = None;
+    let mut buttons = Vec::new();
+    for (index, (means, text)) in offered.iter().enumerate() {
+        let loses = *means == Answer::Close && (unsaved > 0 || is_exporting);
+        let text = RichText::new(*text);
+        let button = Button::new(if loses { text.color(theme::BAD) } else { text });
+        let button = ui.add(if index == 0 { button.fill(theme::CHOSEN) } else { button });
+        if button.clicked() {
+            answer = Some(*means);
+        }
+        buttons.push(button);
+    }
+    if !buttons.iter().any(egui::Response::has_focus)
+        && let Some(first) = buttons.first()
+    {
+        first.request_focus();
+    }
+    answer
+}

@@ -1,0 +1,130 @@
+//! The scene's camera and light.
+
+use egui::{Button, RichText, Slider, Ui};
+
+use super::theme;
+use crate::state::outcome::Dialog;
+use crate::state::session::Session;
+use crate::state::work::Request;
+use isophote_render::background::Background;
+use isophote_scene::camera::Direction;
+
+/// Shows the controls.
+pub fn show(ui: &mut Ui, session: &mut Session) {
+    camera(ui, session);
+    let Some(scenery) = session.open.scenery() else { return };
+    let sun = scenery.sun();
+    let mut degrees = [sun.azimuth.to_degrees(), sun.elevation.to_degrees()];
+    for (index, label, range, doc) in [
+        (
+            0,
+            "Sun around",
+            -180.0..=180.0,
+            "Where the sun is, to the right of the camera as it stood at first; 0 is behind it.",
+        ),
+        (1, "Sun height", -10.0..=90.0, "How high the sun is above the horizon."),
+    ] {
+        let changed = row(ui, label, doc, |ui| {
+            Slider::new(&mut degrees[index], range).suffix("°").max_decimals(0).ui_in(ui)
+        });
+        if changed {
+            let [azimuth, elevation] = degrees.map(f32::to_radians);
+            session.relight(label, |light| light.sun = Some(Direction { azimuth, elevation }));
+        }
+    }
+    let mut exposure = session.open.scenery().map_or(0.0, |scenery| scenery.lighting.exposure);
+    let doc = "Brightness of the scene in stops, before looks are put on it.";
+    if row(ui, "Exposure", doc, |ui| Slider::new(&mut exposure, -4.0..=4.0).max_decimals(2).ui_in(ui)) {
+        session.relight("exposure", |light| light.exposure = exposure);
+    }
+    background(ui, session);
+    let changed = session.open.scenery().is_some_and(|scenery| scenery.lighting != Default::default());
+    if ui.add_enabled(changed, Button::new("Reset light")).clicked() {
+        session.let_go();
+        session.relight("light", |light| *light = Default::default());
+        session.let_go();
+    }
+}
+
+/// A labelled slider.
+fn row(ui: &mut Ui, label: &str, doc: &str, slider: impl FnOnce(&mut Ui) -> egui::Response) -> bool {
+    ui.horizontal(|ui| {
+        ui.add_space(12.0);
+        let (rect, _) = ui.allocate_exact_size(egui::vec2(114.0, 22.0), egui::Sense::hover());
+        let label = ui
+            .put(rect, egui::Label::new(label).selectable(false).halign(egui::Align::LEFT))
+            .on_hover_text(doc);
+        ui.spacing_mut().slider_width = 96.0;
+        slider(ui).labelled_by(label.id).changed()
+    })
+    .inner
+}
+
+/// Sliders as widgets of a closure.
+trait InUi {
+    fn ui_in(self, ui: &mut Ui) -> egui::Response;
+}
+
+impl InUi for Slider<'_> {
+    fn ui_in(self, ui: &mut Ui) -> egui::Response {
+        ui.add(self.trailing_fill(true))
+    }
+}
+
+fn camera(ui: &mut Ui, session: &mut Session) {
+    let Some(scenery) = session.open.scenery_mut() else { return };
+    let cameras = scenery.cameras();
+    if cameras.is_empty() {
+        return;
+    }
+    let now = scenery.camera();
+    let name = cameras.iter().find(|(node, _)| Some(*node) == now).map_or("By mouse", |(_, name)| name);
+    ui.horizontal(|ui| {
+        ui.add_space(12.0);
+        let label = ui.label("Camera");
+        let shown = egui::ComboBox::from_id_salt("camera").selected_text(name).show_ui(ui, |ui| {
+            if ui.selectable_label(now.is_none(), "By mouse").clicked() {
+                scenery.look_through(None);
+            }
+            for (node, name) in &cameras {
+                if ui.selectable_label(now == Some(*node), name).clicked() {
+                    scenery.look_through(Some(*node));
+                }
+            }
+        });
+        shown.response.labelled_by(label.id);
+    });
+}
+
+fn background(ui: &mut Ui, session: &mut Session) {
+    let Some(scenery) = session.open.scenery() else { return };
+    let name = match scenery.lighting.background {
+        Background::Sky => "Sky",
+        Background::Transparent => "Nothing",
+        Background::Color(_) => "One colour",
+        Background::Environment(_) => "Picture of the surroundings",
+    };
+    ui.horizontal(|ui| {
+        ui.add_space(12.0);
+        let label = ui.label("Behind it");
+        let shown = egui::ComboBox::from_id_salt("background").selected_text(name).show_ui(ui, |ui| {
+            for (name, background) in [
+                ("Sky", Background::Sky),
+                ("Nothing", Background::Transparent),
+                ("White", Background::Color(glam::Vec3::ONE)),
+                ("Grey", Background::Color(glam::Vec3::splat(0.18))),
+            ] {
+                if ui.button(name).clicked() {
+                    session.relight("background", |light| light.background = background);
+                }
+            }
+            if ui.button("A picture of the surroundings…").clicked() {
+                session.work.ask(Request::Choose(Dialog::Surroundings));
+            }
+        });
+        shown.response.labelled_by(label.id);
+    });
+    if matches!(session.open.scenery().map(|s| &s.lighting.background), Some(Background::Environment(_))) {
+        ui.label(RichText::new("It lights the scene, too.").small().color(theme::FAINT));
+    }
+}

@@ -1,0 +1,39 @@
+//! Messages of the window, in bars above the lower border of the picture.
+
+use egui::{Align2, Button, Frame, Id, Margin, Rect, RichText, vec2};
+
+use super::theme;
+use crate::state::session::Session;
+
+/// Shows all notes.
+pub fn show(context: &egui::Context, rect: Rect, session: &mut Session) {
+    let mut dismissed = None;
+    let notes = session.notes.present();
+    if notes.is_empty() {
+        return;
+    }
+    let width = (rect.width() - 64.0).clamp(80.0, 760.0);
+    egui::Area::new(Id::unique("notes"))
+        .pivot(Align2::CENTER_BOTTOM)
+        .fixed_pos(rect.center_bottom() + vec2(0.0, -12.0))
+        .show(context, |ui| {
+            for (index, note) in notes.iter().enumerate() {
+                let frame = Frame::new().fill(egui::Color32::from_gray(46)).corner_radius(6.0);
+                frame.inner_margin(Margin::symmetric(12, 8)).show(ui, |ui| {
+                    ui.horizontal(|ui| {
+                        ui.set_max_width(width);
+                        let color = if note.is_bad { theme::BAD } else { theme::TEXT };
+                        ui.add(egui::Label::new(RichText::new(&note.text).color(color)).wrap());
+                        if note.is_bad && ui.add(Button::new("OK").small()).clicked() {
+                            dismissed = Some(index);
+                        }
+                    });
+                });
+            }
+        });
+    if let Some(index) = dismissed {
+        session.notes.dismiss(index);
+    }
+    // What goes away by itself must be seen to go.
+    context.request_repaint_after(std::time::Duration::from_secs(1));
+}

@@ -1,0 +1,125 @@
+//! The panel at the side: which look, and all of its parameters.
+
+use std::sync::Arc;
+
+use egui::{CollapsingHeader, RichText, ScrollArea, Ui};
+
+use super::{chain, control, layers, lighting, theme};
+use crate::state::look::Parameter;
+use crate::state::session::Session;
+
+/// Headings that are open at first.
+const OPEN: [&str; 2] = ["look", ""];
+
+/// Shows the panel.
+pub fn show(ui: &mut Ui, session: &mut Session) {
+    chooser(ui, session);
+    ui.add_space(6.0);
+    ScrollArea::vertical().auto_shrink([false, false]).show(ui, |ui| {
+        ui.set_width(ui.available_width() - 10.0);
+        let parameters = Arc::clone(session.looks.parameters());
+        if session.look().is_plain() {
+            ui.label(
+                RichText::new("The picture as it is. Choose a look above, or press Tab.").color(theme::FAINT),
+            );
+        }
+        chain::show(ui, session);
+        let shown = selected(session, &parameters);
+        for (heading, id, parameters) in sections(&shown) {
+            section(ui, session, &heading, id, &parameters);
+        }
+        if session.open.scenery().is_some() {
+            CollapsingHeader::new("Scene and light").default_open(false).show_unindented(ui, |ui| {
+                lighting::show(ui, session);
+            });
+        }
+        if layers::has_any(session) {
+            CollapsingHeader::new("Layers and guides").default_open(true).show_unindented(ui, |ui| {
+                layers::show(ui, session);
+            });
+        }
+        ui.add_space(16.0);
+    });
+}
+
+/// The look, and what can be done with it as a whole.
+fn chooser(ui: &mut Ui, session: &mut Session) {
+    ui.horizontal(|ui| {
+        let look = session.look();
+        let mark = if look.is_changed() { " •" } else { "" };
+        let name = RichText::new(format!("{}{mark}", look.name)).size(16.0);
+        let width = ui.available_width() - 156.0;
+        let mut chosen = None;
+        let response =
+            egui::ComboBox::from_id_salt("look").selected_text(name).width(width).show_ui(ui, |ui| {
+                for (index, look) in session.looks.list().iter().enumerate() {
+                    let number = if index < 9 { format!("{}", index + 1) } else { String::new() };
+                    let entry =
+                        egui::Button::selectable(index == session.looks.current(), look.name.as_str());
+                    if ui.add(entry.shortcut_text(number)).clicked() {
+                        chosen = Some(index);
+                    }
+                }
+            });
+        response.response.on_hover_text("The look. Tab shows the next one");
+        if let Some(index) = chosen {
+            session.choose(index);
+        }
+        if ui.button("Looks").on_hover_text("All looks, as they make this picture (l)").clicked() {
+            session.toggle_browser();
+        }
+        let changed = session.looks.parameters().iter().any(|parameter| session.look().differs(parameter));
+        let reset = ui.add_enabled(changed, egui::Button::new("Reset all"));
+        if reset.on_hover_text("Set everything back to the style's defaults (r)").clicked() {
+            session.reset_all();
+        }
+    });
+}
+
+/// Parameters of the node that is selected, or of all.
+fn selected<'p>(session: &Session, parameters: &'p [Parameter]) -> Vec<&'p Parameter> {
+    let Some(node) = session.looks.selected() else { return parameters.iter().collect() };
+    let own = |parameter: &&Parameter| parameter.name.rsplit_once('.').is_none_or(|(of, _)| of == node);
+    parameters.iter().filter(own).collect()
+}
+
+/// A heading with its id, and the parameters below it.
+type Section<'p> = (String, String, Vec<&'p Parameter>);
+
+/// Parameters by their headings, in the order of the declarations; nodes of a graph one after the other.
+fn sections<'p>(parameters: &[&'p Parameter]) -> Vec<Section<'p>> {
+    let several = parameters.iter().any(|parameter| parameter.node != parameters[0].node);
+    let mut sections: Vec<Section<'p>> = Vec::new();
+    for parameter in parameters.iter().copied() {
+        let group = parameter.param.group;
+        let id = format!("{} {group}", parameter.node);
+        match sections.iter_mut().find(|(_, known, _)| *known == id) {
+            Some((.., list)) => list.push(parameter),
+            None => {
+                let heading = match (several, group) {
+                    (false, "") => "Look".to_owned(),
+                    (false, group) => theme::capital(group),
+                    (true, "") => parameter.of.to_owned(),
+                    (true, group) => format!("{}: {group}", parameter.of),
+                };
+                sections.push((heading, id, vec![parameter]));
+            }
+        }
+    }
+    sections
+}
+
+fn section(ui: &mut Ui, session: &mut Session, heading: &str, id: String, parameters: &[&Parameter]) {
+    let differing = parameters.iter().filter(|parameter| session.look().differs(parameter)).count();
+    let mut text = RichText::new(heading).strong();
+    if differing > 0 {
+        text = text.color(theme::ACCENT);
+    }
+    let open = parameters.first().is_some_and(|parameter| OPEN.contains(&parameter.param.group));
+    CollapsingHeader::new(text).id_salt(id).default_open(open).show_unindented(ui, |ui| {
+        for parameter in parameters {
+            control::show(ui, session, parameter);
+        }
+        ui.add_space(8.0);
+    });
+}

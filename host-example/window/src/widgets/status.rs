@@ -1,0 +1,135 @@
+//! The bar at the bottom: time, what is under the pointer, magnification and brightness.
+
+use egui::{Button, DragValue, Label, RichText, Slider, Ui};
+
+use super::theme;
+use crate::state::session::Session;
+use crate::state::work::Request;
+
+/// Shows the bar.
+pub fn show(ui: &mut Ui, session: &mut Session) {
+    ui.horizontal(|ui| {
+        ui.set_min_height(22.0);
+        if let Some(share) = session.work.exported {
+            ui.add(egui::ProgressBar::new(share).desired_width(160.0).text("Exporting"));
+            if ui.button("Cancel").clicked() {
+                session.work.ask(Request::CancelExport);
+            }
+        }
+        if session.open.has_picture() {
+            timeline(ui, session);
+            frames(ui, session);
+            if !session.is_covered() {
+                probe(ui, session);
+            }
+        } else {
+            ui.label(RichText::new(&session.record.adapter).small().color(theme::FAINT));
+        }
+        ui.with_layout(egui::Layout::right_to_left(egui::Align::Center), |ui| {
+            if session.open.has_picture() {
+                magnification(ui, session);
+            }
+        });
+    });
+}
+
+fn timeline(ui: &mut Ui, session: &mut Session) {
+    let Some(scenery) = session.open.scenery_mut() else { return };
+    let (time, length) = scenery.time();
+    if length <= 0.0 {
+        return;
+    }
+    let text = if scenery.playing { "⏸" } else { "▶" };
+    let hint = if scenery.playing { "Pause (Space)" } else { "Play (Space)" };
+    if ui.add(Button::new(text)).on_hover_text(hint).clicked() {
+        scenery.toggle_playing();
+    }
+    let mut now = time;
+    ui.spacing_mut().slider_width = 220.0;
+    let slider = ui.add(Slider::new(&mut now, 0.0..=length).show_value(false)).on_hover_text("Time");
+    slider.widget_info(|| egui::WidgetInfo::slider(true, f64::from(time), "Time"));
+    if slider.changed() {
+        scenery.seek(now);
+    }
+    ui.label(RichText::new(format!("{time:.2} of {length:.2} s")).monospace().color(theme::FAINT));
+    ui.add_space(10.0);
+}
+
+/// Time of sequences and videos, by their frames.
+fn frames(ui: &mut Ui, session: &mut Session) {
+    let Some(playback) = session.open.playback_mut() else { return };
+    let Some(frames) = playback.frames().cloned() else {
+        if let Some(pattern) = playback.info().sequence() {
+            let name = pattern.file_name().unwrap_or_default().to_string_lossy().into_owned();
+            if ui.button(format!("Open all of {name}")).clicked() {
+                session.work.ask(Request::Open(pattern));
+            }
+        }
+        return;
+    };
+    let text = if playback.playing { "⏸" } else { "▶" };
+    if ui.add(Button::new(text)).on_hover_text("Play and pause (Space)").clicked() {
+        playback.toggle_playing();
+    }
+    for (text, hint, by) in [("⏴", "The frame before (←)", -1), ("⏵", "The next frame (→)", 1)] {
+        if ui.add(Button::new(text)).on_hover_text(hint).clicked() {
+            playback.step(by);
+        }
+    }
+    let mut number = playback.number();
+    ui.spacing_mut().slider_width = 220.0;
+    let rail = Slider::new(&mut number, frames.first()..=frames.last()).show_value(false);
+    let rail = ui.add(rail).on_hover_text("Frame");
+    rail.widget_info(|| egui::WidgetInfo::slider(true, number as f64, "Frame"));
+    if rail.changed() {
+        playback.seek(number);
+    }
+    let last = frames.last();
+    ui.label(RichText::new(format!("{number} of {last}")).monospace().color(theme::FAINT));
+    let label = ui.label(RichText::new("at").color(theme::FAINT));
+    let rate =
+        DragValue::new(&mut playback.rate).range(1.0..=240.0).speed(0.2).max_decimals(2).suffix(" fps");
+    ui.add(rate).labelled_by(label.id).on_hover_text("Frames per second");
+    ui.add_space(10.0);
+}
+
+fn probe(ui: &mut Ui, session: &Session) {
+    let Some([before, after]) = session.viewport.probed else { return };
+    let text = |color: [f32; 4]| color[..3].iter().map(|v| format!("{v:.3}")).collect::<Vec<_>>().join(" ");
+    let line = format!("{}  →  {}", text(before), text(after));
+    ui.add(Label::new(RichText::new(line).monospace().color(theme::FAINT)))
+        .on_hover_text("Red, green and blue under the pointer, before and after");
+}
+
+fn magnification(ui: &mut Ui, session: &mut Session) {
+    if !session.browser.is_open {
+        size(ui, session);
+        ui.add_space(8.0);
+    }
+    let stops =
+        DragValue::new(&mut session.viewport.exposure).range(-10.0..=10.0).speed(0.02).max_decimals(2);
+    let label = ui.label(RichText::new("Exposure").color(theme::FAINT));
+    let stops = ui.add(stops.suffix(" stops")).labelled_by(label.id);
+    if stops
+        .on_hover_text("Brightness of what is shown, not of what is saved; a double click sets it back")
+        .double_clicked()
+    {
+        session.viewport.exposure = 0.0;
+    }
+}
+
+/// Size at which the picture is shown.
+fn size(ui: &mut Ui, session: &mut Session) {
+    let scale = session.viewport.scale(session.nominal_size());
+    if ui
+        .add(Button::new("Fit").selected(session.viewport.is_fitting()))
+        .on_hover_text("All of the picture (0)")
+        .clicked()
+    {
+        session.viewport.fit();
+    }
+    let percent = format!("{:.0} %", scale * 100.0);
+    if ui.add(Button::new(percent)).on_hover_text("Pixels as large as the screen's (z)").clicked() {
+        session.viewport.toggle_actual();
+    }
+}
