@@ -72,7 +72,13 @@ pub fn start_threads(wanted: usize) -> Result<Threads> {
             format!("threads cannot be started: {problem}"),
             "raise the limit (ulimit -u)",
         )),
-        _ => Ok(threads),
+        _ => {
+            if threads == Threads::Several {
+                // They begin before anything else takes memory: what a thread takes then cannot be refused.
+                rayon::broadcast(|_| ());
+            }
+            Ok(threads)
+        }
     }
 }
 

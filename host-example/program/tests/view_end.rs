@@ -191,7 +191,7 @@ fn exporting<'d>(display: &'d Display, folder: &Path) -> Window<'d> {
     fs::write(at("mine.json"), r#"{"style": "gaussian", "lengths": "pixels"}"#).unwrap();
     let mut command = view(folder, &size());
     let mut window = Window::open(display, command.arg("--style").arg(at("mine.json")).arg(at("photo.png")));
-    window.wait_for("the picture", |window| window.title().starts_with("photo.png"));
+    window.shows("photo.png", "mine");
     let mut asking = session(&[&at("mine.json")], &at("photo.png"));
     asking.plan_export();
     let start = places(asking, SIZE)("Start the export", Role::Button).center();

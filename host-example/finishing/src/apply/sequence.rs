@@ -55,6 +55,9 @@ struct Done<'a> {
     filtered: Filtered,
 }
 
+/// A filter on a thread of its own: where it takes frames, and its end.
+type Lane<'scope, 'a> = (SyncSender<Ready<'a>>, ScopedJoinHandle<'scope, Result<()>>);
+
 impl<'a> Run<'a> {
     /// Does all frames. Frames that cannot be read or filtered are reported and left out; a run of one picture ends
     /// with its error. `reader` reads these frames for the filters' style; there is at least one filter.
@@ -77,18 +80,22 @@ impl<'a> Run<'a> {
         }
     }
 
-    /// The same on several threads.
+    /// The same on several threads, all of which are there before the first frame takes memory.
     fn at_once(&self, filters: &mut [Filter], mut reader: Reader<'a>) -> Result<()> {
         std::thread::scope(|scope| {
             let (send, decoded) = sync_channel(1);
             // Nobody takes it when the run ends early.
             let mut sink = move |ready| SyncSender::send(&send, ready).is_ok();
-            let reading = spawn(scope, move || self.read(&mut reader, &mut sink))?;
             let (finished, results): (Vec<_>, Vec<_>) = filters.iter().map(|_| sync_channel(1)).unzip();
             let writing = spawn(scope, move || self.write(&results))?;
-            let filtered = match filters {
-                [filter] => self.filter(filter, decoded, &finished[0]),
-                filters => self.filter_in_turn(scope, filters, decoded, &finished),
+            let (own, lanes) = match filters {
+                [filter] => (Some(filter), Vec::new()),
+                filters => (None, self.lanes(scope, filters, &finished)?),
+            };
+            let reading = spawn(scope, move || self.read(&mut reader, &mut sink))?;
+            let filtered = match own {
+                Some(filter) => self.filter(filter, decoded, &finished[0]),
+                None => filter_in_turn(lanes, decoded),
             };
             drop(finished);
             let read = reading.join().unwrap_or_else(|_| Err(broken("reading")));
@@ -98,32 +105,22 @@ impl<'a> Run<'a> {
         })
     }
 
-    /// Hands frames out to filters in turn, each of which works on a thread of its own.
-    fn filter_in_turn<'scope>(
+    /// Filters, each at work on a thread of its own.
+    fn lanes<'scope>(
         &'scope self,
         scope: &'scope Scope<'scope, '_>,
         filters: &'scope mut [Filter],
-        decoded: Receiver<Ready<'a>>,
         finished: &[SyncSender<Option<Done<'a>>>],
-    ) -> Result<()>
+    ) -> Result<Vec<Lane<'scope, 'a>>>
     where
         'a: 'scope,
     {
-        let (mut inputs, mut lanes) = (Vec::new(), Vec::new());
-        for (filter, finished) in filters.iter_mut().zip(finished) {
+        let lanes = filters.iter_mut().zip(finished).map(|(filter, finished)| {
             let (input, frames) = sync_channel(0);
             let finished = finished.clone();
-            lanes.push(spawn(scope, move || self.filter(filter, frames, &finished))?);
-            inputs.push(input);
-        }
-        for (ready, input) in decoded.into_iter().zip(inputs.iter().cycle()) {
-            if input.send(ready).is_err() {
-                break;
-            }
-        }
-        drop(inputs);
-        let ends = lanes.into_iter().map(|lane| lane.join().unwrap_or_else(|_| Err(broken("filtering"))));
-        ends.fold(Ok(()), Result::and)
+            Ok((input, spawn(scope, move || self.filter(filter, frames, &finished))?))
+        });
+        lanes.collect()
     }
 
     /// Writes what filters hand over in turn.
@@ -209,6 +206,20 @@ impl<'a> Run<'a> {
     }
 }
 
+/// Hands frames out to filters in turn.
+fn filter_in_turn<'a>(lanes: Vec<Lane<'_, 'a>>, decoded: Receiver<Ready<'a>>) -> Result<()> {
+    let (inputs, lanes): (Vec<_>, Vec<_>) = lanes.into_iter().unzip();
+    for (ready, input) in decoded.into_iter().zip(inputs.iter().cycle()) {
+        if input.send(ready).is_err() {
+            break;
+        }
+    }
+    drop(inputs);
+    let ends = lanes.into_iter().map(|lane| lane.join().unwrap_or_else(|_| Err(broken("filtering"))));
+    ends.fold(Ok(()), Result::and)
+}
+
+/// Starts a thread and waits until it is there: the memory that it takes when it begins cannot be refused.
 fn spawn<'scope, 'env, T: Send + 'scope>(
     scope: &'scope Scope<'scope, 'env>,
     work: impl FnOnce() -> T + Send + 'scope,
@@ -216,9 +227,16 @@ fn spawn<'scope, 'env, T: Send + 'scope>(
     if !limits::has_room_for_a_thread() {
         return Err(limits::too_little("another thread"));
     }
-    Builder::new()
-        .spawn_scoped(scope, work)
-        .map_err(|e| Error::failure(format!("a thread cannot be started: {e}"), "start again"))
+    let (begin, has_begun) = sync_channel(1);
+    let thread = Builder::new().spawn_scoped(scope, move || {
+        // The thread that started it waits for that.
+        let _ = begin.send(());
+        work()
+    });
+    let thread =
+        thread.map_err(|e| Error::failure(format!("a thread cannot be started: {e}"), "start again"))?;
+    has_begun.recv().map_err(|_| broken("a thread"))?;
+    Ok(thread)
 }
 
 fn broken(what: &str) -> Error {

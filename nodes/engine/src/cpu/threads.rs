@@ -49,7 +49,10 @@ impl Pool {
         let started = |helpers: usize| {
             memory::must_have((helpers * THREAD) as u64).ok()?;
             let builder = rayon::ThreadPoolBuilder::new().num_threads(helpers);
-            builder.thread_name(|i| format!("isophote-{i}")).build().ok()
+            let pool = builder.thread_name(|i| format!("isophote-{i}")).build().ok()?;
+            // They begin before frames take memory: what a thread takes then cannot be refused.
+            pool.broadcast(|_| ());
+            Some(pool)
         };
         let fewer = std::iter::successors(Some(count - 1), |helpers| Some(helpers / 2));
         Self { helpers: fewer.take_while(|helpers| *helpers > 0).find_map(started) }
