@@ -20,7 +20,7 @@ pub const OF_PIXEL: &str = "of_pixel";
 /// The function of a shader that can be computed anywhere for the window of another kernel.
 pub const AT_PLACE: &str = "at_place";
 
-/// How a result is stored by shaders that others can follow in the same pass.
+/// Storage of a result by shaders that others can follow in the same pass.
 pub const STORE: &str = "textureStore(target_image, vec2i(id.xy), ";
 
 /// A shader's text and what it imports.
@@ -80,7 +80,7 @@ pub fn imported(shaders: &Path, name: &str) -> Result<String, String> {
     Ok(lines.flat_map(|line| [line, "\n"]).collect())
 }
 
-/// What stands for an import where windows hold 16-bit floats: the file of its name with `_half` behind it; none where
+/// Import in the place of another where windows hold 16-bit floats: the file of its name with `_half` behind it; none where
 /// there is no such file.
 ///
 /// # Errors
