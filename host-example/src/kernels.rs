@@ -185,7 +185,7 @@ pub fn texture_format(format: Format) -> wgpu::TextureFormat {
 /// nobody listens.
 ///
 /// # Errors
-/// Those of `make`, or [`Error::Failure`].
+/// As `make`, or [`Error::Failure`].
 pub fn checked<T>(device: &wgpu::Device, make: impl FnOnce() -> Result<T>) -> Result<T> {
     use wgpu::ErrorFilter::{Internal, OutOfMemory, Validation};
     let scopes = [Validation, Internal, OutOfMemory].map(|filter| device.push_error_scope(filter));

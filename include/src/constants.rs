@@ -4,7 +4,7 @@
 /// what is new comes with a new number, and a library may offer several.
 pub const ISOPHOTE_ABI_VERSION: u32 = 1;
 
-/// What a call came to: `ISOPHOTE_OK`, which is 0, or what went wrong. The message of the last failure is asked of the object that
+/// Status of a call: `ISOPHOTE_OK`, which is 0, or what went wrong. The message of the last failure is asked of the object that
 /// the call was made on (`graph_error`, `plan_error`, `device_error`); calls that make an object
 /// hand it out in their `error` argument.
 pub type IsophoteStatus = u32;
@@ -44,7 +44,7 @@ pub const ISOPHOTE_ERROR_TRUNCATED: u32 = 15;
 /// A mistake inside the library, which caught it; the object may be used further.
 pub const ISOPHOTE_ERROR_INTERNAL: u32 = 16;
 
-/// What flows through a port. One of `ISOPHOTE_KIND_...`.
+/// Kind of image that flows through a port. One of `ISOPHOTE_KIND_...`.
 pub type IsophoteKind = u32;
 /// RGBA.
 pub const ISOPHOTE_KIND_COLOR: u32 = 0;
@@ -92,7 +92,7 @@ pub const ISOPHOTE_UNIT_PERCENT: u32 = 2;
 /// Degrees of angle.
 pub const ISOPHOTE_UNIT_DEGREES: u32 = 3;
 
-/// How one sample of an image is stored, in the machine's byte order. One of `ISOPHOTE_SAMPLE_...`.
+/// Storage of one sample of an image, in the machine's byte order. One of `ISOPHOTE_SAMPLE_...`.
 pub type IsophoteSample = u32;
 /// 8-bit unsigned, 255 = 1.
 pub const ISOPHOTE_SAMPLE_U8: u32 = 0;
@@ -103,7 +103,7 @@ pub const ISOPHOTE_SAMPLE_F16: u32 = 2;
 /// IEEE single.
 pub const ISOPHOTE_SAMPLE_F32: u32 = 3;
 
-/// What the numbers of a colour picture mean; the result has the same space. One of `ISOPHOTE_SPACE_...`.
+/// Colour space of the numbers of a picture; the result has the same. One of `ISOPHOTE_SPACE_...`.
 pub type IsophoteSpace = u32;
 /// Gamma-encoded sRGB.
 pub const ISOPHOTE_SPACE_SRGB: u32 = 0;
@@ -112,7 +112,7 @@ pub const ISOPHOTE_SPACE_LINEAR: u32 = 1;
 /// ACEScg: linear light, AP1 primaries.
 pub const ISOPHOTE_SPACE_ACESCG: u32 = 2;
 
-/// How colour relates to alpha, in the input and in the result. One of `ISOPHOTE_ALPHA_...`.
+/// Relation of colour to alpha, in the input and in the result. One of `ISOPHOTE_ALPHA_...`.
 pub type IsophoteAlpha = u32;
 /// Colour is multiplied by alpha.
 pub const ISOPHOTE_ALPHA_PREMULTIPLIED: u32 = 0;
@@ -139,7 +139,7 @@ pub const ISOPHOTE_GUIDE_MOTION_FORWARD: u32 = 64;
 /// Bit of `IsophoteRequest::guides`: the host has the points of the undeformed objects.
 pub const ISOPHOTE_GUIDE_REST_POSITION: u32 = 128;
 
-/// What a texture of a plan is for. One of `ISOPHOTE_ROLE_...`.
+/// Purpose of a texture of a plan. One of `ISOPHOTE_ROLE_...`.
 pub type IsophoteRole = u32;
 /// The host binds its own texture, which shows the window of the picture that the plan names.
 pub const ISOPHOTE_ROLE_INPUT: u32 = 0;
@@ -160,7 +160,7 @@ pub const ISOPHOTE_FORMAT_RGBA32F: u32 = 2;
 /// graphs whose precision says so.
 pub const ISOPHOTE_FORMAT_RGBA16F: u32 = 3;
 
-/// What an update of a plan came to. One of `ISOPHOTE_CHANGE_...`.
+/// Result of an update of a plan. One of `ISOPHOTE_CHANGE_...`.
 pub type IsophoteChange = u32;
 /// Uniform bytes were rewritten in place; every pointer handed out before stays valid.
 pub const ISOPHOTE_CHANGE_UNIFORMS: u32 = 0;
@@ -182,7 +182,7 @@ pub const ISOPHOTE_LANGUAGE_MSL: u32 = 3;
 /// GLSL 4.30 core.
 pub const ISOPHOTE_LANGUAGE_GLSL: u32 = 4;
 
-/// What is bound at a binding of a shader. One of `ISOPHOTE_BINDING_...`.
+/// Kind of resource at a binding of a shader. One of `ISOPHOTE_BINDING_...`.
 pub type IsophoteBindingKind = u32;
 /// A uniform buffer.
 pub const ISOPHOTE_BINDING_UNIFORM: u32 = 0;

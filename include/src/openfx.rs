@@ -168,15 +168,15 @@ strings! {
 pub const PIXEL_ORDER: &CStr = c"OfxImageEffectPropPixelOrder";
 /// Of one host's own: blue first.
 pub const PIXEL_ORDER_BGRA: &CStr = c"OfxImagePixelOrderBGRA";
-/// What the name of a clip follows, in what `GetRegionsOfInterest` returns.
+/// Prefix of the name of a clip in the answer to `GetRegionsOfInterest`.
 pub const ROI_PREFIX: &str = "OfxImageClipPropRoI_";
-/// What the name of a clip follows, in what `GetFramesNeeded` returns.
+/// Prefix of the name of a clip in the answer to `GetFramesNeeded`.
 pub const FRAME_RANGE_PREFIX: &str = "OfxImageClipPropFrameRange_";
-/// What the name of a clip follows, in what `GetClipPreferences` returns.
+/// Prefix of the name of a clip in the answer to `GetClipPreferences`.
 #[allow(dead_code, reason = "the test host reads it")]
 pub const COMPONENTS_PREFIX: &str = "OfxImageClipPropComponents_";
 
-/// What the name of the source follows, in what `GetClipPreferences` returns.
+/// Prefix of the name of the source in the answer to `GetClipPreferences`.
 pub const PREFERRED_COLOURSPACES_OF_SOURCE: &CStr = c"OfxImageClipPropPreferredColourspaces_Source";
 /// The list of colour spaces that names are taken from.
 pub const COLOURSPACES: &CStr = c"ofx-native-v1.5_aces-v1.3_ocio-v2.3";

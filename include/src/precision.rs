@@ -3,7 +3,7 @@
 use super::constants::IsophoteStatus;
 use super::types::IsophoteGraph;
 
-/// How precisely graphics devices compute a graph. One of `ISOPHOTE_PRECISION_...`.
+/// Precision in which graphics devices compute a graph. One of `ISOPHOTE_PRECISION_...`.
 pub type IsophotePrecision = u32;
 /// Every texture holds 32-bit floats, as the CPU does.
 pub const ISOPHOTE_PRECISION_EXACT: u32 = 0;

@@ -4,7 +4,7 @@ use super::constants::IsophoteStatus;
 use super::types::*;
 use core::ffi::{c_char, c_void};
 
-/// What is kept of a sequence of frames. Its number is never 0.
+/// State that is kept of a sequence of frames. Its number is never 0.
 #[repr(C)]
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct IsophoteSequence {
@@ -12,7 +12,7 @@ pub struct IsophoteSequence {
     pub id: u64,
 }
 
-/// How the library asks for the images of frames.
+/// Callback by which the library asks for the images of frames.
 #[repr(C)]
 #[derive(Clone, Copy, Debug)]
 pub struct IsophoteFrames {
@@ -41,7 +41,7 @@ pub struct IsophoteFrames {
     >,
 }
 
-/// What a plan for frames in order reads and gives besides its images of one frame.
+/// Images that a plan for frames in order reads and gives besides those of one frame.
 ///
 /// The plan's textures of stages: an output "stage0" is what the frame found, an input "stage0@-1" what the frame before
 /// did, and so on. A host hands each frame's outputs to the frames after it, and other inputs, such as "depth@-1",

@@ -75,7 +75,7 @@ pub struct IsophotePort {
     pub id: *const c_char,
     /// One sentence.
     pub doc: *const c_char,
-    /// What it takes or gives.
+    /// Kind of image that it takes or gives.
     pub kind: IsophoteKind,
     /// 1 when the node works without it.
     pub optional: u32,
@@ -129,7 +129,7 @@ pub struct IsophoteNode {
     pub doc: *const c_char,
     /// Sections of the thesis, such as "3.4".
     pub section: *const c_char,
-    /// What it reads.
+    /// Inputs.
     pub inputs: *const IsophotePort,
     /// Its parameters, in the order of panels.
     pub params: *const IsophoteParam,
@@ -137,7 +137,7 @@ pub struct IsophoteNode {
     pub input_count: u32,
     /// Number of parameters.
     pub param_count: u32,
-    /// What it gives.
+    /// Output.
     pub output: IsophotePort,
 }
 
@@ -165,7 +165,7 @@ pub struct IsophoteValue {
     pub number: [f64; 4],
 }
 
-/// What the host wants of a graph.
+/// Request of the host for one picture of a graph.
 #[repr(C)]
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct IsophoteRequest {
@@ -178,7 +178,7 @@ pub struct IsophoteRequest {
     pub scale: f32,
     /// Space of the colour that enters and leaves.
     pub space: IsophoteSpace,
-    /// How colour relates to alpha, entering and leaving.
+    /// Relation of colour to alpha, entering and leaving.
     pub alpha: IsophoteAlpha,
     /// Which guides the host has, a sum of `ISOPHOTE_GUIDE_...`; connections to others count as open.
     /// `process` goes by the images that it is given instead.
@@ -215,7 +215,7 @@ pub struct IsophoteImage {
     /// Bytes from one row to the one below it: at least a row's bytes, or at most the negative of
     /// them where rows go upwards in memory.
     pub row_stride: isize,
-    /// How a sample is stored.
+    /// Storage of a sample.
     pub sample: IsophoteSample,
     /// Samples a pixel: 1 (grey), 3 (RGB) or 4 (RGBA); 2 to 4 of motions.
     pub channels: u32,
@@ -238,7 +238,7 @@ pub struct IsophoteTarget {
     pub data: *mut c_void,
     /// Bytes from one row to the one below it.
     pub row_stride: isize,
-    /// How a sample is stored.
+    /// Storage of a sample.
     pub sample: IsophoteSample,
     /// Samples a pixel: 1, 3 or 4.
     pub channels: u32,
@@ -262,13 +262,13 @@ pub struct IsophoteInput {
     pub image: IsophoteImage,
 }
 
-/// What a region of the result reads of an input.
+/// Part of an input that a region of the result reads.
 #[repr(C)]
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct IsophoteSupport {
     /// The pixels needed, cut at the picture's border; empty when the input is not read.
     pub window: IsophoteRect,
-    /// How far outside a region pixels are read at most, whichever region; 0 when `global`.
+    /// Greatest distance outside a region at which pixels are read, whichever region; 0 when `global`.
     pub halo: u32,
     /// 1 when every pixel may depend on the whole picture, so that it cannot be cut into tiles.
     pub global: u32,
@@ -290,7 +290,7 @@ pub type IsophoteProgress = Option<unsafe extern "C" fn(user: *mut c_void, done:
 /// Asked often, on any thread; another value than 0 stops the work.
 pub type IsophoteCancelled = Option<unsafe extern "C" fn(user: *mut c_void) -> u32>;
 
-/// What one pass took on the CPU.
+/// Cost of one pass on the CPU.
 #[repr(C)]
 #[derive(Clone, Copy, Debug)]
 pub struct IsophotePassTime {
@@ -310,7 +310,7 @@ pub struct IsophotePassTime {
 /// the library. On a device it is not called.
 pub type IsophoteMeasured = Option<unsafe extern "C" fn(user: *mut c_void, pass: *const IsophotePassTime)>;
 
-/// How work is done and watched. Callbacks may be null, must return normally (no exception, no
+/// Threads and callbacks of a call. Callbacks may be null, must return normally (no exception, no
 /// longjmp), and may themselves call the library.
 #[repr(C)]
 #[derive(Clone, Copy, Debug)]
@@ -346,7 +346,7 @@ pub struct IsophoteReport {
 pub struct IsophoteTexture {
     /// Name of an input (`color`, `normal`, `depth`, `object_id`) or output (`output`); otherwise null.
     pub name: *const c_char,
-    /// What it is for.
+    /// Purpose.
     pub role: IsophoteRole,
     /// Format of its texels. An input may have any format of as many channels that is read as floats.
     pub format: IsophoteFormat,
@@ -399,7 +399,7 @@ pub struct IsophoteBinding {
     pub name: *const c_char,
     /// Number in the kernel, group 0: 0 the grid, 1 the parameters, from 2 the inputs, then the outputs.
     pub binding: u32,
-    /// What is bound.
+    /// Kind of resource.
     pub kind: IsophoteBindingKind,
     /// WGSL and SPIR-V: the binding of group or set 0, the same as `binding`. HLSL: the register, `b#`
     /// for uniforms, `t#` for sampled, `u#` for storage. MSL: the index among buffers for uniforms,

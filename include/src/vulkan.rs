@@ -28,7 +28,7 @@ pub struct IsophoteVulkanEffect {
     pub id: u64,
 }
 
-/// What a device must be created with.
+/// Features and extensions that a device must be created with.
 #[repr(C)]
 #[derive(Clone, Copy, Debug)]
 pub struct IsophoteVulkanNeeds {

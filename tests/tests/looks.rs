@@ -1,4 +1,4 @@
-//! What an artist expects of styles as they come: empty light stays empty, tones keep their order and reach the ink,
+//! Expectations of an artist of styles as they come: empty light stays empty, tones keep their order and reach the ink,
 //! nothing happens along borders that does not happen elsewhere, and a picture looks the same at every size.
 
 use isophote::Request;
@@ -18,7 +18,7 @@ const LINE_STYLES: [(&str, &[(&str, &str)]); 7] = [
     ("blueprint", &[("grid", "0")]),
     ("cartoon", &[("posterize", "0")]),
 ];
-/// Those that draw tones by marks.
+/// Styles that draw tones by marks.
 const MARKED: [&str; 4] = ["ink", "pencil", "charcoal", "woodcut"];
 
 /// The sRGB grey of a lightness, 0..=1.
@@ -227,7 +227,7 @@ fn correlation(pairs: &[(f64, f64)]) -> f64 {
 /// Lines of the pictures that lengths are meant for: as programs have it, where pictures are half as high or less.
 const REFERENCE: u32 = 540;
 
-/// What is wrong with a style's lightness, hue and mean on a picture.
+/// Faults of a style's lightness, hue and mean on a picture.
 fn unlike(id: &str, params: &[(&str, &str)], name: &str, picture: &Image, faults: &mut Vec<String>) {
     let request = Request { reference_height: REFERENCE, ..Request::new(picture.width(), picture.height()) };
     let result = run::graph(&run::single(id, params), request, picture);

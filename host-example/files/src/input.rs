@@ -10,7 +10,7 @@ use std::path::Path;
 /// Opens whatever has this path, and says what it is. Pipes are not waited for.
 ///
 /// # Errors
-/// Those of the system.
+/// As the system.
 pub fn open(path: &Path) -> io::Result<(File, Metadata)> {
     let mut options = OpenOptions::new();
     options.read(true);
@@ -24,7 +24,7 @@ pub fn open(path: &Path) -> io::Result<(File, Metadata)> {
 /// The text of a file of at most `most` bytes.
 ///
 /// # Errors
-/// Those of the system; too large; invalid input for pipes and devices, which might not end; invalid data for what is
+/// As the system; too large; invalid input for pipes and devices, which might not end; invalid data for what is
 /// no UTF-8.
 pub fn text(path: &Path, most: u64) -> io::Result<String> {
     let (file, found) = open(path)?;

@@ -69,7 +69,7 @@ impl Temporary {
     /// A new one in a folder.
     ///
     /// # Errors
-    /// Those of the system.
+    /// As the system.
     pub fn in_folder(folder: &Path) -> io::Result<Self> {
         // A sweep may take a file between its making and its locking, over and over only where locks do not work.
         const ATTEMPTS: u32 = 16;
@@ -119,7 +119,7 @@ impl Temporary {
     /// Flushes the file to the disk and gives it its name, which a file that is there only loses where it is replaced.
     ///
     /// # Errors
-    /// Those of the system; already exists for a file that is not replaced, even one that has come just now.
+    /// As the system; already exists for a file that is not replaced, even one that has come just now.
     pub fn rename(self, target: &Path, replaces: bool) -> io::Result<()> {
         if replaces {
             self.take_permissions(target);

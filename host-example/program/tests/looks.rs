@@ -50,7 +50,7 @@ fn value<'a>(look: &'a Look, id: &str) -> Option<&'a str> {
     })
 }
 
-/// What a look draws with: its style, and the medium where that has several.
+/// Style that a look draws with, and the medium where that has several.
 fn medium(look: &Look) -> (&str, &str) {
     (&look.preset.style, value(look, "style").unwrap_or_default())
 }
@@ -95,7 +95,7 @@ fn each_says_what_it_looks_like() {
     }
 }
 
-/// Whether a slider reaches the value, or the value turns something off.
+/// True where a slider reaches the value, or the value turns something off.
 fn within(param: &Param, value: &str) -> bool {
     match &param.kind {
         _ if value == "0" => true,
@@ -121,7 +121,7 @@ fn each_loads_and_stays_within_the_sliders() {
     }
 }
 
-/// What a style makes of a picture with edges, slow changes and detail, on the CPU.
+/// Result of a style on a picture with edges, slow changes and detail, on the CPU.
 fn drawn(library: &Library, mut style: Style) -> Vec<f32> {
     style.lengths = Lengths::Pixels;
     let request = style.request(library, SIZE).expect("the size is possible");

@@ -47,9 +47,9 @@ pub struct Kernel {
     pub cpu: fn(&CpuPass<'_>, &mut Band<'_>),
     /// Fused multiply-adds (or operations of like cost) per output pixel, for benchmarks.
     pub cost: fn(&[u8]) -> f64,
-    /// How far the two twins may differ.
+    /// Greatest difference of the two twins.
     pub tolerance: Tolerance,
-    /// How far they may differ where the shader reads and writes 16-bit floats, and interpolates by samplers if it can.
+    /// Greatest difference where the shader reads and writes 16-bit floats, and interpolates by samplers if it can.
     pub fast: Tolerance,
 }
 
@@ -146,7 +146,7 @@ impl Tolerance {
     }
 }
 
-/// What a CPU twin is given: the uniform block, the inputs and the instruction set to use.
+/// Arguments of a CPU twin: the uniform block, the inputs and the instruction set to use.
 #[derive(Debug)]
 pub struct CpuPass<'a> {
     /// The uniform block's bytes, as the shader would see them.

@@ -24,7 +24,7 @@ pub const AT_PLACE: &str = "at_place";
 /// Attribute of entry points: the engine decides on the sides of workgroups, so that kernels need not.
 pub const ENTRY: &str = "@compute @workgroup_size(8, 8)\n";
 
-/// How a result is stored by shaders that others can follow in the same pass.
+/// Storage of a result by shaders that others can follow in the same pass.
 pub const STORE: &str = "textureStore(target_image, vec2i(id.xy), ";
 
 /// A shader's text and what it imports.
@@ -98,7 +98,7 @@ pub fn imported(shaders: &Path, name: &str) -> Result<String, String> {
     Ok(text)
 }
 
-/// What stands for an import where windows hold 16-bit floats: the file of its name with `_half` behind it; none where
+/// Import in the place of another where windows hold 16-bit floats: the file of its name with `_half` behind it; none where
 /// there is no such file.
 ///
 /// # Errors

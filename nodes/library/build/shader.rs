@@ -10,7 +10,7 @@ use naga::{ImageClass, Module, StorageFormat, TypeInner};
 use std::fmt::Write as _;
 use std::path::Path;
 
-/// What reflection finds in one shader.
+/// Findings of reflection in one shader.
 pub struct Shader {
     /// The complete WGSL module.
     pub source: String,
@@ -62,7 +62,7 @@ impl Shader {
     /// Reads the shader at `path`, with what it imports from the folder `shaders`.
     ///
     /// # Errors
-    /// What is wrong, as naga says it, or the rule of the house that it breaks.
+    /// Fault, as naga words it, or the rule of the house that it breaks.
     pub fn read(shaders: &Path, path: &Path) -> Result<Self, String> {
         let text = Text::read(shaders, path)?;
         let source = format!("{}{}", text.shared, text.own);

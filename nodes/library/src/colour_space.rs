@@ -1,6 +1,6 @@
 //! The colour spaces of pictures that enter and leave.
 
-/// What the numbers of a colour picture mean. All have their primaries' own encoding extended to
+/// Colour space of the numbers of a picture. All have their primaries' own encoding extended to
 /// values below 0 and above 1. Shaders know them by these numbers.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
 pub enum ColourSpace {
@@ -13,7 +13,7 @@ pub enum ColourSpace {
     AcesCg = 2,
 }
 
-/// How a host's colour is encoded.
+/// Encoding of a host's colour.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Encoding {
     /// Its space.
@@ -25,7 +25,7 @@ pub struct Encoding {
 }
 
 impl Encoding {
-    /// How shaders are told of alpha: 0 straight, 1 premultiplied, 2 premultiplied with the light beyond coverage
+    /// Number by which shaders know alpha: 0 straight, 1 premultiplied, 2 premultiplied with the light beyond coverage
     /// taken out.
     pub const fn alpha(self) -> u32 {
         if self.premultiplied { 1 + self.emission as u32 } else { 0 }

@@ -2,7 +2,7 @@
 
 use thiserror::Error;
 
-/// What can go wrong while a graph is built, read or planned.
+/// Error of building, reading or planning a graph.
 #[derive(Debug, Error)]
 #[non_exhaustive]
 pub enum Error {

@@ -1,9 +1,9 @@
-//! What a host knows of the frames around the one that it asks for.
+//! Knowledge that a host has of the frames around the one that it asks for.
 
 /// Farthest frame that a plan reads, counted from the one that is computed.
 pub const MOST_FRAMES: u32 = 31;
 
-/// What there is of the frames around the one that is computed.
+/// Frames that are there around the one that is computed.
 ///
 /// A frame is known when all images of the graph's inputs are, of its own number and of all between it and the frame
 /// that is computed.
@@ -13,7 +13,7 @@ pub struct Frames {
     pub past: u32,
     /// Known frames after this one, at most [`MOST_FRAMES`].
     pub future: u32,
-    /// Whether the stages that other frames carry leave the plan, as outputs `stage0`, `stage1@-1` and so on.
+    /// True where the stages that other frames carry leave the plan, as outputs `stage0`, `stage1@-1` and so on.
     pub keep: bool,
     /// The frames whose stages enter the plan instead of being computed in it, a bit each from -[`MOST_FRAMES`] on.
     handed: u64,
@@ -49,13 +49,13 @@ impl Frames {
         [-(self.past as i32), self.future as i32]
     }
 
-    /// Whether a frame is known, counted from the one that is computed.
+    /// True for a frame that is known, counted from the one that is computed.
     pub const fn has(&self, frame: i32) -> bool {
         let [first, last] = self.range();
         first <= frame && frame <= last
     }
 
-    /// Whether the host hands in the stages of a frame.
+    /// True where the host hands in the stages of a frame.
     pub const fn is_handed(&self, frame: i32) -> bool {
         self.has(frame) && self.handed >> (frame + MOST_FRAMES as i32) & 1 == 1
     }

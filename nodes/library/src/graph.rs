@@ -60,7 +60,7 @@ impl Node {
         }
     }
 
-    /// Whether motion carries marks of the node.
+    /// True where motion carries marks of the node.
     pub fn is_carrying(&self) -> bool {
         self.marks() > 0
     }
@@ -88,7 +88,7 @@ impl Graph {
         Self::default()
     }
 
-    /// How precisely graphics devices compute it; CPUs always compute exactly. It is no part of what is saved.
+    /// Precision in which graphics devices compute it; CPUs always compute exactly. It is no part of what is saved.
     pub fn precision(&self) -> Precision {
         self.precision
     }
@@ -256,7 +256,7 @@ impl Graph {
         Ok(())
     }
 
-    /// What leaves the graph, once an output is set.
+    /// Kind of image that leaves the graph, once an output is set.
     pub fn output_kind(&self) -> Option<ImageKind> {
         self.output_node().map(|(_, kind)| kind)
     }

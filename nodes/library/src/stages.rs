@@ -1,4 +1,4 @@
-//! What styles are made of: the stages of the cartoon pipeline (§ 4.6) and its relatives, each with its
+//! Parts that styles are made of: the stages of the cartoon pipeline (§ 4.6) and its relatives, each with its
 //! parameters.
 //!
 //! The technical parameters, under the heading `advanced`, hold the thesis' values under the thesis' names.

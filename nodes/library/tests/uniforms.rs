@@ -1,4 +1,4 @@
-//! What the build script makes of the uniform block of a shader: a Rust struct with the same fields at the
+//! Result of the build script for the uniform block of a shader: a Rust struct with the same fields at the
 //! same places, and a clear refusal of what it cannot take over.
 
 #[path = "../build/uniform.rs"]

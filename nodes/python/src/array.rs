@@ -17,7 +17,7 @@ pub struct Pixels {
     pub data: *mut u8,
     /// Bytes from one row to the one below it.
     pub row_stride: isize,
-    /// How a sample is stored.
+    /// Storage of a sample.
     pub sample: Sample,
     /// Samples a pixel.
     pub channels: u32,
@@ -35,7 +35,7 @@ unsafe impl Send for Pixels {}
 // SAFETY: as above; nothing in it changes.
 unsafe impl Sync for Pixels {}
 
-/// Whether an array is read or written.
+/// Direction: an array that is read, or one that is written.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Use {
     /// It is read.
@@ -97,7 +97,7 @@ impl Pixels {
     }
 }
 
-/// What NumPy says of an array, whatever a class derived from its arrays says.
+/// NumPy's own description of an array, whatever a class derived from its arrays says.
 fn interface<'py>(array: &Bound<'py, PyAny>, what: &str) -> PyResult<Bound<'py, PyDict>> {
     static DESCRIBE: PyOnceLock<[Py<PyAny>; 2]> = PyOnceLock::new();
     let py = array.py();

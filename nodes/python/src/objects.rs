@@ -18,7 +18,7 @@ fn word<T: Copy>(what: &str, given: &str, words: &[(&str, T)]) -> PyResult<T> {
     })
 }
 
-/// What is asked for: the picture, its spaces and where it stands.
+/// Request: the picture, its spaces and where it stands.
 #[pyclass(frozen, module = "isophote._native")]
 #[derive(Debug)]
 pub struct Request(IsophoteRequest);
@@ -153,7 +153,7 @@ impl Graph {
         answer(py, self.0.with(py, |graph| graph.set_precision(precision))?)
     }
 
-    /// What leaves the graph, as the catalogue names it.
+    /// Kind of image that leaves the graph, as the catalogue names it.
     fn output_kind(&self, py: Python<'_>) -> PyResult<String> {
         let kind = answer(py, self.0.with(py, |graph| graph.output_kind())?)?;
         let named = serde_json::to_value(kind).ok();
@@ -207,7 +207,7 @@ impl Graph {
     }
 }
 
-/// What the library keeps of a sequence of frames.
+/// State that the library keeps of a sequence of frames.
 #[pyclass(frozen, module = "isophote._native")]
 #[derive(Debug)]
 pub struct Sequence(Owned<loader::Sequence>);
@@ -278,7 +278,7 @@ fn answer<T>(py: Python<'_>, result: loader::Result<T>) -> PyResult<T> {
     result.map_err(|error| raised(py, &error))
 }
 
-/// What a call came to. What Python raised meanwhile is why the library stopped, or went on without an image.
+/// Result of a call. What Python raised meanwhile is why the library stopped, or went on without an image.
 fn outcome(py: Python<'_>, watch: &Watch, report: loader::Result<Report>) -> PyResult<(u64, f64)> {
     if let Some(raised) = watch.raised() {
         return Err(raised);

@@ -8,7 +8,7 @@ use std::time::{Duration, Instant};
 /// Time between two looks at what Python wants; each takes the interpreter's lock.
 const PAUSE: Duration = Duration::from_millis(50);
 
-/// What is asked and told during one call.
+/// Callbacks of one call.
 #[derive(Debug)]
 pub struct Watch {
     progress: Option<Py<PyAny>>,
@@ -39,7 +39,7 @@ impl Watch {
         self.raised.lock().unwrap_or_else(PoisonError::into_inner).take()
     }
 
-    /// Whether the call shall end.
+    /// True where the call shall end.
     pub fn is_stopped(&self) -> bool {
         self.stopped.load(Ordering::Relaxed)
     }

@@ -24,7 +24,7 @@ pub struct Layout {
     pub aspect: f64,
     /// Pixels per unit that its region of definition counts with.
     pub scale: f64,
-    /// Those in x over those in y, beside what the aspect makes of them.
+    /// Pixels in x over those in y, beside what the aspect makes of them.
     pub squeeze: f64,
     /// Scale that the image names.
     pub claimed_scale: f64,

@@ -42,7 +42,7 @@ impl Suites {
         }
     }
 
-    /// Those that the host gives out. The addresses hold while `self` is where it is.
+    /// Suites that the host gives out. The addresses hold while `self` is where it is.
     pub(super) fn list(&self, behaviour: &Behaviour) -> Vec<Suite> {
         let suite = |name, version, address| Suite { name, version, address };
         let mut list = vec![

@@ -52,7 +52,7 @@ pub struct Names {
 }
 
 impl Names {
-    /// Those of this system.
+    /// Packages of this system.
     pub fn new(abi: u32) -> Self {
         let plain = format!("{}isophote{}", std::env::consts::DLL_PREFIX, std::env::consts::DLL_SUFFIX);
         if cfg!(windows) {

@@ -88,7 +88,7 @@ pub struct Planner {
     guides: Vec<Guide>,
     /// True where frames have painted flow maps.
     has_flow: bool,
-    /// What filtering a picture of this size takes, as was found last.
+    /// Memory that filtering a picture of this size takes, as was found last.
     last: Option<((u32, u32), u64)>,
 }
 

@@ -77,7 +77,7 @@ impl Needs {
         self.frame.saturating_add(self.filter)
     }
 
-    /// Those of so many frames of which one is filtered.
+    /// Needs of so many frames of which one is filtered.
     pub fn of(self, frames: u64) -> Self {
         Self { frame: self.frame.saturating_mul(frames), filter: self.filter }
     }

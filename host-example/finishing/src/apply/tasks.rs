@@ -39,7 +39,7 @@ pub enum OnMissing {
 /// All tasks of a run.
 #[derive(Debug)]
 pub struct Tasks {
-    /// Those whose input is there; at least one.
+    /// Frames whose input is there; at least one.
     pub ready: Vec<Task>,
     /// Frames of the sequence that have no file.
     pub missing: Vec<Task>,

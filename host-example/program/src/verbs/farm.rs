@@ -58,7 +58,7 @@ struct OpenJdArgs {
 struct Job {
     /// Declaration of the arguments of `apply`.
     declared: Command,
-    /// Those that are given.
+    /// Arguments that are given.
     given: ArgMatches,
     /// Their values.
     parsed: ApplyArgs,

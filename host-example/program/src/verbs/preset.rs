@@ -30,7 +30,7 @@ pub struct PresetArgs {
     command: PresetCommand,
 }
 
-/// What can be done with presets.
+/// Commands on presets.
 #[derive(Debug, Subcommand)]
 enum PresetCommand {
     /// Lists the looks that ship with the program.
@@ -168,7 +168,7 @@ fn made(args: &SaveArgs) -> Made<'_> {
     Made { from: Some(&args.style), to: &args.file }
 }
 
-/// What a file starts from.
+/// Start of a file.
 fn base(library: &Library, style: &Style, args: &SaveArgs) -> Result<Preset> {
     let SaveArgs { style: base, file, .. } = args;
     let plain = |style| Preset { title: Title::default(), style, lengths: None, params: Vec::new() };

@@ -51,7 +51,7 @@ struct Reader<'a> {
     accessors: &'a Accessors<'a>,
     /// Vertices in the file.
     count: usize,
-    /// Those that a triangle uses.
+    /// Vertices that a triangle uses.
     used: Pick<'a>,
 }
 

@@ -46,7 +46,7 @@ impl Executor {
     /// the next one of the same shape, which then only uploads, submits once a tile and reads back.
     ///
     /// # Errors
-    /// Those of the CPU executor; [`Error::Geometry`] when the picture exceeds the device's limit and
+    /// As the CPU executor; [`Error::Geometry`] when the picture exceeds the device's limit and
     /// cannot be cut, because the plan reads all of it for every pixel or its halo is too wide;
     /// [`Error::Memory`] and [`Error::Device`] for what the device reports. After the loss of the
     /// device every call fails, and the executor must be made anew.

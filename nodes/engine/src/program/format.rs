@@ -2,7 +2,7 @@
 
 use crate::plan::{Class, ImageDesc};
 
-/// How precisely a program computes on a graphics device.
+/// Precision in which a program computes on a graphics device.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
 pub enum Precision {
     /// Every image holds 32-bit floats, as those of the CPU executor do.
@@ -18,7 +18,7 @@ pub enum Precision {
 }
 
 impl Precision {
-    /// Whether the rows and the columns of small windows run in one dispatch: the same numbers with fewer bytes and more
+    /// True where the rows and the columns of small windows run in one dispatch: the same numbers with fewer bytes and more
     /// arithmetic, which drivers that compute on the CPU are slow at. Those who ask for speed have a graphics card.
     pub(super) const fn fuses_windows(self) -> bool {
         !matches!(self, Self::Exact)
@@ -77,7 +77,7 @@ impl Format {
         self.channels() * self.sample()
     }
 
-    /// What WGSL calls it.
+    /// Name in WGSL.
     pub const fn wgsl(self) -> &'static str {
         match self {
             Self::R32 => "r32float",

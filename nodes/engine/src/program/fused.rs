@@ -25,11 +25,11 @@ pub(super) struct Fused {
     pub links: Vec<Link>,
     /// Which of them come first, together.
     pub lead: Lead,
-    /// What is stored: the kernels that have computed it, and as what.
+    /// Result that is stored: the kernels that have computed it, and its format.
     pub outputs: Vec<(usize, Format)>,
-    /// Whether what the first of several reads is held in the window that is summed, as it is at the same level.
+    /// True where the texture that the first of several reads is held in the window that is summed, as it is at the same level.
     pub is_held: bool,
-    /// How the first reads.
+    /// Access of the first to its textures.
     pub reading: Reading,
 }
 
@@ -59,7 +59,7 @@ impl Fused {
         self.outputs.iter().any(|(_, format)| *format == Format::Rgba16)
     }
 
-    /// How many textures are read.
+    /// Number of textures that are read.
     fn textures(&self) -> usize {
         self.links.iter().flat_map(|link| &link.values).filter(|value| value.is_none()).count()
     }
@@ -127,7 +127,7 @@ impl Fused {
         text
     }
 
-    /// What the kernels import, each text once.
+    /// Texts that the kernels import, each once.
     fn imports(&self) -> String {
         let mut text = String::new();
         let mut known: HashSet<&str> = HashSet::new();
@@ -142,7 +142,7 @@ impl Fused {
         text
     }
 
-    /// Whether a kernel is the rows or the columns of a window.
+    /// True for a kernel that is the rows or the columns of a window.
     fn is_of_pair(&self, place: usize) -> bool {
         self.lead != Lead::Single && (self.lead.len() - 2..self.lead.len()).contains(&place)
     }
@@ -279,7 +279,7 @@ impl Bindings {
     }
 }
 
-/// What a window holds at first: what the pass before reads, as far around as it reads. Later it holds what rows sum, and
+/// Contents of a window at first: what the pass before reads, as far around as it reads. Later it holds what rows sum, and
 /// then their sums.
 const HOLDING: &str = "
 var<private> pair_corner: vec2i;

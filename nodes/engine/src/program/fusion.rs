@@ -15,11 +15,11 @@ pub(super) struct Fusion {
     pub passes: Vec<usize>,
     /// The first of them.
     pub lead: Lead,
-    /// What is stored.
+    /// Result that is stored.
     pub outputs: Vec<ImageId>,
 }
 
-/// What a dispatch begins with.
+/// Beginning of a dispatch.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(super) enum Lead {
     /// One pass.

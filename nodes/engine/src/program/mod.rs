@@ -31,7 +31,7 @@ use fused::{Fused, Link, padded};
 use fusion::{Fusion, Lead, external, fusions, reaches};
 use std::sync::Arc;
 
-/// What a texture of a program is for.
+/// Purpose of a texture of a program.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub enum Role {
     /// The host binds its own texture here. It must show the picture's window named by `window`.
@@ -45,11 +45,11 @@ pub enum Role {
 /// One physical texture.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Texture {
-    /// What it is for.
+    /// Purpose.
     pub role: Role,
     /// Format of its texels. Inputs may have any other of as many channels that is read as floats.
     pub format: Format,
-    /// What it holds.
+    /// Format of its texels.
     pub class: Class,
     /// Part of the picture (at its pyramid level) that the texture holds, in pixels. That of a transient one begins
     /// at (0, 0) and is as large as the largest image in each direction; where an image lies is in the passes' grids.
@@ -66,7 +66,7 @@ pub struct Grid {
     pub size: [i32; 2],
     /// Size of the whole picture at the outputs' level.
     pub full: [i32; 2],
-    /// How far the first of several kernels reads around a pixel that a window of the others holds; else zero.
+    /// Distance to which the first of several kernels reads around a pixel that a window of the others holds; else zero.
     pub halo: [i32; 2],
     /// Per input: absolute position of texel (0, 0), and the whole picture's size at its level.
     pub inputs: [[i32; 4]; MAX_INPUTS],
@@ -75,7 +75,7 @@ pub struct Grid {
 /// One dispatch.
 #[derive(Clone, Debug)]
 pub struct Dispatch {
-    /// What to run.
+    /// Shader to run.
     pub shader: Arc<Shader>,
     /// Uniform at binding 0.
     pub grid: Grid,
@@ -97,11 +97,11 @@ pub struct Program {
     /// All dispatches in order. Between two there must be a barrier wherever one reads what the
     /// other wrote (wgpu and WebGPU place it by themselves).
     pub dispatches: Vec<Dispatch>,
-    /// What of the plan each dispatch does.
+    /// Passes of the plan, dispatch by dispatch.
     origins: Vec<Origin>,
 }
 
-/// What of a plan a dispatch does.
+/// Passes of a plan that a dispatch does.
 #[derive(Clone, Debug)]
 struct Origin {
     /// The passes.
@@ -110,7 +110,7 @@ struct Origin {
     kernels: Vec<&'static str>,
     /// Their supports where windows depend on them.
     supports: Option<Vec<Vec<Support>>>,
-    /// How they begin.
+    /// Their beginning.
     lead: Lead,
 }
 
@@ -239,7 +239,7 @@ impl Texture {
 }
 
 impl Origin {
-    /// Whether a plan still has these passes, which read as far as they did.
+    /// True where a plan still has these passes, which read as far as they did.
     fn is_of(&self, plan: &Plan) -> bool {
         let supports = |at: usize| self.supports.as_ref().map(|supports| &supports[at]);
         if self.lead != Lead::Single && reaches(plan, &self.passes, self.lead).is_none() {
@@ -429,7 +429,7 @@ impl<'p> Lowering<'p> {
         fused.shader()
     }
 
-    /// How a pass reads.
+    /// Access of a pass to its textures.
     fn reading(&self, pass: &Pass) -> Reading {
         let pieces = &pass.kernel.pieces;
         let is_half =

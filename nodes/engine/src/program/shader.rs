@@ -80,12 +80,12 @@ impl Shader {
     }
 }
 
-/// How a kernel reads textures of 16-bit floats; the default is what it does with all others.
+/// Access of a kernel to textures of 16-bit floats; the default is that to all others.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub(super) struct Reading {
-    /// Whether it interpolates by a sampler.
+    /// True where it interpolates by a sampler.
     pub is_filtered: bool,
-    /// Whether its windows of neighbours hold 16-bit floats.
+    /// True where its windows of neighbours hold 16-bit floats.
     pub is_packed: bool,
 }
 
@@ -112,7 +112,7 @@ impl Reading {
     }
 }
 
-/// What stands behind the names of shaders that differ from those of their kernels.
+/// Endings of the names of shaders that differ from those of their kernels.
 pub(super) fn variant(is_half: bool, reading: Reading) -> String {
     let words = [(is_half, "/half"), (reading.is_filtered, "/filtered"), (reading.is_packed, "/packed")];
     words.iter().filter(|(is, _)| *is).map(|(_, word)| *word).collect()

@@ -8,7 +8,7 @@ pub trait Numbered: Copy + 'static {
     /// All of them.
     const ALL: &'static [Self];
 
-    /// What shaders call it.
+    /// Number of each in shaders.
     fn number(self) -> u32;
 
     /// The one that shaders know by this number, which a uniform block of this library holds.
@@ -23,7 +23,7 @@ pub trait Numbered: Copy + 'static {
 
 /// An enum that a parameter offers as a choice, in the order of [`Numbered::ALL`].
 pub trait Selectable: Numbered {
-    /// How people see them, in the same order.
+    /// Label of each, in the same order.
     const OPTIONS: &'static [Choice];
 }
 

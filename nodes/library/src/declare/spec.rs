@@ -1,4 +1,4 @@
-//! What a node says about itself, once: the catalogue, command lines, hosts and documents all walk
+//! Declaration of a node, once: the catalogue, command lines, hosts and documents all walk
 //! this declaration.
 
 use crate::declare::choice::Selectable;
@@ -7,7 +7,7 @@ use crate::declare::value::Value;
 use crate::frames::Frames;
 use isophote_engine::{Class, ImageId, PlanBuilder};
 
-/// What flows through a port.
+/// Kind of image that flows through a port.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 pub enum ImageKind {
     /// RGBA, gamma-encoded, not premultiplied, inside a graph.
@@ -68,7 +68,7 @@ impl ImageKind {
 pub struct Port {
     /// Stable name.
     pub id: &'static str,
-    /// What it takes or gives.
+    /// Kind of image that it takes or gives.
     pub kind: ImageKind,
     /// True when the node works without it.
     pub optional: bool,
@@ -89,9 +89,9 @@ pub struct NodeSpec {
     pub doc: &'static str,
     /// Sections of the thesis, such as "3.4".
     pub section: &'static str,
-    /// What it reads; see [`NodeSpec::ports`].
+    /// Inputs; see [`NodeSpec::ports`].
     pub inputs: &'static [Port],
-    /// What it gives.
+    /// Output.
     pub output: Port,
     /// Its own parameters; see [`NodeSpec::params`].
     pub own_params: &'static [Param],
@@ -137,7 +137,7 @@ pub(crate) const RENEWAL: Param = Param::int("renewal", "Renewal", 8, [0, 16])
          leaves marks on the screen.",
     );
 
-/// How much of a node's result is used; every node from colour to colour has it.
+/// Share of a node's result that is used; every node from colour to colour has it.
 pub const MASK: Port = Port {
     id: "mask",
     kind: ImageKind::Scalar,
@@ -145,7 +145,7 @@ pub const MASK: Port = Port {
     doc: "How much of the result is used, 0..=1, times `mix`; all of it when open.",
 };
 
-/// What an artist painted for a node to follow; every node from colour to colour has it.
+/// Map that an artist painted for a node to follow; every node from colour to colour has it.
 pub const FLOW: Port = Port {
     id: "flow",
     kind: ImageKind::Flow,
@@ -153,7 +153,7 @@ pub const FLOW: Port = Port {
     doc: "A flow map (see `flow_map`) that bends the orientation which the node follows, if it follows any.",
 };
 
-/// What a node that is steady over time knows of its frames.
+/// Knowledge that a node which is steady over time has of its frames.
 const TIME_PORTS: [Port; 4] = [
     Port {
         id: "motion",
@@ -268,7 +268,7 @@ fn even(renewal: i32) -> i32 {
     renewal - renewal % 2
 }
 
-/// What a node sees while it describes its work: its parameter values, its connected inputs and the
+/// Scope in which a node describes its work: its parameter values, its connected inputs and the
 /// plan to add passes to.
 ///
 /// Asking for a parameter or port that the node did not declare is a mistake in the node and panics;
@@ -294,11 +294,11 @@ pub(crate) struct Around<'a> {
     pub inputs: &'a [Option<ImageId>],
     /// The frame of the first of them, counted from the one that is computed.
     pub first: i32,
-    /// What is known of other frames.
+    /// Knowledge of other frames.
     pub frames: Frames,
     /// The first number of the stages that the node keeps.
     pub stage: u32,
-    /// Whether motion that carries marks enters the graph.
+    /// True where motion that carries marks enters the graph.
     pub is_carrying: bool,
 }
 
@@ -349,7 +349,7 @@ impl Scope<'_> {
         }
     }
 
-    /// How large the rendered picture is against the full-size one.
+    /// Size of the rendered picture against the full-size one.
     pub fn scale(&self) -> f32 {
         self.scale
     }

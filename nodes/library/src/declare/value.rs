@@ -27,7 +27,7 @@ pub struct Choice {
     pub id: &'static str,
     /// For people.
     pub label: &'static str,
-    /// What it does.
+    /// Purpose.
     pub doc: &'static str,
 }
 
@@ -36,11 +36,11 @@ pub struct Choice {
 pub struct Form {
     /// The value: a switch is 0 or 1, a choice the index of its option.
     pub numbers: [f64; 4],
-    /// How many of the numbers count; the others are 0.
+    /// Count of the numbers that are meant; the others are 0.
     pub count: usize,
     /// The value of the same type with other numbers. They must be in range.
     pub value: fn([f64; 4]) -> Value,
-    /// What a person may write, for a parameter with this range and these options.
+    /// Spelling that a person may use, for a parameter with this range and these options.
     pub expected: fn([f32; 2], &[Choice]) -> String,
     /// The numbers that a person wrote.
     pub read: fn(&str, &[Choice]) -> Option<[f64; 4]>,

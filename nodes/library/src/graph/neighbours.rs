@@ -1,4 +1,4 @@
-//! How many frames around its own a frame of a graph depends on.
+//! Number of frames around its own that a frame of a graph depends on.
 
 use crate::frames::{Frames, MOST_FRAMES};
 use crate::graph::{Graph, GraphInput, Source};

@@ -98,7 +98,7 @@ impl Describing<'_> {
         self.builder.set_frame(0);
     }
 
-    /// What the node `reader` reads at a frame.
+    /// Image that the node `reader` reads at a frame.
     fn source(&mut self, source: Source, frame: i32, reader: usize) -> Option<ImageId> {
         let is_besides = |input| is_read_besides(input) || self.scratch.besides[reader];
         match source {
@@ -168,7 +168,7 @@ fn find_besides(graph: &Graph, besides: &mut Vec<bool>) {
     }
 }
 
-/// Whether an input is read at frames whose stages are handed in.
+/// True for an input that is read at frames whose stages are handed in.
 const fn is_read_besides(input: GraphInput) -> bool {
     matches!(input, GraphInput::Depth | GraphInput::ObjectId | GraphInput::Motion | GraphInput::MotionForward)
 }

@@ -21,7 +21,7 @@ impl Lowered {
     /// The program of `region`.
     ///
     /// # Errors
-    /// What planning and lowering fail with.
+    /// As planning and lowering.
     pub fn new(graph: Graph, request: Request, region: Rect) -> Result<Self> {
         let planned = Planned::new(&graph, request)?;
         let program = Program::lower_as(planned.plan(), region, graph.precision())?;
@@ -41,7 +41,7 @@ impl Lowered {
     /// Makes the program that of another region.
     ///
     /// # Errors
-    /// What lowering fails with; the program is then the old one.
+    /// As lowering; the program is then the old one.
     pub fn set_region(&mut self, region: Rect) -> Result<()> {
         self.program = Program::lower_as(self.planned.plan(), region, self.graph.precision())?;
         self.region = region;
@@ -53,7 +53,7 @@ impl Lowered {
         self.program.operations(self.planned.plan())
     }
 
-    /// What it was made for.
+    /// Request that it was made for.
     pub fn request(&self) -> &Request {
         self.planned.request()
     }
@@ -61,7 +61,7 @@ impl Lowered {
     /// Takes over the parameters of `graph`, and a request of the same size.
     ///
     /// # Errors
-    /// What planning and lowering fail with; the program is then the old one.
+    /// As planning and lowering; the program is then the old one.
     pub fn update(&mut self, graph: Graph, request: Option<Request>) -> Result<Change> {
         let before = *self.planned.request();
         if let Some(request) = request {

@@ -6,7 +6,7 @@ use crate::plan::describe::{Scratch, describe};
 use crate::plan::request::Request;
 use isophote_engine::{Plan, PlanBuilder};
 
-/// What an update of a plan came to.
+/// Result of an update of a plan.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Change {
     /// Only uniform bytes were rewritten, in place.
@@ -70,7 +70,7 @@ impl Planned {
         &self.plan
     }
 
-    /// What it was made for.
+    /// Request that it was made for.
     pub fn request(&self) -> &Request {
         &self.request
     }

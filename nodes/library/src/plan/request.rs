@@ -1,10 +1,10 @@
-//! What a host asks for: one picture, its spaces and what is known beside its colour.
+//! Request of a host for one picture: its spaces and what is known beside its colour.
 
 use crate::colour_space::{ColourSpace, Encoding};
 use crate::frames::Frames;
 pub use crate::guides::Guides;
 
-/// What a host wants of a graph.
+/// Request of a host for one picture of a graph.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Request {
     /// Size of the rendered picture, in pixels.
@@ -34,7 +34,7 @@ pub struct Request {
     pub emission: bool,
     /// Which guides the host has; connections to others count as open.
     pub guides: Guides,
-    /// What there is of neighbouring frames.
+    /// Neighbouring frames that are there.
     pub frames: Frames,
     /// Longest motion from frame to frame that counts, pixels of the full-size picture; longer ones are unknown. It
     /// bounds how far tiles read their neighbours.

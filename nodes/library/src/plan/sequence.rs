@@ -115,7 +115,7 @@ impl<T> Sequence<T> {
         (output, gone)
     }
 
-    /// Whether stages of a frame of this number are kept.
+    /// True where stages of a frame of this number are kept.
     pub fn knows(&self, frame: i64) -> bool {
         self.store.knows(frame)
     }

@@ -13,7 +13,7 @@ use inverse_search::Start;
 use isophote_engine::{ImageId, PlanBuilder};
 
 crate::declare::choice::choice! {
-    /// How much is done for precision.
+    /// Effort that is made for precision.
     pub enum Quality {
         /// At half the resolution, with few steps.
         Fast ("fast", "Fast"),

@@ -31,7 +31,7 @@ impl Run<'_> {
     /// Computes the region of all outputs, on a device or on the CPU.
     ///
     /// # Errors
-    /// Those of the executors.
+    /// As the executors.
     pub fn execute(
         &self,
         cpu: &mut Option<CpuExecutor>,

@@ -170,7 +170,7 @@ fn forgotten_scale(picture: &Bounds, bounds: &Bounds) -> f64 {
     if is_scale { share } else { 1.0 }
 }
 
-/// Whether `bounds` are `picture` made smaller, to a pixel.
+/// True where `bounds` are `picture` made smaller, to a pixel.
 fn is_smaller_whole(picture: &Bounds, bounds: &Bounds) -> bool {
     let side = |b: &Bounds, i: usize| f64::from(b[i + 2]) - f64::from(b[i]);
     let share = side(bounds, 0) / side(picture, 0).max(1.0);

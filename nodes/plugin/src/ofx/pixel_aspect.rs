@@ -114,7 +114,7 @@ pub struct SquarePixels {
 }
 
 impl SquarePixels {
-    /// Those of a frame, as fine as its finer side; `None` where its own pixels are square.
+    /// Pixels of a frame, as fine as its finer side; `None` where its own pixels are square.
     pub fn of(frame: &Frame) -> Option<Self> {
         let [x, y] = frame.ratio;
         (!frame.is_square()).then(|| Self::new(frame, x.max(y).min(MOST * x.min(y))))

@@ -22,7 +22,7 @@ crate::kernel!(edge_candidates {
 });
 
 crate::declare::choice::choice! {
-    /// What makes an edge.
+    /// Criterion of an edge.
     pub enum Method {
         /// A maximum of the gradient's magnitude along the gradient.
         Maximum = 0 ("canny", "Canny"),

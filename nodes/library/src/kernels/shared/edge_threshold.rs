@@ -6,7 +6,7 @@ use isophote_engine::fearless_simd::{Simd, f32x8, mask32x8, prelude::*};
 use isophote_engine::math::Elementary;
 
 crate::declare::choice::choice! {
-    /// How a response becomes an edge image.
+    /// Threshold that makes an edge image of a response.
     pub enum Threshold {
         /// Not at all: the response, in units of L.
         None = 0 ("none", "None"),

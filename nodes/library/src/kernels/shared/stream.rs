@@ -16,7 +16,7 @@ use isophote_engine::View;
 use isophote_engine::fearless_simd::{Simd, f32x8, mask32x8, prelude::*};
 
 crate::declare::choice::numbered! {
-    /// How a stream line goes on to its next point.
+    /// Step of a stream line to its next point.
     pub enum Integrator {
         /// Euler's method, first order (2.176, 2.177).
         Euler = 0,

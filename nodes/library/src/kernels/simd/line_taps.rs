@@ -265,7 +265,7 @@ impl LineTaps {
         centres
     }
 
-    /// Those of the lines through the eight pixels from (x, y) on that step along an axis, x or y. `along`
+    /// Taps of the lines through the eight pixels from (x, y) on that step along an axis, x or y. `along`
     /// are these lines, and there is one; `slope` and `steps` are those of all.
     #[inline(always)]
     pub fn lines<S: Simd>(

@@ -34,9 +34,9 @@ crate::kernel!(bilateral {
 pub enum Window {
     /// All within the radius.
     Disc,
-    /// Those on the pixel's row.
+    /// Neighbours on the pixel's row.
     Row,
-    /// Those on the pixel's column.
+    /// Neighbours on the pixel's column.
     Column,
 }
 

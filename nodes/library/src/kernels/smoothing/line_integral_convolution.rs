@@ -42,7 +42,7 @@ crate::kernel!(line_integral_convolution {
 });
 
 crate::declare::choice::choice! {
-    /// How the length of the lines is adapted.
+    /// Adaptation of the length of the lines.
     pub enum Adapt {
         /// Not at all.
         None = 0 ("none", "Off"),

@@ -54,9 +54,9 @@ crate::declare::choice::choice! {
 pub enum Neighbours {
     /// All nearer than the radius.
     Disc,
-    /// Those in the same row.
+    /// Neighbours in the same row.
     Row,
-    /// Those in the same column.
+    /// Neighbours in the same column.
     Column,
 }
 

@@ -30,7 +30,7 @@ crate::kernel!(guide_tensor {
 });
 
 crate::declare::choice::numbered! {
-    /// What a guide image holds.
+    /// Contents of a guide image.
     pub enum Guide {
         /// View-space normal and validity.
         Normal = 0,

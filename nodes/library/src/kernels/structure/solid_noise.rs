@@ -45,7 +45,7 @@ pub struct Marks {
 }
 
 impl Marks {
-    /// Those of white noise, uniform in 0..=1, that a Gaussian of `sigma` pixels of the rendered picture has smoothed, which
+    /// Moments of white noise, uniform in 0..=1, that a Gaussian of `sigma` pixels of the rendered picture has smoothed, which
     /// is rendered at `scale` of its full size.
     pub fn of_smoothed_noise(sigma: f32, scale: f32, seed: u32) -> Self {
         // Proxies show the full picture made smaller: its contrast is that at full size.

@@ -33,7 +33,7 @@ crate::kernel!(tensor_display {
 });
 
 crate::declare::choice::numbered! {
-    /// What to show.
+    /// Quantity to show.
     pub enum Show {
         /// Hue by the double angle of the tangent, saturation by anisotropy.
         Orientation = 0,

@@ -57,7 +57,7 @@ impl Context {
     /// The pipeline of `shader`, compiled at the first request.
     ///
     /// # Errors
-    /// Those of [`Kernel::new`].
+    /// As [`Kernel::new`].
     pub fn kernel(&self, shader: &Arc<Shader>) -> Outcome<Arc<Kernel>> {
         if let Some(known) = lock(&self.kernels).get(shader) {
             return Ok(Arc::clone(known));

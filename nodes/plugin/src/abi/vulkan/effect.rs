@@ -26,7 +26,7 @@ impl Effect {
     /// The effect of a graph.
     ///
     /// # Errors
-    /// Those of planning, of the shaders and of memory.
+    /// As planning, shaders and memory.
     pub fn new(context: &Arc<Context>, graph: Graph, request: Request) -> Outcome<Self> {
         context.advance()?;
         let lowered = lowered(graph, request)?;
