@@ -342,12 +342,12 @@ extern "C" {
 // Recordings of one effect that may wait to be executed at once.
 #define ISOPHOTE_VULKAN_MOST_IN_FLIGHT 64
 
-// What a call came to: `ISOPHOTE_OK`, which is 0, or what went wrong. The message of the last failure is asked of the object that
+// Status of a call: `ISOPHOTE_OK`, which is 0, or what went wrong. The message of the last failure is asked of the object that
 // the call was made on (`graph_error`, `plan_error`, `device_error`); calls that make an object
 // hand it out in their `error` argument.
 typedef uint32_t IsophoteStatus;
 
-// What flows through a port. One of `ISOPHOTE_KIND_...`.
+// Kind of image that flows through a port. One of `ISOPHOTE_KIND_...`.
 typedef uint32_t IsophoteKind;
 
 // An input or output of a node.
@@ -356,7 +356,7 @@ typedef struct IsophotePort {
   const char *id;
   // One sentence.
   const char *doc;
-  // What it takes or gives.
+  // Kind of image that it takes or gives.
   IsophoteKind kind;
   // 1 when the node works without it.
   uint32_t optional;
@@ -420,7 +420,7 @@ typedef struct IsophoteNode {
   const char *doc;
   // Sections of the thesis, such as "3.4".
   const char *section;
-  // What it reads.
+  // Inputs.
   const struct IsophotePort *inputs;
   // Its parameters, in the order of panels.
   const struct IsophoteParam *params;
@@ -428,7 +428,7 @@ typedef struct IsophoteNode {
   uint32_t input_count;
   // Number of parameters.
   uint32_t param_count;
-  // What it gives.
+  // Output.
   struct IsophotePort output;
 } IsophoteNode;
 
@@ -472,13 +472,13 @@ typedef struct IsophoteValue {
   double number[4];
 } IsophoteValue;
 
-// What the numbers of a colour picture mean; the result has the same space. One of `ISOPHOTE_SPACE_...`.
+// Colour space of the numbers of a picture; the result has the same. One of `ISOPHOTE_SPACE_...`.
 typedef uint32_t IsophoteSpace;
 
-// How colour relates to alpha, in the input and in the result. One of `ISOPHOTE_ALPHA_...`.
+// Relation of colour to alpha, in the input and in the result. One of `ISOPHOTE_ALPHA_...`.
 typedef uint32_t IsophoteAlpha;
 
-// What the host wants of a graph.
+// Request of the host for one picture of a graph.
 typedef struct IsophoteRequest {
   // Width of the whole rendered picture in pixels, 1 to 65536.
   uint32_t width;
@@ -489,7 +489,7 @@ typedef struct IsophoteRequest {
   float scale;
   // Space of the colour that enters and leaves.
   IsophoteSpace space;
-  // How colour relates to alpha, entering and leaving.
+  // Relation of colour to alpha, entering and leaving.
   IsophoteAlpha alpha;
   // Which guides the host has, a sum of `ISOPHOTE_GUIDE_...`; connections to others count as open.
   // `process` goes by the images that it is given instead.
@@ -522,11 +522,11 @@ typedef struct IsophoteRect {
   int32_t y1;
 } IsophoteRect;
 
-// What a region of the result reads of an input.
+// Part of an input that a region of the result reads.
 typedef struct IsophoteSupport {
   // The pixels needed, cut at the picture's border; empty when the input is not read.
   struct IsophoteRect window;
-  // How far outside a region pixels are read at most, whichever region; 0 when `global`.
+  // Greatest distance outside a region at which pixels are read, whichever region; 0 when `global`.
   uint32_t halo;
   // 1 when every pixel may depend on the whole picture, so that it cannot be cut into tiles.
   uint32_t global;
@@ -538,7 +538,7 @@ typedef struct IsophoteDevice {
   uint64_t id;
 } IsophoteDevice;
 
-// How one sample of an image is stored, in the machine's byte order. One of `ISOPHOTE_SAMPLE_...`.
+// Storage of one sample of an image, in the machine's byte order. One of `ISOPHOTE_SAMPLE_...`.
 typedef uint32_t IsophoteSample;
 
 // Pixels of the host's, to be read. The library never keeps the pointer.
@@ -555,7 +555,7 @@ typedef struct IsophoteImage {
   // Bytes from one row to the one below it: at least a row's bytes, or at most the negative of
   // them where rows go upwards in memory.
   ptrdiff_t row_stride;
-  // How a sample is stored.
+  // Storage of a sample.
   IsophoteSample sample;
   // Samples a pixel: 1 (grey), 3 (RGB) or 4 (RGBA); 2 to 4 of motions.
   uint32_t channels;
@@ -584,7 +584,7 @@ typedef struct IsophoteTarget {
   void *data;
   // Bytes from one row to the one below it.
   ptrdiff_t row_stride;
-  // How a sample is stored.
+  // Storage of a sample.
   IsophoteSample sample;
   // Samples a pixel: 1, 3 or 4.
   uint32_t channels;
@@ -613,7 +613,7 @@ typedef void (ISOPHOTE_ABI *IsophoteProgress)(void *user, float done);
 // Asked often, on any thread; another value than 0 stops the work.
 typedef uint32_t (ISOPHOTE_ABI *IsophoteCancelled)(void *user);
 
-// What one pass took on the CPU.
+// Cost of one pass on the CPU.
 typedef struct IsophotePassTime {
   // The kernel; valid during the call.
   const char *kernel;
@@ -631,7 +631,7 @@ typedef struct IsophotePassTime {
 // the library. On a device it is not called.
 typedef void (ISOPHOTE_ABI *IsophoteMeasured)(void *user, const struct IsophotePassTime *pass);
 
-// How work is done and watched. Callbacks may be null, must return normally (no exception, no
+// Threads and callbacks of a call. Callbacks may be null, must return normally (no exception, no
 // longjmp), and may themselves call the library.
 typedef struct IsophoteControl {
   // Handed to every callback.
@@ -663,10 +663,10 @@ typedef struct IsophotePlan {
   uint64_t id;
 } IsophotePlan;
 
-// What an update of a plan came to. One of `ISOPHOTE_CHANGE_...`.
+// Result of an update of a plan. One of `ISOPHOTE_CHANGE_...`.
 typedef uint32_t IsophoteChange;
 
-// What a texture of a plan is for. One of `ISOPHOTE_ROLE_...`.
+// Purpose of a texture of a plan. One of `ISOPHOTE_ROLE_...`.
 typedef uint32_t IsophoteRole;
 
 // Texel format of a texture of a plan. One of `ISOPHOTE_FORMAT_...`.
@@ -676,7 +676,7 @@ typedef uint32_t IsophoteFormat;
 typedef struct IsophoteTexture {
   // Name of an input (`color`, `normal`, `depth`, `object_id`) or output (`output`); otherwise null.
   const char *name;
-  // What it is for.
+  // Purpose.
   IsophoteRole role;
   // Format of its texels. An input may have any format of as many channels that is read as floats.
   IsophoteFormat format;
@@ -722,7 +722,7 @@ typedef struct IsophotePass {
 // Language of a shader. One of `ISOPHOTE_LANGUAGE_...`.
 typedef uint32_t IsophoteLanguage;
 
-// What is bound at a binding of a shader. One of `ISOPHOTE_BINDING_...`.
+// Kind of resource at a binding of a shader. One of `ISOPHOTE_BINDING_...`.
 typedef uint32_t IsophoteBindingKind;
 
 // Where a binding of a kernel is found in a shader of some language.
@@ -731,7 +731,7 @@ typedef struct IsophoteBinding {
   const char *name;
   // Number in the kernel, group 0: 0 the grid, 1 the parameters, from 2 the inputs, then the outputs.
   uint32_t binding;
-  // What is bound.
+  // Kind of resource.
   IsophoteBindingKind kind;
   // WGSL and SPIR-V: the binding of group or set 0, the same as `binding`. HLSL: the register, `b#`
   // for uniforms, `t#` for sampled, `u#` for storage. MSL: the index among buffers for uniforms,
@@ -968,13 +968,13 @@ typedef struct IsophoteApi {
 // of that number. The table is the library's and valid until the library is unloaded.
 typedef const struct IsophoteApi *(ISOPHOTE_ABI *IsophoteEntry)(uint32_t abi_version);
 
-// What is kept of a sequence of frames. Its number is never 0.
+// State that is kept of a sequence of frames. Its number is never 0.
 typedef struct IsophoteSequence {
   // The handle.
   uint64_t id;
 } IsophoteSequence;
 
-// How the library asks for the images of frames.
+// Callback by which the library asks for the images of frames.
 typedef struct IsophoteFrames {
   // Handed to both functions.
   void *user;
@@ -987,7 +987,7 @@ typedef struct IsophoteFrames {
   void (ISOPHOTE_ABI *release)(void *user, const char *input, int64_t frame, const struct IsophoteImage *image);
 } IsophoteFrames;
 
-// What a plan for frames in order reads and gives besides its images of one frame.
+// Images that a plan for frames in order reads and gives besides those of one frame.
 //
 // The plan's textures of stages: an output "stage0" is what the frame found, an input "stage0@-1" what the frame before
 // did, and so on. A host hands each frame's outputs to the frames after it, and other inputs, such as "depth@-1",
@@ -1041,7 +1041,7 @@ typedef struct IsophoteSequenceApi {
                                 struct IsophotePlan *plan);
 } IsophoteSequenceApi;
 
-// How precisely graphics devices compute a graph. One of `ISOPHOTE_PRECISION_...`.
+// Precision in which graphics devices compute a graph. One of `ISOPHOTE_PRECISION_...`.
 typedef uint32_t IsophotePrecision;
 
 // The functions of the extension "isophote.precision/1". Tags and ownership are those of `IsophoteApi`.
@@ -1185,7 +1185,7 @@ typedef struct IsophotePresetsApi {
                                  uint32_t *count);
 } IsophotePresetsApi;
 
-// What a device must be created with.
+// Features and extensions that a device must be created with.
 typedef struct IsophoteVulkanNeeds {
   // Features to enable, a sum of `ISOPHOTE_VULKAN_...` bits.
   uint32_t features;
