@@ -323,6 +323,27 @@ fn what_is_taken_back_is_lost_no_more_and_what_was_saved_before_is_again() {
     assert_eq!(session.looks.unsaved(), [0]);
 }
 
+/// Frames of large pictures take seconds where the processor draws them.
+#[test]
+fn a_click_counts_however_long_a_frame_takes() {
+    let folder = folder();
+    prepare(folder.path());
+    let mut session = session(&["cartoon".as_ref()], &folder.path().join("photo.png"));
+    session.work.exported = Some(0.5);
+    session.leave();
+    let mut harness = shown(session);
+    let pos = harness.get_by_role_and_label(Role::Button, "Close when it is done").rect().center();
+    harness.event(egui::Event::PointerMoved(pos));
+    harness.step();
+    for pressed in [true, false] {
+        let (button, modifiers) = (egui::PointerButton::Primary, egui::Modifiers::NONE);
+        harness.event(egui::Event::PointerButton { pos, button, pressed, modifiers });
+        // A quarter of a second each.
+        (0..8).for_each(|_| harness.step());
+    }
+    assert_eq!(harness.state().dialogs.leaving, Leaving::Waits);
+}
+
 #[test]
 fn a_question_about_an_export_alone_offers_to_wait_and_what_fails_meanwhile_is_seen() {
     let folder = folder();

@@ -27,8 +27,10 @@ pub const EMPTY: Color32 = Color32::from_gray(22);
 /// Behind the text of a button that goes on with something.
 pub const CHOSEN: Color32 = Color32::from_rgb(62, 88, 116);
 
-/// Gives a context this look.
+/// Gives a context this look, and clicks that count however long a button is held: where frames are slow, the shortest
+/// is as long as a frame.
 pub fn apply(context: &egui::Context) {
+    context.options_mut(|options| options.input_options.max_click_duration = f64::INFINITY);
     context.set_theme(egui::Theme::Dark);
     context.set_visuals_of(egui::Theme::Dark, visuals());
     context.all_styles_mut(|style| {
