@@ -65,39 +65,66 @@ pub fn flat_normals(primitive: &mut Primitive) {
     }
 }
 
+/// Faces that share their normals at a position.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
+pub enum Smoothing {
+    /// Those that meet at an angle below the crease.
+    Crease,
+    /// None.
+    Flat,
+    /// Those of the same number, whatever their angle.
+    Group(u32),
+}
+
 /// Smooth normals: the mean of the faces around a position, weighted by their angles there so that it does
 /// not matter how polygons were cut into triangles. Faces that meet this one at more than `crease` radians
 /// are left out, so that the sharp edges of machined parts stay sharp. The time grows with the number of faces,
 /// however many of them meet at a point.
 pub fn smooth_normals(primitive: &mut Primitive, crease: f32) {
+    normals(primitive, crease, &[], &[]);
+}
+
+/// As [`smooth_normals`], where `smoothing` says for every triangle which others share its normals, and vertices that
+/// are `given` keep theirs; triangles and vertices beyond the ends of both share by the crease, and are not given.
+pub fn normals(primitive: &mut Primitive, crease: f32, smoothing: &[Smoothing], given: &[bool]) {
     let position =
         |primitive: &Primitive, index: u32| Vec3::from(primitive.vertices[index as usize].position);
+    let shared = |face: usize| smoothing.get(face).copied().unwrap_or(Smoothing::Crease);
     // Vertices that differ only in texture coordinates still share their surface, hence the key. Adding 0
     // makes one of the two zeros.
-    let key = |p: Vec3| (p + 0.0).to_array().map(f32::to_bits);
-    let mut around: HashMap<[u32; 3], Vec<(Vec3, f32)>> = HashMap::new();
+    let key = |p: Vec3, smoothing: Smoothing| ((p + 0.0).to_array().map(f32::to_bits), smoothing);
+    let mut around: HashMap<([u32; 3], Smoothing), Vec<(Vec3, f32)>> = HashMap::new();
     let mut faces = Vec::with_capacity(primitive.indices.len() / 3);
-    for corners in primitive.indices.as_chunks::<3>().0 {
+    for (face, corners) in primitive.indices.as_chunks::<3>().0.iter().enumerate() {
         let [a, b, c] = corners.map(|i| position(primitive, i));
         let normal = (b - a).cross(c - a).normalize_or_zero();
         faces.push(normal);
         for [p, q, r] in [[a, b, c], [b, c, a], [c, a, b]] {
             let angle = corner_angle(p, q, r);
-            around.entry(key(p)).or_default().push((normal, angle));
+            around.entry(key(p, shared(face))).or_default().push((normal, angle));
         }
     }
     for faces in around.values_mut().filter(|faces| faces.len() > MOST_FACES) {
         *faces = by_direction(faces);
     }
-    let cosine = crease.cos();
     let mut corner_normals = Vec::with_capacity(primitive.indices.len());
     for (slot, &corner) in primitive.indices.iter().enumerate() {
         let own = faces[slot / 3];
-        let neighbours = around.get(&key(position(primitive, corner)));
+        if given.get(corner as usize) == Some(&true) {
+            corner_normals.push(Vec3::from(primitive.vertices[corner as usize].normal));
+            continue;
+        }
+        let smoothing = shared(slot / 3);
+        let least = match smoothing {
+            Smoothing::Crease => crease.cos(),
+            Smoothing::Flat => f32::INFINITY,
+            Smoothing::Group(_) => f32::NEG_INFINITY,
+        };
+        let neighbours = around.get(&key(position(primitive, corner), smoothing));
         let sum: Vec3 = neighbours
             .into_iter()
             .flatten()
-            .filter(|(normal, _)| normal.dot(own) >= cosine)
+            .filter(|(normal, _)| normal.dot(own) >= least)
             .map(|(normal, angle)| *normal * *angle)
             .sum();
         corner_normals.push(sum.normalize_or(own.normalize_or(Vec3::Z)));
@@ -142,7 +169,8 @@ fn weld_normals(primitive: &mut Primitive, corner_normals: &[Vec3]) {
     let mut known: HashMap<(u32, [u32; 3]), u32> = HashMap::new();
     let mut vertices = Vec::with_capacity(primitive.vertices.len());
     for (slot, index) in primitive.indices.iter_mut().enumerate() {
-        let normal = corner_normals[slot].to_array();
+        // Adding 0 makes one of the two zeros.
+        let normal = (corner_normals[slot] + 0.0).to_array();
         *index = *known.entry((*index, normal.map(f32::to_bits))).or_insert_with(|| {
             let mut vertex = primitive.vertices[*index as usize];
             vertex.normal = normal;

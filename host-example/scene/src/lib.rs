@@ -20,6 +20,7 @@
 pub mod animation;
 pub mod budget;
 pub mod camera;
+mod decode;
 pub mod environment;
 pub mod floor;
 pub mod geometry;
@@ -28,9 +29,12 @@ mod load;
 pub mod material;
 pub mod model;
 pub mod obj_file;
+mod phrases;
 pub mod pose;
+mod references;
 #[cfg(test)]
 mod tests;
+mod texels;
 
 pub use material::{AlphaMode, ColorSpace, Image, Material, Sampler, Texture, TextureUse};
 pub use model::{

@@ -149,21 +149,12 @@ fn faults_of_the_text_are_found_by_their_line() {
 }
 
 #[test]
-fn missing_foreign_and_damaged_files_are_errors() {
+fn missing_and_foreign_files_are_errors() {
     let length = Builder::triangle().bytes.len();
     for uri in ["gone.bin", "../gone.bin", "/etc/hostname", "http://localhost/a.bin", "data:;base64,@@@"] {
         let mut b = Builder::triangle();
         b.json["buffers"] = json!([{"byteLength": length, "uri": uri}]);
         assert_clear(&b.load().expect_err(uri), uri);
-    }
-    let whole = png();
-    for length in [8, 20, whole.len() / 2, whole.len() - 14] {
-        let mut b = Builder::triangle();
-        let view = b.view(&whole[..length]);
-        b.push("images", json!({"bufferView": view, "mimeType": "image/png", "name": "bark"}));
-        let error = b.load().expect_err("a damaged image");
-        assert_clear(&error, "a damaged image");
-        assert!(error.to_string().contains("'bark'"), "{error}");
     }
     let folder = tempfile::tempdir().unwrap();
     for name in ["scene.gltf", "scene.obj", "scene.fbx", "scene."] {
@@ -171,6 +162,37 @@ fn missing_foreign_and_damaged_files_are_errors() {
     }
     fs::create_dir(folder.path().join("scene.glb")).unwrap();
     assert_clear(&Scene::load(&folder.path().join("scene.glb"), None).expect_err("a folder"), "a folder");
+}
+
+#[test]
+fn textures_that_cannot_be_read_leave_their_material_plain() {
+    let textured = |image: fn(&mut Builder) -> Value| {
+        let mut b = Builder::triangle();
+        let image = image(&mut b);
+        b.push("images", image);
+        b.push("textures", json!({"source": 0, "name": "skin"}));
+        b.push("materials", json!({"pbrMetallicRoughness": {"baseColorTexture": {"index": 0}}}));
+        b.primitive()["material"] = json!(0);
+        let scene = b.load().unwrap_or_else(|e| panic!("{e}"));
+        assert_eq!(scene.materials[0].base_color_texture, None);
+        let [warning] = &scene.warnings[..] else { panic!("{:?}", scene.warnings) };
+        assert!(warning.contains("texture 'skin'"), "{warning}");
+        assert_eq!(warning.lines().count(), 1, "{warning}");
+        warning.clone()
+    };
+    fn cut(b: &mut Builder, length: usize) -> Value {
+        let view = b.view(&png()[..length]);
+        json!({"bufferView": view, "mimeType": "image/png", "name": "bark"})
+    }
+    let damaged: [fn(&mut Builder) -> Value; 3] =
+        [|b| cut(b, 8), |b| cut(b, 20), |b| cut(b, png().len() - 14)];
+    for image in damaged {
+        assert!(textured(image).contains("'bark'"));
+    }
+    assert!(textured(|_| json!({"uri": "gone.png"})).contains("'gone.png'"));
+    assert!(textured(|_| json!({"uri": "http://localhost/a.png"})).contains("is a URL"));
+    assert!(textured(|_| json!({"uri": "data:;base64,@@@"})).contains("data URI"));
+    assert!(textured(|_| json!({"bufferView": 0, "mimeType": "image/png"})).contains("unknown format"));
 }
 
 #[test]
