@@ -93,7 +93,7 @@ pub fn normals(primitive: &mut Primitive, crease: f32, smoothing: &[Smoothing], 
     // Vertices that differ only in texture coordinates still share their surface, hence the key. Adding 0
     // makes one of the two zeros.
     let key = |p: Vec3, smoothing: Smoothing| ((p + 0.0).to_array().map(f32::to_bits), smoothing);
-    let mut around: HashMap<([u32; 3], Smoothing), Vec<(Vec3, f32)>> = HashMap::new();
+    let mut around: HashMap<_, Vec<(Vec3, f32)>> = HashMap::new();
     let mut faces = Vec::with_capacity(primitive.indices.len() / 3);
     for (face, corners) in primitive.indices.as_chunks::<3>().0.iter().enumerate() {
         let [a, b, c] = corners.map(|i| position(primitive, i));

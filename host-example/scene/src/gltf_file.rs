@@ -26,6 +26,7 @@ use self::accessors::{Accessors, Pick};
 use self::animations::Outline;
 use super::budget::Budget;
 use super::model::{Camera, Light, LightKind, Node, Projection, Scene, Skin, Transform};
+use super::references::Folders;
 use isophote_files::error::{Error, Result};
 
 /// Loads a file. The order of nodes, draws and bounds are left to [`Scene::load`].
@@ -130,10 +131,12 @@ fn read_buffers(
     mut blob: Option<Vec<u8>>,
     budget: &Budget,
 ) -> Result<Vec<Vec<u8>>> {
+    // Textures may lie beside the folder; numbers are read from what belongs to the scene without doubt.
+    let folders = Folders::of(path);
     let mut buffers = Vec::new();
     for buffer in document.buffers() {
         let bytes = match buffer.source() {
-            gltf::buffer::Source::Uri(uri) => sources::read_uri(path, uri, budget)
+            gltf::buffer::Source::Uri(uri) => sources::read_uri(&folders, uri, budget)
                 .map_err(|(problem, fix)| Error::file(path, problem, fix))?,
             gltf::buffer::Source::Bin => blob.take().unwrap_or_default(),
         };

@@ -6,6 +6,7 @@
 //! | [`material`] | materials, textures and images |
 //! | [`geometry`] | normals and tangents where a file has none |
 //! | [`gltf_file`], [`obj_file`] | readers of the two formats |
+//! | `references`, `decode`, `texels` | files that a scene names, and images of textures |
 //! | [`budget`] | bytes that a file may take |
 //! | [`animation`], [`pose`] | animations, and places of all nodes at a time |
 //! | [`camera`] | cameras, framing and orbits |

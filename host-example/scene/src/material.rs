@@ -126,6 +126,8 @@ pub struct Material {
     pub metallic: f32,
     /// Perceptual roughness; multiplies the texture's green channel.
     pub roughness: f32,
+    /// Share of light that what is no metal reflects straight back.
+    pub reflectance: f32,
     /// Linear texture of roughness (G) and metalness (B).
     pub metallic_roughness_texture: Option<TextureUse>,
     /// Linear tangent-space normal map.
@@ -157,6 +159,7 @@ impl Default for Material {
             base_color_texture: None,
             metallic: 1.0,
             roughness: 1.0,
+            reflectance: 0.04,
             metallic_roughness_texture: None,
             normal_texture: None,
             normal_scale: 1.0,

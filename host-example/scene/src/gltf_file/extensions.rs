@@ -6,12 +6,14 @@ use serde_json::Value;
 use crate::phrases::list;
 
 /// Extensions that are understood.
-const UNDERSTOOD: [&str; 12] = [
+const UNDERSTOOD: [&str; 14] = [
     "EXT_mesh_gpu_instancing",
     "EXT_texture_webp",
     "KHR_lights_punctual",
     "KHR_materials_emissive_strength",
+    "KHR_materials_ior",
     "KHR_materials_pbrSpecularGlossiness",
+    "KHR_materials_specular",
     "KHR_materials_transmission",
     "KHR_materials_unlit",
     "KHR_mesh_quantization",
@@ -22,15 +24,13 @@ const UNDERSTOOD: [&str; 12] = [
 ];
 
 /// Extensions that add a layer to a surface, which is shown without that layer.
-const LAYERS: [&str; 9] = [
+const LAYERS: [&str; 7] = [
     "KHR_materials_anisotropy",
     "KHR_materials_clearcoat",
     "KHR_materials_diffuse_transmission",
     "KHR_materials_dispersion",
-    "KHR_materials_ior",
     "KHR_materials_iridescence",
     "KHR_materials_sheen",
-    "KHR_materials_specular",
     "KHR_materials_volume",
 ];
 

@@ -11,6 +11,7 @@ use super::sources;
 use crate::decode::decode;
 use crate::material::{Sampler, Texture, Wrap};
 use crate::model::Scene;
+use crate::references::Folders;
 use isophote_files::error::{Error, Result};
 
 /// Reads images and textures into the scene.
@@ -18,7 +19,9 @@ use isophote_files::error::{Error, Result};
 /// # Errors
 /// [`Error::Input`] for images that take the scene beyond its memory.
 pub fn read(path: &Path, document: &gltf::Document, accessors: &Accessors, scene: &mut Scene) -> Result<()> {
-    let mut images = Images { path, document, accessors, known: vec![None; document.images().len()] };
+    let folders = Folders::around(path);
+    let mut images =
+        Images { path, folders, document, accessors, known: vec![None; document.images().len()] };
     for texture in document.textures() {
         let mut problems = Vec::new();
         let mut image = None;
@@ -87,6 +90,7 @@ fn wrap(mode: WrappingMode) -> Wrap {
 /// Images of a document, each read once.
 struct Images<'a> {
     path: &'a Path,
+    folders: Folders,
     document: &'a gltf::Document,
     accessors: &'a Accessors<'a>,
     /// The scene's image of each of the document's that was read, or a clause saying why there is none.
@@ -124,7 +128,7 @@ impl Images<'_> {
 
     fn bytes(&self, source: &gltf::json::Image) -> std::result::Result<Cow<'_, [u8]>, String> {
         match (&source.uri, source.buffer_view) {
-            (Some(uri), _) => sources::read_uri(self.path, uri, self.accessors.budget)
+            (Some(uri), _) => sources::read_uri(&self.folders, uri, self.accessors.budget)
                 .map(Cow::Owned)
                 .map_err(|(problem, _)| problem),
             (None, Some(view)) => self

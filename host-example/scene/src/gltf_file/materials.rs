@@ -19,6 +19,7 @@ pub fn read(document: &gltf::Document, accessors: &Accessors, scene: &mut Scene)
     for material in document.materials() {
         let name = label(material.name(), material.index().unwrap_or_default());
         let mut converted = read_material(&name, &material, scene);
+        reflect(&material, &mut converted);
         if let Some(surface) = material.pbr_specular_glossiness() {
             glossiness.apply(&name, &surface, &mut converted, scene);
         }
@@ -58,6 +59,7 @@ fn read_material(name: &str, material: &gltf::Material, scene: &mut Scene) -> Ma
         metallic: if lost { 0.0 } else { surface.metallic_factor() },
         roughness: if lost { 0.6 * surface.roughness_factor() } else { surface.roughness_factor() },
         metallic_roughness_texture,
+        reflectance: Material::default().reflectance,
         normal_scale: normal.as_ref().map_or(1.0, |n| n.scale()),
         normal_texture: normal
             .and_then(|n| take(n.texture().index(), n.tex_coord(), n.extension_value(TRANSFORM))),
@@ -73,6 +75,18 @@ fn read_material(name: &str, material: &gltf::Material, scene: &mut Scene) -> Ma
         },
         double_sided: material.double_sided(),
         unlit: material.unlit(),
+    }
+}
+
+/// Reflectance of KHR_materials_ior and KHR_materials_specular, whose colour is taken as its mean.
+fn reflect(source: &gltf::Material, material: &mut Material) {
+    if let Some(ior) = source.ior().filter(|ior| *ior >= 0.0) {
+        material.reflectance = ((ior - 1.0) / (ior + 1.0)).powi(2).min(1.0);
+    }
+    if let Some(specular) = source.specular() {
+        let color = Vec3::from(specular.specular_color_factor()).element_sum() / 3.0;
+        let share = specular.specular_factor().clamp(0.0, 1.0);
+        material.reflectance = (material.reflectance * color.max(0.0)).min(1.0) * share;
     }
 }
 

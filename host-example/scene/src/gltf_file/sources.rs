@@ -1,7 +1,5 @@
 //! Sources of the bytes of a glTF: data URIs, and files near it.
 
-use std::path::Path;
-
 use crate::budget::{Budget, TOO_LARGE};
 use crate::references::Folders;
 
@@ -49,11 +47,11 @@ fn base64_decode(text: &[u8]) -> Option<Vec<u8>> {
 /// Reason why there are no bytes behind a URI, and advice.
 pub type Refusal = (String, &'static str);
 
-/// The bytes behind a URI of the glTF file `owner`.
+/// The bytes behind a URI, which may name a file in these folders.
 ///
 /// # Errors
 /// [`Refusal`] when the URI is refused, or its file missing, unreadable or too large.
-pub fn read_uri(owner: &Path, uri: &str, budget: &Budget) -> Result<Vec<u8>, Refusal> {
+pub fn read_uri(folders: &Folders, uri: &str, budget: &Budget) -> Result<Vec<u8>, Refusal> {
     if let Some(data) = uri.strip_prefix("data:") {
         budget
             .take(data.len(), 1)
@@ -68,7 +66,6 @@ pub fn read_uri(owner: &Path, uri: &str, budget: &Budget) -> Result<Vec<u8>, Ref
     }
     // Escapes are what the format asks for; a name without any may hold their sign as it is.
     let decoded = percent_decode(uri).and_then(|bytes| String::from_utf8(bytes).ok());
-    let folders = Folders::around(owner);
     let opened = match decoded.filter(|name| name != uri) {
         Some(name) => folders.open(&name).or_else(|problem| folders.open(uri).map_err(|_| problem)),
         None => folders.open(uri),
@@ -102,8 +99,9 @@ mod tests {
             fs::write(folder.path().join(name), name).unwrap();
         }
         let owner = folder.path().join("scene.gltf");
-        let read =
-            |uri: &str| read_uri(&owner, uri, &Budget::default()).map(|b| String::from_utf8(b).unwrap());
+        let read = |uri: &str| {
+            read_uri(&Folders::around(&owner), uri, &Budget::default()).map(|b| String::from_utf8(b).unwrap())
+        };
         for (uri, name) in [
             ("a%20b.bin", "a b.bin"),
             ("a b.bin", "a b.bin"),
@@ -137,7 +135,8 @@ mod tests {
                     fs::rename(&spare, inner.join("a.bin")).unwrap();
                 }
             });
-            let tries = (0..20_000).filter_map(|_| read_uri(&owner, "a.bin", &Budget::default()).ok());
+            let tries =
+                (0..20_000).filter_map(|_| read_uri(&Folders::of(&owner), "a.bin", &Budget::default()).ok());
             let read: Vec<Vec<u8>> = tries.collect();
             done.store(true, Ordering::Relaxed);
             read

@@ -142,10 +142,10 @@ impl Reader {
                 self.material = Some(index);
             }
             "l" | "p" => {}
-            "curv" | "curv2" | "surf" | "call" | "csh" | "usemap" => {
-                if !self.unknown.iter().any(|known| known == keyword) {
-                    self.unknown.push(keyword.to_owned());
-                }
+            "curv" | "curv2" | "surf" | "call" | "csh" | "usemap"
+                if !self.unknown.iter().any(|known| known == keyword) =>
+            {
+                self.unknown.push(keyword.to_owned());
             }
             _ => {}
         }
@@ -214,10 +214,9 @@ impl Reader {
         }
         if !self.unknown.is_empty() {
             let verb = if self.unknown.len() == 1 { "is" } else { "are" };
-            self.out.warnings.push(format!(
-                "statements {} of the file are of no kind that {verb} shown; they are left out",
-                list(&self.unknown)
-            ));
+            self.out
+                .warnings
+                .push(format!("{} of the file {verb} not understood and left out", list(&self.unknown)));
         }
         let values = || self.out.colors.iter().flatten().filter(|value| value.is_finite());
         // Some scanners write bytes.

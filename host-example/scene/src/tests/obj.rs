@@ -180,6 +180,62 @@ fn vertices_without_a_colour_are_white_among_coloured_ones() {
 }
 
 #[test]
+fn colours_of_vertices_are_srgb_and_take_the_place_of_grey() {
+    let scene = load_bytes("a.obj", b"v 0 0 0 0.5 0.5 0.5\nv 1 0 0 0 0 0\nv 0 1 0 1 1 1\nf 1 2 3\n").unwrap();
+    let primitive = scene.primitive(&scene.draws[0]);
+    assert!((primitive.vertices[0].color[0] - 0.214).abs() < 1e-3, "{:?}", primitive.vertices[0].color);
+    assert_eq!(scene.materials[primitive.material].base_color.to_array(), [1.0; 4]);
+}
+
+#[test]
+fn texts_of_old_and_other_systems_are_read() {
+    let text = "mtllib \u{e4}.mtl\rv 0 0 0\rv 1 0 0\rv 0 1 0\rusemtl gr\u{fc}n\rf 1 2 3\r";
+    let mtl = "newmtl gr\u{fc}n\rKd 0 0.5 0\r";
+    let wide = |text: &str| text.encode_utf16().flat_map(u16::to_le_bytes).collect::<Vec<u8>>();
+    let latin = |text: &str| text.chars().map(|c| c as u8).collect::<Vec<u8>>();
+    let utf8 = |text: &str| text.as_bytes().to_vec();
+    for (obj, mtl) in [(wide(text), utf8(mtl)), (latin(text), wide(mtl)), (utf8(text), latin(mtl))] {
+        let scene = load(&[("a.obj", &obj), ("\u{e4}.mtl", &mtl)], None).unwrap();
+        assert!(scene.warnings.is_empty(), "{:?}", scene.warnings);
+        let material = &scene.materials[scene.primitive(&scene.draws[0]).material];
+        assert_eq!(material.base_color.to_array(), [0.0, 0.5, 0.0, 1.0]);
+    }
+}
+
+#[test]
+fn metals_emission_and_normals_come_from_the_mtl() {
+    let obj = format!("mtllib a.mtl\n{TRIANGLE}vt 0 0\nusemtl wall\nf 1/1 2/1 3/1\n");
+    let mtl = "newmtl wall\nPm 1\nPr 0.3\nmap_Ke glow.png\nmap_Bump -bm 0.5 bumps.png\nmap_Pr glow.png # a comment\n";
+    let bumps = {
+        let mut bytes = std::io::Cursor::new(Vec::new());
+        let image = image::RgbImage::from_pixel(2, 2, image::Rgb([128, 128, 255]));
+        image.write_to(&mut bytes, image::ImageFormat::Png).unwrap();
+        bytes.into_inner()
+    };
+    let files: [(&str, &[u8]); 4] =
+        [("a.obj", obj.as_bytes()), ("a.mtl", mtl.as_bytes()), ("glow.png", &png()), ("bumps.png", &bumps)];
+    let scene = load(&files, None).unwrap();
+    assert!(scene.warnings.is_empty(), "{:?}", scene.warnings);
+    let material = &scene.materials[scene.primitive(&scene.draws[0]).material];
+    assert_eq!((material.metallic, material.roughness, material.normal_scale), (1.0, 0.3, 0.5));
+    assert_eq!(material.emissive, Vec3::ONE);
+    assert!(material.emissive_texture.is_some() && material.normal_texture.is_some());
+    let rough = material.metallic_roughness_texture.expect("a texture of roughness");
+    let image = &scene.images[scene.textures[rough.texture].image.unwrap()];
+    assert_eq!(image.rgba[..4], [255, 1, 255, 255], "roughness is the luminance of the map");
+}
+
+#[test]
+fn normals_of_the_file_stay_beside_those_that_are_computed() {
+    let obj = format!("{TRIANGLE}v 0 0 1\nvn 0 1 0\nf 1//1 2//1 3//1\nf 1 3 4\n");
+    let scene = load_bytes("a.obj", obj.as_bytes()).unwrap();
+    let primitive = scene.primitive(&scene.draws[0]);
+    let normal = |slot: usize| primitive.vertices[primitive.indices[slot] as usize].normal;
+    assert_eq!([normal(0), normal(1), normal(2)], [[0.0, 1.0, 0.0]; 3]);
+    assert_eq!([normal(3), normal(4), normal(5)], [[1.0, 0.0, 0.0]; 3]);
+}
+
+#[test]
 fn statements_go_on_after_a_backslash() {
     let obj = "v 0 0 0\nv 1 0 \\\n0\nv 0 1 0\r\nv 1 1 0\nf 1 \\\r\n 2 4 \\\n 3\n";
     let scene = load_bytes("a.obj", obj.as_bytes()).unwrap();
