@@ -72,6 +72,9 @@ const OBJECT: usize = 1024;
 fn parse(bytes: &[u8], budget: &Budget) -> std::result::Result<Parsed, String> {
     if bytes.starts_with(b"glTF") {
         let word = |at: usize| bytes.get(at..at + 4).map(|b| u32::from_le_bytes([b[0], b[1], b[2], b[3]]));
+        if word(4) == Some(1) {
+            return Err("is binary glTF version 1, not 2".into());
+        }
         let length = word(8).filter(|_| bytes.len() >= 20).ok_or("is cut off within its header")?;
         if (length as usize) < 20 || length as usize > bytes.len() {
             return Err(format!("claims {length} bytes but has {}", bytes.len()));

@@ -2,6 +2,7 @@
 
 use serde::Deserialize;
 use serde_json::Value;
+use serde_json::value::RawValue;
 
 use crate::phrases::list;
 
@@ -90,21 +91,22 @@ pub fn check(used: &[String], required: &[String]) -> Result<Vec<String>, String
 /// A clause that names the version.
 pub fn check_version(text: &str) -> Result<(), String> {
     #[derive(Deserialize)]
-    struct Outline {
+    struct Outline<'a> {
         #[serde(default)]
         asset: Value,
-        #[serde(default)]
-        meshes: Value,
-        #[serde(default)]
-        nodes: Value,
+        #[serde(borrow)]
+        meshes: Option<&'a RawValue>,
+        #[serde(borrow)]
+        nodes: Option<&'a RawValue>,
     }
+    let is_table = |list: Option<&RawValue>| list.is_some_and(|list| list.get().starts_with('{'));
     // What is no document at all is told where all of it is read.
     let Ok(outline) = serde_json::from_str::<Outline>(text) else { return Ok(()) };
     let version = match &outline.asset["version"] {
         Value::String(version) => version.clone(),
         Value::Number(version) => version.to_string(),
         // Version 1 can do without, and has tables where version 2 has lists.
-        _ if outline.meshes.is_object() || outline.nodes.is_object() => "1.0".to_owned(),
+        _ if is_table(outline.meshes) || is_table(outline.nodes) => "1.0".to_owned(),
         _ => return Ok(()),
     };
     if version.split('.').next() == Some("2") {

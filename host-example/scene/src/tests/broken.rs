@@ -29,6 +29,9 @@ fn files_cut_off_anywhere_are_errors() {
 #[test]
 fn lying_headers_are_errors() {
     let whole = Builder::triangle().glb();
+    let mut old = whole.clone();
+    old[4] = 1;
+    assert!(load_bytes("scene.glb", &old).unwrap_err().to_string().contains("glTF version 1"));
     for (at, value) in [(4, 1u32), (8, 0), (8, 4), (8, 19), (8, u32::MAX), (12, 0), (12, u32::MAX), (16, 7)] {
         let mut bytes = whole.clone();
         bytes[at..at + 4].copy_from_slice(&value.to_le_bytes());
