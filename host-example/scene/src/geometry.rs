@@ -68,11 +68,11 @@ pub fn flat_normals(primitive: &mut Primitive) {
 /// Faces that share their normals at a position.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 pub enum Smoothing {
-    /// Those that meet at an angle below the crease.
-    Crease,
-    /// None.
-    Flat,
-    /// Those of the same number, whatever their angle.
+    /// Those of one part that meet at an angle below the crease.
+    Crease(usize),
+    /// The triangles of one polygon.
+    Flat(usize),
+    /// Those of one group, whatever their angle.
     Group(u32),
 }
 
@@ -81,55 +81,46 @@ pub enum Smoothing {
 /// are left out, so that the sharp edges of machined parts stay sharp. The time grows with the number of faces,
 /// however many of them meet at a point.
 pub fn smooth_normals(primitive: &mut Primitive, crease: f32) {
-    normals(primitive, crease, &[], &[]);
+    let position = |index: &u32| Vec3::from(primitive.vertices[*index as usize].position);
+    let corners: Vec<Vec3> = primitive.indices.iter().map(position).collect();
+    let normals = corner_normals(&corners, crease, |_| Smoothing::Crease(0));
+    weld_normals(primitive, &normals);
 }
 
-/// As [`smooth_normals`], where `smoothing` says for every triangle which others share its normals, and vertices that
-/// are `given` keep theirs; triangles and vertices beyond the ends of both share by the crease, and are not given.
-pub fn normals(primitive: &mut Primitive, crease: f32, smoothing: &[Smoothing], given: &[bool]) {
-    let position =
-        |primitive: &Primitive, index: u32| Vec3::from(primitive.vertices[index as usize].position);
-    let shared = |face: usize| smoothing.get(face).copied().unwrap_or(Smoothing::Crease);
+/// Normals of the corners of triangles, three of each, as those of [`smooth_normals`], where `smoothing` says for every
+/// triangle which others share them.
+pub fn corner_normals(corners: &[Vec3], crease: f32, smoothing: impl Fn(usize) -> Smoothing) -> Vec<Vec3> {
     // Vertices that differ only in texture coordinates still share their surface, hence the key. Adding 0
     // makes one of the two zeros.
     let key = |p: Vec3, smoothing: Smoothing| ((p + 0.0).to_array().map(f32::to_bits), smoothing);
     let mut around: HashMap<_, Vec<(Vec3, f32)>> = HashMap::new();
-    let mut faces = Vec::with_capacity(primitive.indices.len() / 3);
-    for (face, corners) in primitive.indices.as_chunks::<3>().0.iter().enumerate() {
-        let [a, b, c] = corners.map(|i| position(primitive, i));
+    let mut faces = Vec::with_capacity(corners.len() / 3);
+    for (face, [a, b, c]) in corners.as_chunks::<3>().0.iter().copied().enumerate() {
         let normal = (b - a).cross(c - a).normalize_or_zero();
         faces.push(normal);
         for [p, q, r] in [[a, b, c], [b, c, a], [c, a, b]] {
             let angle = corner_angle(p, q, r);
-            around.entry(key(p, shared(face))).or_default().push((normal, angle));
+            around.entry(key(p, smoothing(face))).or_default().push((normal, angle));
         }
     }
     for faces in around.values_mut().filter(|faces| faces.len() > MOST_FACES) {
         *faces = by_direction(faces);
     }
-    let mut corner_normals = Vec::with_capacity(primitive.indices.len());
-    for (slot, &corner) in primitive.indices.iter().enumerate() {
-        let own = faces[slot / 3];
-        if given.get(corner as usize) == Some(&true) {
-            corner_normals.push(Vec3::from(primitive.vertices[corner as usize].normal));
-            continue;
-        }
-        let smoothing = shared(slot / 3);
-        let least = match smoothing {
-            Smoothing::Crease => crease.cos(),
-            Smoothing::Flat => f32::INFINITY,
-            Smoothing::Group(_) => f32::NEG_INFINITY,
-        };
-        let neighbours = around.get(&key(position(primitive, corner), smoothing));
-        let sum: Vec3 = neighbours
+    let cosine = crease.cos();
+    let normal = |(slot, corner): (usize, &Vec3)| {
+        let (own, smoothing) = (faces[slot / 3], smoothing(slot / 3));
+        let sharp = matches!(smoothing, Smoothing::Crease(_));
+        let sum: Vec3 = around
+            .get(&key(*corner, smoothing))
             .into_iter()
             .flatten()
-            .filter(|(normal, _)| normal.dot(own) >= least)
+            .filter(|(normal, _)| !sharp || normal.dot(own) >= cosine)
             .map(|(normal, angle)| *normal * *angle)
             .sum();
-        corner_normals.push(sum.normalize_or(own.normalize_or(Vec3::Z)));
-    }
-    weld_normals(primitive, &corner_normals);
+        // Adding 0 makes one of the two zeros.
+        sum.normalize_or(own.normalize_or(Vec3::Z)) + 0.0
+    };
+    corners.iter().enumerate().map(normal).collect()
 }
 
 /// Faces around one position up to which all are compared with each other. Poles and fans can have far more.
@@ -169,8 +160,7 @@ fn weld_normals(primitive: &mut Primitive, corner_normals: &[Vec3]) {
     let mut known: HashMap<(u32, [u32; 3]), u32> = HashMap::new();
     let mut vertices = Vec::with_capacity(primitive.vertices.len());
     for (slot, index) in primitive.indices.iter_mut().enumerate() {
-        // Adding 0 makes one of the two zeros.
-        let normal = (corner_normals[slot] + 0.0).to_array();
+        let normal = corner_normals[slot].to_array();
         *index = *known.entry((*index, normal.map(f32::to_bits))).or_insert_with(|| {
             let mut vertex = primitive.vertices[*index as usize];
             vertex.normal = normal;

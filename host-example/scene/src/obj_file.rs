@@ -16,9 +16,9 @@ use std::path::Path;
 use glam::Vec4;
 
 use self::materials::{Loader, for_colors, named_texture, plain_material};
-use self::primitives::primitive;
+use self::primitives::{primitive, triangles};
 use self::statements::text_of;
-use self::surfaces::{Surfaces, surfaces};
+use self::surfaces::{Face, Surfaces, surfaces};
 use super::budget::{Budget, TOO_LARGE};
 use super::material::TextureUse;
 use super::model::{Mesh, Node, Scene};
@@ -73,34 +73,31 @@ pub fn load(path: &Path, texture: Option<&Path>, budget: &Budget) -> Result<Scen
     Ok(scene)
 }
 
-/// Adds a mesh for each run of faces of one object and one material.
+/// Adds a mesh for each run of triangles of one object and one material.
 fn add_meshes(surfaces: &Surfaces, names: &HashMap<&str, usize>, scene: &mut Scene) {
     let plain = scene.materials.len() - 1;
     let indices = surfaces.materials.iter().map(|name| names.get(name.as_str()).copied().unwrap_or(plain));
     let indices: Vec<usize> = indices.collect();
-    let material = |name: Option<usize>| name.map_or(plain, |name| indices[name]);
+    let material = |face: &Face| face.material.map_or(plain, |name| indices[name]);
     let mut colored: HashMap<usize, usize> = HashMap::new();
-    for faces in
-        surfaces.faces.chunk_by(|a, b| a.object == b.object && material(a.material) == material(b.material))
-    {
-        let mut index = material(faces[0].material);
-        if !surfaces.colors.is_empty() {
-            index = *colored.entry(index).or_insert_with(|| {
-                let Some(white) = for_colors(&scene.materials[index]) else { return index };
-                scene.materials.push(white);
-                scene.materials.len() - 1
-            });
-        }
-        let primitive = primitive(surfaces, faces, index);
-        if primitive.indices.is_empty() {
-            continue;
-        }
+    for faces in surfaces.faces.chunk_by(|a, b| a.object == b.object) {
         let name = match surfaces.objects[faces[0].object].as_str() {
             "" => "unnamed_object",
             name => name,
         };
-        let mesh = Some(scene.meshes.len());
-        scene.meshes.push(Mesh { name: name.to_owned(), primitives: vec![primitive], weights: Vec::new() });
-        scene.nodes.push(Node { name: name.to_owned(), mesh, ..Node::default() });
+        for part in triangles(surfaces, faces, material).chunk_by(|a, b| a.material == b.material) {
+            let mut index = part[0].material;
+            if !surfaces.colors.is_empty() {
+                index = *colored.entry(index).or_insert_with(|| {
+                    let Some(white) = for_colors(&scene.materials[index]) else { return index };
+                    scene.materials.push(white);
+                    scene.materials.len() - 1
+                });
+            }
+            let mesh = Some(scene.meshes.len());
+            let primitives = vec![primitive(surfaces, part, index)];
+            scene.meshes.push(Mesh { name: name.to_owned(), primitives, weights: Vec::new() });
+            scene.nodes.push(Node { name: name.to_owned(), mesh, ..Node::default() });
+        }
     }
 }

@@ -4,7 +4,6 @@
 use std::collections::HashMap;
 
 use super::statements::{number, statements, words};
-use crate::geometry::Smoothing;
 use crate::phrases::list;
 
 /// A corner of a face: places from 1 in the lists of positions, texture coordinates and normals; 0 is none.
@@ -18,6 +17,17 @@ pub struct Corner {
     pub normal: u32,
 }
 
+/// Smoothing of a face.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Group {
+    /// The file has not said anything yet.
+    Unsaid,
+    /// None.
+    Off,
+    /// That of this number.
+    Number(u32),
+}
+
 /// A face.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Face {
@@ -28,7 +38,7 @@ pub struct Face {
     /// Index of the name of its material.
     pub material: Option<usize>,
     /// Smoothing group.
-    pub smoothing: Smoothing,
+    pub smoothing: Group,
 }
 
 /// Content of a file.
@@ -94,7 +104,7 @@ pub fn surfaces(text: &str) -> Result<Surfaces, String> {
         out: Surfaces { objects: vec![String::new()], ..Surfaces::default() },
         materials: HashMap::new(),
         material: None,
-        smoothing: Smoothing::Crease,
+        smoothing: Group::Unsaid,
         normals_missing: None,
         unknown: Vec::new(),
     };
@@ -113,7 +123,7 @@ struct Reader {
     /// Index of each name of a material.
     materials: HashMap<String, usize>,
     material: Option<usize>,
-    smoothing: Smoothing,
+    smoothing: Group,
     /// The first normal that there is not, in words.
     normals_missing: Option<String>,
     /// Statements that are left out.
@@ -232,12 +242,12 @@ impl Reader {
 }
 
 /// A smoothing group: its number, or `off`.
-fn smoothing(rest: &str) -> Result<Smoothing, String> {
+fn smoothing(rest: &str) -> Result<Group, String> {
     let word = words(rest).next().unwrap_or("off");
     Ok(match word {
-        "off" | "0" => Smoothing::Flat,
-        "on" => Smoothing::Group(1),
-        word => Smoothing::Group(
+        "off" | "0" => Group::Off,
+        "on" => Group::Number(1),
+        word => Group::Number(
             word.parse::<f64>().map_err(|_| format!("takes a number or off, not '{word}'"))?.abs() as u32,
         ),
     })
@@ -296,9 +306,9 @@ mod tests {
         assert_eq!(
             read.faces,
             [
-                face(0..3, 0, 0, Smoothing::Crease),
-                face(3..6, 0, 1, Smoothing::Group(3)),
-                face(6..10, 1, 1, Smoothing::Flat),
+                face(0..3, 0, 0, Group::Unsaid),
+                face(3..6, 0, 1, Group::Number(3)),
+                face(6..10, 1, 1, Group::Off),
             ]
         );
         assert_eq!(

@@ -226,6 +226,24 @@ fn metals_emission_and_normals_come_from_the_mtl() {
 }
 
 #[test]
+fn smoothing_groups_reach_into_other_materials() {
+    let roof =
+        "v -1 0 0\nv 0 0 0\nv 0 0 1\nv -1 0 1\nv 0 -1 0\nv 0 -1 1\nS\nf 1 4 3 2\nusemtl b\nf 2 3 6 5\n";
+    for (statement, smooth) in [("s 7", true), ("s off", false), ("# s 7", false)] {
+        let mtl: &[u8] = b"newmtl b\nKd 1 0 0\n";
+        let obj = format!("mtllib a.mtl\n{}", roof.replace('S', statement));
+        let scene = load(&[("a.obj", obj.as_bytes()), ("a.mtl", mtl)], None).unwrap();
+        assert_eq!(scene.draws.len(), 2);
+        for draw in &scene.draws {
+            let ridge = scene.primitive(draw).vertices.iter().find(|v| v.position == [0.0; 3]).unwrap();
+            let bent =
+                Vec3::from(ridge.normal).abs_diff_eq(Vec3::new(0.5f32.sqrt(), 0.5f32.sqrt(), 0.0), 1e-4);
+            assert_eq!(bent, smooth, "{statement}: {:?}", ridge.normal);
+        }
+    }
+}
+
+#[test]
 fn normals_of_the_file_stay_beside_those_that_are_computed() {
     let obj = format!("{TRIANGLE}v 0 0 1\nvn 0 1 0\nf 1//1 2//1 3//1\nf 1 3 4\n");
     let scene = load_bytes("a.obj", obj.as_bytes()).unwrap();
