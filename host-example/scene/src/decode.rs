@@ -213,6 +213,18 @@ mod tests {
     }
 
     #[test]
+    fn damaged_surfaces_are_no_panic() {
+        let file = blocks(b"DXT5", &[0x80; 16]);
+        for at in 0..file.len() {
+            for value in [0, 1, 0x7f, 0xff] {
+                let mut changed = file.clone();
+                changed[at] = value;
+                let _ = decode("a", &changed, &Budget::new(1 << 24));
+            }
+        }
+    }
+
+    #[test]
     fn other_formats_are_named() {
         for (bytes, format) in [
             (&b"\xabKTX 20\xbb\r\n\x1a\n"[..], "KTX2"),

@@ -68,11 +68,11 @@ pub fn flat_normals(primitive: &mut Primitive) {
 /// Faces that share their normals at a position.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 pub enum Smoothing {
-    /// Those of one part that meet at an angle below the crease.
+    /// Faces of one part that meet at an angle below the crease.
     Crease(usize),
-    /// The triangles of one polygon.
+    /// Triangles of one polygon.
     Flat(usize),
-    /// Those of one group, whatever their angle.
+    /// Faces of one group, whatever their angle.
     Group(u32),
 }
 

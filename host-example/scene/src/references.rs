@@ -8,7 +8,7 @@ use std::path::{Path, PathBuf};
 
 /// Folders in which files of a scene are looked for.
 pub struct Folders {
-    /// Those that names are relative to, tried in this order.
+    /// Folders that names are relative to, tried in this order.
     bases: Vec<PathBuf>,
     /// Files lie in this folder or below.
     folder: PathBuf,

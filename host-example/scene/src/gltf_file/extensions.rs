@@ -41,7 +41,7 @@ fn only_looks(extension: &str) -> bool {
         || matches!(extension, "KHR_animation_pointer" | "KHR_texture_basisu" | "EXT_texture_avif")
 }
 
-/// Says in one warning which extensions of a file are not understood.
+/// One warning that names all extensions of a file that are not understood, if there are any.
 ///
 /// # Errors
 /// A clause that names a demanded extension without which there is nothing to show.

@@ -22,9 +22,9 @@ pub struct Corner {
 pub enum Group {
     /// The file has not said anything yet.
     Unsaid,
-    /// None.
+    /// No group.
     Off,
-    /// That of this number.
+    /// Group of this number.
     Number(u32),
 }
 
@@ -62,7 +62,7 @@ pub struct Surfaces {
     pub materials: Vec<String>,
     /// Names of material libraries.
     pub libraries: Vec<String>,
-    /// What is not understood, in sentences.
+    /// Sentences about what is not understood.
     pub warnings: Vec<String>,
 }
 

@@ -237,9 +237,19 @@ fn no_value_makes_the_loader_panic() {
     );
     b.push("images", json!({"bufferView": view, "mimeType": "image/png"}));
     b.push("samplers", json!({"magFilter": 9729, "wrapS": 10497}));
-    b.push("textures", json!({"source": 0, "sampler": 0}));
+    b.push("textures", json!({"source": 0, "sampler": 0, "extensions": {"EXT_texture_webp": {"source": 0}}}));
+    let places = b.floats("VEC3", &[0.0, 0.0, 0.0, 1.0, 0.0, 0.0]);
+    let instances = json!({"attributes": {"TRANSLATION": places}});
+    let extensions = json!({"EXT_mesh_gpu_instancing": instances, "KHR_node_visibility": {"visible": true}});
+    b.json["nodes"][0]["children"] = json!([1, 2]);
+    b.push("nodes", json!({"mesh": 0, "skin": 0, "extensions": extensions}));
     let map = json!({"index": 0, "texCoord": 0, "extensions": {"KHR_texture_transform": {"offset": [0, 0]}}});
-    b.push("materials", json!({"normalTexture": map, "pbrMetallicRoughness": {"baseColorTexture": map}}));
+    b.push("materials", json!({"normalTexture": map, "pbrMetallicRoughness": {"baseColorTexture": map}, "extensions": {
+        "KHR_materials_pbrSpecularGlossiness": {"specularGlossinessTexture": map, "specularFactor": [1, 1, 1]},
+        "KHR_materials_transmission": {"transmissionFactor": 1, "transmissionTexture": map},
+        "KHR_materials_ior": {"ior": 1.5}, "KHR_materials_specular": {"specularFactor": 1}
+    }}));
+    b.json["extensionsUsed"] = json!(["KHR_materials_ior", "VENDOR_thing"]);
     let times = b.floats("SCALAR", &[0.0, 1.0]);
     let values = b.floats("SCALAR", &[0.0, 1.0]);
     b.push(
