@@ -11,7 +11,8 @@ struct Material {
     flags: u32,
     // Bit i: texture i uses the second set of coordinates.
     uv_sets: u32,
-    padding: u32,
+    // Share of light that what is no metal reflects straight back.
+    reflectance: f32,
     // Two rows of the affine transform of each texture's coordinates.
     transforms: array<vec4f, 10>,
 }

@@ -228,7 +228,7 @@ fn shaded(in: SurfaceInput, front: bool) -> vec4f {
         roughness = clamp(roughness, 0.06, 1.0);
         var s: Surface;
         s.diffuse = base.rgb * (1.0 - metallic);
-        s.specular = mix(vec3f(0.04), base.rgb, metallic);
+        s.specular = mix(vec3f(material.reflectance), base.rgb, metallic);
         s.alpha = sqrt(saturate(pow(roughness, 4.0) + variance));
         s.normal = normal;
         s.view = select(frame.backward.xyz, safe_normalize(frame.eye.xyz - in.position), frame.eye.w > 0.5);

@@ -75,7 +75,7 @@ pub struct MaterialBlock {
     pub alpha_cutoff: f32,
     pub flags: u32,
     pub uv_sets: u32,
-    pub padding: u32,
+    pub reflectance: f32,
     pub transforms: [Vec4; 10],
 }
 
@@ -96,6 +96,7 @@ impl MaterialBlock {
             emissive: material.emissive.extend(0.0),
             metallic: material.metallic,
             roughness: material.roughness,
+            reflectance: material.reflectance,
             normal_scale: material.normal_scale,
             occlusion_strength: material.occlusion_strength,
             alpha_cutoff: match material.alpha_mode {

@@ -73,9 +73,14 @@ impl Budget {
         self.files.take()
     }
 
+    /// True once the budget refused anything.
+    pub fn exceeded(&self) -> bool {
+        self.exceeded.get()
+    }
+
     /// [`TOO_LARGE`] if the budget refused anything, or else `otherwise`.
     pub fn fix(&self, otherwise: &'static str) -> &'static str {
-        if self.exceeded.get() { TOO_LARGE } else { otherwise }
+        if self.exceeded() { TOO_LARGE } else { otherwise }
     }
 }
 

@@ -65,44 +65,62 @@ pub fn flat_normals(primitive: &mut Primitive) {
     }
 }
 
+/// Faces that share their normals at a position.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
+pub enum Smoothing {
+    /// Faces of one part that meet at an angle below the crease.
+    Crease(usize),
+    /// Triangles of one polygon.
+    Flat(usize),
+    /// Faces of one group, whatever their angle.
+    Group(u32),
+}
+
 /// Smooth normals: the mean of the faces around a position, weighted by their angles there so that it does
 /// not matter how polygons were cut into triangles. Faces that meet this one at more than `crease` radians
 /// are left out, so that the sharp edges of machined parts stay sharp. The time grows with the number of faces,
 /// however many of them meet at a point.
 pub fn smooth_normals(primitive: &mut Primitive, crease: f32) {
-    let position =
-        |primitive: &Primitive, index: u32| Vec3::from(primitive.vertices[index as usize].position);
+    let position = |index: &u32| Vec3::from(primitive.vertices[*index as usize].position);
+    let corners: Vec<Vec3> = primitive.indices.iter().map(position).collect();
+    let normals = corner_normals(&corners, crease, |_| Smoothing::Crease(0));
+    weld_normals(primitive, &normals);
+}
+
+/// Normals of the corners of triangles, three of each, as those of [`smooth_normals`], where `smoothing` says for every
+/// triangle which others share them.
+pub fn corner_normals(corners: &[Vec3], crease: f32, smoothing: impl Fn(usize) -> Smoothing) -> Vec<Vec3> {
     // Vertices that differ only in texture coordinates still share their surface, hence the key. Adding 0
     // makes one of the two zeros.
-    let key = |p: Vec3| (p + 0.0).to_array().map(f32::to_bits);
-    let mut around: HashMap<[u32; 3], Vec<(Vec3, f32)>> = HashMap::new();
-    let mut faces = Vec::with_capacity(primitive.indices.len() / 3);
-    for corners in primitive.indices.as_chunks::<3>().0 {
-        let [a, b, c] = corners.map(|i| position(primitive, i));
+    let key = |p: Vec3, smoothing: Smoothing| ((p + 0.0).to_array().map(f32::to_bits), smoothing);
+    let mut around: HashMap<_, Vec<(Vec3, f32)>> = HashMap::new();
+    let mut faces = Vec::with_capacity(corners.len() / 3);
+    for (face, [a, b, c]) in corners.as_chunks::<3>().0.iter().copied().enumerate() {
         let normal = (b - a).cross(c - a).normalize_or_zero();
         faces.push(normal);
         for [p, q, r] in [[a, b, c], [b, c, a], [c, a, b]] {
             let angle = corner_angle(p, q, r);
-            around.entry(key(p)).or_default().push((normal, angle));
+            around.entry(key(p, smoothing(face))).or_default().push((normal, angle));
         }
     }
     for faces in around.values_mut().filter(|faces| faces.len() > MOST_FACES) {
         *faces = by_direction(faces);
     }
     let cosine = crease.cos();
-    let mut corner_normals = Vec::with_capacity(primitive.indices.len());
-    for (slot, &corner) in primitive.indices.iter().enumerate() {
-        let own = faces[slot / 3];
-        let neighbours = around.get(&key(position(primitive, corner)));
-        let sum: Vec3 = neighbours
+    let normal = |(slot, corner): (usize, &Vec3)| {
+        let (own, smoothing) = (faces[slot / 3], smoothing(slot / 3));
+        let sharp = matches!(smoothing, Smoothing::Crease(_));
+        let sum: Vec3 = around
+            .get(&key(*corner, smoothing))
             .into_iter()
             .flatten()
-            .filter(|(normal, _)| normal.dot(own) >= cosine)
+            .filter(|(normal, _)| !sharp || normal.dot(own) >= cosine)
             .map(|(normal, angle)| *normal * *angle)
             .sum();
-        corner_normals.push(sum.normalize_or(own.normalize_or(Vec3::Z)));
-    }
-    weld_normals(primitive, &corner_normals);
+        // Adding 0 makes one of the two zeros.
+        sum.normalize_or(own.normalize_or(Vec3::Z)) + 0.0
+    };
+    corners.iter().enumerate().map(normal).collect()
 }
 
 /// Faces around one position up to which all are compared with each other. Poles and fans can have far more.

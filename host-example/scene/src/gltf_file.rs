@@ -5,9 +5,14 @@
 
 mod accessors;
 mod animations;
+mod extensions;
+mod glossiness;
+mod images;
+mod instances;
 mod materials;
 mod meshes;
 mod sources;
+mod uses;
 
 use std::borrow::Cow;
 use std::fs::File;
@@ -21,30 +26,8 @@ use self::accessors::{Accessors, Pick};
 use self::animations::Outline;
 use super::budget::Budget;
 use super::model::{Camera, Light, LightKind, Node, Projection, Scene, Skin, Transform};
+use super::references::Folders;
 use isophote_files::error::{Error, Result};
-pub use sources::open;
-
-/// Extensions that are understood.
-const SUPPORTED: [&str; 5] = [
-    "KHR_lights_punctual",
-    "KHR_materials_emissive_strength",
-    "KHR_materials_unlit",
-    "KHR_mesh_quantization",
-    "KHR_texture_transform",
-];
-
-/// Extensions without which a scene still has its shape: a file may demand them and is shown without.
-fn only_looks(extension: &str) -> bool {
-    extension.starts_with("KHR_materials_")
-        || matches!(
-            extension,
-            "KHR_animation_pointer"
-                | "KHR_texture_basisu"
-                | "EXT_texture_webp"
-                | "MSFT_texture_dds"
-                | "KHR_xmp_json_ld"
-        )
-}
 
 /// Loads a file. The order of nodes, draws and bounds are left to [`Scene::load`].
 ///
@@ -61,9 +44,11 @@ pub fn load(path: &Path, budget: &Budget) -> Result<Scene> {
     let accessors = Accessors { buffers: &buffers, budget };
     let mut scene =
         Scene { cameras: read_cameras(&document), lights: read_lights(&document), ..Scene::empty(warnings) };
-    materials::read(path, &document, &accessors, &mut scene)?;
+    images::read(path, &document, &accessors, &mut scene)?;
+    materials::read(&document, &accessors, &mut scene);
     meshes::read(&document, &accessors, &mut scene).map_err(malformed)?;
     read_nodes(&document, budget, &mut scene).map_err(malformed)?;
+    instances::read(&document, &accessors, &mut scene).map_err(malformed)?;
     read_skins(&document, &accessors, &mut scene).map_err(malformed)?;
     animations::read(&document, &channels, &accessors, &mut scene).map_err(malformed)?;
     Ok(scene)
@@ -87,6 +72,9 @@ const OBJECT: usize = 1024;
 fn parse(bytes: &[u8], budget: &Budget) -> std::result::Result<Parsed, String> {
     if bytes.starts_with(b"glTF") {
         let word = |at: usize| bytes.get(at..at + 4).map(|b| u32::from_le_bytes([b[0], b[1], b[2], b[3]]));
+        if word(4) == Some(1) {
+            return Err("is binary glTF version 1, not 2".into());
+        }
         let length = word(8).filter(|_| bytes.len() >= 20).ok_or("is cut off within its header")?;
         if (length as usize) < 20 || length as usize > bytes.len() {
             return Err(format!("claims {length} bytes but has {}", bytes.len()));
@@ -104,21 +92,11 @@ fn parse(bytes: &[u8], budget: &Budget) -> std::result::Result<Parsed, String> {
     let count = |byte: u8| text.bytes().filter(|b| *b == byte).count();
     budget.take(count(b','), ENTRY)?;
     budget.take(count(b'{'), OBJECT)?;
+    extensions::check_version(text)?;
     let Outline { text, channels } = Outline::of(text).map_err(invalid)?;
     let mut root: json::Root = json::deserialize::from_str(&text).map_err(|e| invalid(e.to_string()))?;
-    if root.asset.version.split('.').next() != Some("2") {
-        return Err(format!("is glTF version {}, not 2.0", root.asset.version));
-    }
-    let mut warnings = Vec::new();
-    for extension in std::mem::take(&mut root.extensions_required) {
-        if SUPPORTED.contains(&extension.as_str()) {
-        } else if only_looks(&extension) {
-            warnings
-                .push(format!("the file demands {extension}, which is not supported; it is shown without"));
-        } else {
-            return Err(format!("demands the extension {extension}, which is not supported"));
-        }
-    }
+    let required = std::mem::take(&mut root.extensions_required);
+    let warnings = extensions::check(&root.extensions_used, &required)?;
     validate(&root)?;
     Ok(Parsed { document: gltf::Document::from_json_without_validation(root), channels, blob, warnings })
 }
@@ -156,10 +134,13 @@ fn read_buffers(
     mut blob: Option<Vec<u8>>,
     budget: &Budget,
 ) -> Result<Vec<Vec<u8>>> {
+    // Textures may lie beside the folder; numbers are read from what belongs to the scene without doubt.
+    let folders = Folders::of(path);
     let mut buffers = Vec::new();
     for buffer in document.buffers() {
         let bytes = match buffer.source() {
-            gltf::buffer::Source::Uri(uri) => sources::read_uri(path, uri, budget)?,
+            gltf::buffer::Source::Uri(uri) => sources::read_uri(&folders, uri, budget)
+                .map_err(|(problem, fix)| Error::file(path, problem, fix))?,
             gltf::buffer::Source::Bin => blob.take().unwrap_or_default(),
         };
         if bytes.len() < buffer.length() {
@@ -265,7 +246,11 @@ fn read_nodes(
     };
     let children: Vec<Vec<usize>> =
         document.nodes().map(|n| n.children().map(|c| c.index()).collect()).collect();
+    let hidden: Vec<bool> = document.nodes().map(|node| extensions::is_hidden(&node)).collect();
     while let Some(index) = pending.pop() {
+        if hidden[index] {
+            continue;
+        }
         if !std::mem::replace(&mut scene.nodes[index].visible, true) {
             pending.extend_from_slice(&children[index]);
         }

@@ -6,6 +6,7 @@
 //! | [`material`] | materials, textures and images |
 //! | [`geometry`] | normals and tangents where a file has none |
 //! | [`gltf_file`], [`obj_file`] | readers of the two formats |
+//! | `references`, `decode`, `texels` | files that a scene names, and images of textures |
 //! | [`budget`] | bytes that a file may take |
 //! | [`animation`], [`pose`] | animations, and places of all nodes at a time |
 //! | [`camera`] | cameras, framing and orbits |
@@ -20,6 +21,7 @@
 pub mod animation;
 pub mod budget;
 pub mod camera;
+mod decode;
 pub mod environment;
 pub mod floor;
 pub mod geometry;
@@ -28,9 +30,12 @@ mod load;
 pub mod material;
 pub mod model;
 pub mod obj_file;
+mod phrases;
 pub mod pose;
+mod references;
 #[cfg(test)]
 mod tests;
+mod texels;
 
 pub use material::{AlphaMode, ColorSpace, Image, Material, Sampler, Texture, TextureUse};
 pub use model::{

@@ -1,10 +1,6 @@
-//! Surfaces: materials, textures, samplers, and decoding of PNG and JPEG images.
-
-use std::io::Cursor;
+//! Surfaces: materials, textures and samplers.
 
 use glam::{Affine2, Vec2, Vec3, Vec4};
-
-use super::budget::Budget;
 
 /// Color space in which the bytes of an image are to be read.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
@@ -28,51 +24,7 @@ pub struct Image {
     pub rgba: Vec<u8>,
 }
 
-/// Problem that kept an image from being decoded.
-#[derive(Clone, Debug, PartialEq, Eq)]
-pub enum DecodeProblem {
-    /// A format that this program does not read; the scene can do without.
-    Unsupported(&'static str),
-    /// The file is damaged or too large.
-    Damaged(String),
-}
-
 impl Image {
-    /// Decodes PNG or JPEG, recognized by their first bytes.
-    ///
-    /// # Errors
-    /// [`DecodeProblem`]: another format, a damaged file, or one whose pixels are more than the budget.
-    pub fn decode(name: &str, bytes: &[u8], budget: &Budget) -> Result<Self, DecodeProblem> {
-        let format = match bytes {
-            [0x89, b'P', b'N', b'G', ..] => image::ImageFormat::Png,
-            [0xff, 0xd8, 0xff, ..] => image::ImageFormat::Jpeg,
-            [0xab, b'K', b'T', b'X', ..] => return Err(DecodeProblem::Unsupported("KTX2")),
-            [b'R', b'I', b'F', b'F', ..] => return Err(DecodeProblem::Unsupported("WebP")),
-            [b'D', b'D', b'S', b' ', ..] => return Err(DecodeProblem::Unsupported("DDS")),
-            [] => return Err(DecodeProblem::Damaged("the image is empty".into())),
-            _ => return Err(DecodeProblem::Unsupported("unknown")),
-        };
-        let reader = || {
-            let mut reader = image::ImageReader::with_format(Cursor::new(bytes), format);
-            let mut limits = image::Limits::default();
-            limits.max_image_width = Some(1 << 15);
-            limits.max_image_height = Some(1 << 15);
-            limits.max_alloc = Some(1 << 30);
-            reader.limits(limits);
-            reader
-        };
-        let damaged = |e: image::ImageError| DecodeProblem::Damaged(e.to_string());
-        let (width, height) = reader().into_dimensions().map_err(damaged)?;
-        budget.take(width as usize * height as usize, 4).map_err(DecodeProblem::Damaged)?;
-        let decoded = reader().decode().map_err(damaged)?.into_rgba8();
-        Ok(Self {
-            name: name.to_owned(),
-            width: decoded.width(),
-            height: decoded.height(),
-            rgba: decoded.into_raw(),
-        })
-    }
-
     /// An image of one colour.
     pub fn solid(name: &str, rgba: [u8; 4]) -> Self {
         Self { name: name.to_owned(), width: 1, height: 1, rgba: rgba.to_vec() }
@@ -174,6 +126,8 @@ pub struct Material {
     pub metallic: f32,
     /// Perceptual roughness; multiplies the texture's green channel.
     pub roughness: f32,
+    /// Share of light that what is no metal reflects straight back.
+    pub reflectance: f32,
     /// Linear texture of roughness (G) and metalness (B).
     pub metallic_roughness_texture: Option<TextureUse>,
     /// Linear tangent-space normal map.
@@ -205,6 +159,7 @@ impl Default for Material {
             base_color_texture: None,
             metallic: 1.0,
             roughness: 1.0,
+            reflectance: 0.04,
             metallic_roughness_texture: None,
             normal_texture: None,
             normal_scale: 1.0,

@@ -1,8 +1,13 @@
 //! Reading of Wavefront OBJ with its MTL, if any. Normals that the file does not have are averaged from its
-//! faces up to a crease angle. `tobj` parses both files, once they are brought into a form that it reads well.
+//! faces: those of a smoothing group, or where there are no groups, up to a crease angle. `tobj` parses the OBJ file,
+//! once it is brought into a form that it reads well.
 
+mod library;
 mod materials;
 mod normal_form;
+mod options;
+mod polygons;
+mod primitives;
 mod statements;
 
 use std::cell::RefCell;
@@ -11,18 +16,17 @@ use std::fs::File;
 use std::io::Cursor;
 use std::path::Path;
 
-use glam::{Vec3, Vec4};
+use glam::Vec4;
 
-use self::materials::{Loader, load_mtl, named_texture, plain_material};
-use self::normal_form::normal_form;
+use self::library::Definition;
+use self::materials::{Loader, for_colors, named_texture, plain_material};
+use self::normal_form::{Group, UNNAMED, normal_form, object};
+use self::primitives::{primitive, triangles};
+use self::statements::text_of;
 use super::budget::{Budget, TOO_LARGE};
-use super::geometry;
 use super::material::TextureUse;
-use super::model::{Mesh, Node, Primitive, Scene, Vertex};
+use super::model::{Mesh, Node, Scene};
 use isophote_files::error::{Error, Result};
-
-/// Faces that meet at more than this keep a sharp edge between them when normals are averaged.
-const CREASE: f32 = 60.0 * std::f32::consts::PI / 180.0;
 
 /// Memory of one corner of a face, here and in the parser.
 const CORNER: usize = 256;
@@ -41,89 +45,78 @@ pub fn load(path: &Path, texture: Option<&Path>, budget: &Budget) -> Result<Scen
     let invalid = |problem: String| {
         Error::file(path, format!("is not a valid OBJ file: {problem}"), "export the model again")
     };
-    // Names in old files are in any encoding; numbers and keywords are ASCII.
-    let (text, corners) = normal_form(&String::from_utf8_lossy(&bytes)).map_err(invalid)?;
+    let too_large = |problem: String| Error::file(path, problem, TOO_LARGE);
+    budget.take(bytes.len(), 2).map_err(too_large)?;
+    let text = text_of(&bytes);
     drop(bytes);
-    let counted = budget.take(text.len(), 1).and_then(|()| budget.take(corners, CORNER));
-    counted.map_err(|problem| Error::file(path, problem, TOO_LARGE))?;
-    let warnings = RefCell::new(Vec::new());
+    let form = normal_form(&text).map_err(invalid)?;
+    drop(text);
+    budget.take(form.text.len(), 1).and_then(|()| budget.take(form.corners, CORNER)).map_err(too_large)?;
+    let (definitions, warnings) = (RefCell::new(Vec::new()), RefCell::new(form.warnings));
     let options =
-        tobj::LoadOptions { single_index: true, triangulate: true, ignore_points: true, ignore_lines: true };
-    let (models, materials) = tobj::load_obj_buf(&mut Cursor::new(text.as_bytes()), &options, |name| {
-        load_mtl(path, name, budget, &warnings)
+        tobj::LoadOptions { single_index: false, triangulate: false, ..tobj::LoadOptions::default() };
+    let (models, _) = tobj::load_obj_buf(&mut Cursor::new(form.text.as_bytes()), &options, |names| {
+        let read = library::read(path, &names.to_string_lossy(), budget, &mut warnings.borrow_mut());
+        let named = named(&read);
+        definitions.borrow_mut().extend(read);
+        named
     })
-    .map_err(|e| invalid(e.to_string()))?;
-    let mut loader =
-        Loader { path, budget, images: HashMap::new(), scene: Scene::empty(warnings.into_inner()) };
-    for material in materials.unwrap_or_default() {
-        let converted = loader.material(&material);
+    .map_err(|problem| invalid(problem.to_string()))?;
+    drop(form.text);
+    let (definitions, warnings) = (definitions.into_inner(), warnings.into_inner());
+    let mut loader = Loader::new(path, budget, warnings);
+    for definition in &definitions {
+        let converted = loader.material(definition);
         loader.scene.materials.push(converted);
     }
-    loader.scene.materials.push(plain_material());
+    let mut scene = loader.scene;
+    scene.materials.push(plain_material());
     if let Some(texture) = texture {
-        let texture = named_texture(&mut loader.scene, texture, budget)?;
-        for material in loader.scene.materials.iter_mut().filter(|m| m.base_color_texture.is_none()) {
+        let texture = named_texture(&mut scene, texture, budget)?;
+        for material in scene.materials.iter_mut().filter(|m| m.base_color_texture.is_none()) {
             material.base_color_texture = Some(TextureUse::plain(texture));
             material.base_color = Vec4::ONE.with_w(material.base_color.w);
         }
     }
-    let mut scene = loader.scene;
-    for model in models {
-        let primitive = primitive(&model.mesh, scene.materials.len() - 1).map_err(|problem| {
-            Error::file(path, format!("object '{}' {problem}", model.name), "export it again")
-        })?;
-        if primitive.indices.is_empty() {
-            continue;
-        }
-        let mesh = Some(scene.meshes.len());
-        scene.meshes.push(Mesh {
-            name: model.name.clone(),
-            primitives: vec![primitive],
-            weights: Vec::new(),
-        });
-        scene.nodes.push(Node { name: model.name, mesh, ..Node::default() });
-    }
+    add_meshes(&models, form.smoothing, &mut scene);
     Ok(scene)
 }
 
-fn primitive(mesh: &tobj::Mesh, plain: usize) -> std::result::Result<Primitive, String> {
-    let positions = mesh.positions.as_chunks::<3>().0;
-    let normals = mesh.normals.as_chunks::<3>().0;
-    let texcoords = mesh.texcoords.as_chunks::<2>().0;
-    let colors = mesh.vertex_color.as_chunks::<3>().0;
-    if mesh.indices.iter().any(|i| *i as usize >= positions.len()) {
-        return Err("names a vertex that does not exist".into());
-    }
-    let has_normals = normals.len() == positions.len() && !positions.is_empty();
-    let vertices = positions
-        .iter()
-        .enumerate()
-        .map(|(i, position)| {
-            let mut vertex = Vertex { position: *position, ..Vertex::default() };
-            if has_normals {
-                vertex.normal = Vec3::from(normals[i]).normalize_or(Vec3::Z).to_array();
+/// The materials of a library as `tobj` needs them: their names, and the index of each. Of several with one name the
+/// last counts.
+fn named(definitions: &[Definition]) -> tobj::MTLLoadResult {
+    let names = definitions.iter().map(|definition| match definition.name.as_str() {
+        "" => UNNAMED.to_owned(),
+        name => name.to_owned(),
+    });
+    let materials = names.clone().map(|name| tobj::Material { name, ..tobj::Material::default() });
+    Ok((materials.collect(), names.zip(0..).collect()))
+}
+
+/// Adds a mesh for each run of faces of one object and one material; `smoothing` is that of all faces.
+fn add_meshes(models: &[tobj::Model], smoothing: Vec<Group>, scene: &mut Scene) {
+    let plain = scene.materials.len() - 1;
+    let mut groups = smoothing.into_iter();
+    let mut colored: HashMap<usize, usize> = HashMap::new();
+    for models in models.chunk_by(|a, b| a.name == b.name) {
+        let name = object(&models[0].name).1;
+        let meshes: Vec<&tobj::Mesh> = models.iter().map(|model| &model.mesh).collect();
+        for (mesh, triangles) in meshes.iter().zip(triangles(&meshes, &mut groups)) {
+            if triangles.is_empty() {
+                continue;
             }
-            if let Some([u, v]) = texcoords.get(i) {
-                // V of OBJ points up the image.
-                vertex.uv0 = [*u, 1.0 - v];
+            let mut index = mesh.material_id.unwrap_or(plain);
+            if !mesh.vertex_color.is_empty() {
+                index = *colored.entry(index).or_insert_with(|| {
+                    let Some(white) = for_colors(&scene.materials[index]) else { return index };
+                    scene.materials.push(white);
+                    scene.materials.len() - 1
+                });
             }
-            if let Some([r, g, b]) = colors.get(i) {
-                vertex.color = [*r, *g, *b, 1.0];
-            }
-            vertex
-        })
-        .collect();
-    let mut primitive = Primitive {
-        vertices,
-        indices: geometry::triangle_list(geometry::Topology::List, &mesh.indices),
-        material: mesh.material_id.unwrap_or(plain).min(plain),
-        ..Primitive::default()
-    };
-    if !has_normals {
-        geometry::smooth_normals(&mut primitive, CREASE);
+            let primitives = vec![primitive(mesh, &triangles, index)];
+            let mesh = Some(scene.meshes.len());
+            scene.meshes.push(Mesh { name: name.to_owned(), primitives, weights: Vec::new() });
+            scene.nodes.push(Node { name: name.to_owned(), mesh, ..Node::default() });
+        }
     }
-    if !texcoords.is_empty() {
-        geometry::tangents(&mut primitive, 0);
-    }
-    Ok(primitive)
 }

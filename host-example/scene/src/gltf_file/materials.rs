@@ -1,54 +1,34 @@
-//! Materials, textures and images of a glTF document.
+//! Materials of a glTF document.
 
-use std::path::Path;
-
-use glam::{Affine2, Vec3, Vec4};
-use gltf::json;
+use glam::{Vec3, Vec4};
 use gltf::json::Value;
 use gltf::material::AlphaMode as GltfAlphaMode;
-use gltf::texture::{MagFilter, MinFilter, WrappingMode};
 
 use super::accessors::Accessors;
-use super::sources;
-use crate::material::{AlphaMode, DecodeProblem, Image, Material, Sampler, Texture, TextureUse, Wrap};
+use super::glossiness::Glossiness;
+use super::uses;
+use crate::material::{AlphaMode, Material};
 use crate::model::Scene;
-use isophote_files::error::{Error, Result};
 
-/// Reads images, textures and materials into the scene. The last material is the default one.
-pub fn read(path: &Path, document: &gltf::Document, accessors: &Accessors, scene: &mut Scene) -> Result<()> {
-    let images = read_images(path, document, accessors, scene)?;
-    for texture in document.textures() {
-        let sampler = texture.sampler();
-        let image = texture.source().and_then(|image| images.get(image.index()).copied().flatten());
-        if texture.source().is_none() {
-            scene.warnings.push(format!(
-                "texture {} has no PNG or JPEG source and is left out",
-                label(texture.name(), texture.index())
-            ));
-        }
-        let (linear_min, mipmaps) = match sampler.min_filter() {
-            Some(MinFilter::Nearest) => (false, false),
-            Some(MinFilter::Linear) => (true, false),
-            Some(MinFilter::NearestMipmapNearest | MinFilter::NearestMipmapLinear) => (false, true),
-            _ => (true, true),
-        };
-        scene.textures.push(Texture {
-            image,
-            sampler: Sampler {
-                wrap_u: wrap(sampler.wrap_s()),
-                wrap_v: wrap(sampler.wrap_t()),
-                linear_mag: sampler.mag_filter() != Some(MagFilter::Nearest),
-                linear_min,
-                mipmaps,
-            },
-        });
-    }
+/// Coverage that is left of a surface which lets all light through: what it reflects is still seen.
+const LEAST_COVERAGE: f32 = 0.15;
+
+/// Reads materials into the scene, whose textures must be there already. The last material is the default one.
+pub fn read(document: &gltf::Document, accessors: &Accessors, scene: &mut Scene) {
+    let mut glossiness = Glossiness::new(accessors.budget);
     for material in document.materials() {
-        let converted = read_material(&material, scene);
+        let name = label(material.name(), material.index().unwrap_or_default());
+        let mut converted = read_material(&name, &material, scene);
+        reflect(&material, &mut converted);
+        if let Some(surface) = material.pbr_specular_glossiness() {
+            glossiness.apply(&name, &surface, &mut converted, scene);
+        }
+        if let Some(transmission) = material.transmission() {
+            transmit(&name, &transmission, &mut converted, scene);
+        }
         scene.materials.push(converted);
     }
     scene.materials.push(Material::default());
-    Ok(())
 }
 
 /// A name for messages.
@@ -59,99 +39,27 @@ pub fn label(name: Option<&str>, index: usize) -> String {
     }
 }
 
-fn wrap(mode: WrappingMode) -> Wrap {
-    match mode {
-        WrappingMode::ClampToEdge => Wrap::Clamp,
-        WrappingMode::MirroredRepeat => Wrap::Mirror,
-        WrappingMode::Repeat => Wrap::Repeat,
-    }
-}
-
-/// Decodes all images; yields the scene's image for each of the document's, `None` where it is of a
-/// format not read here, which costs a warning only.
-fn read_images(
-    path: &Path,
-    document: &gltf::Document,
-    accessors: &Accessors,
-    scene: &mut Scene,
-) -> Result<Vec<Option<usize>>> {
-    let json: &json::Root = document.as_json();
-    let mut places = Vec::with_capacity(json.images.len());
-    for (index, image) in json.images.iter().enumerate() {
-        let file = image.uri.as_deref().filter(|uri| !uri.starts_with("data:"));
-        let name = label(image.name.as_deref().or(file), index);
-        let damaged = |problem: String| {
-            Error::file(
-                path,
-                format!("image {name}: {problem}"),
-                accessors.budget.fix("replace the image or export the scene again"),
-            )
-        };
-        let read: std::borrow::Cow<[u8]> = match (&image.uri, image.buffer_view) {
-            (Some(uri), _) => sources::read_uri(path, uri, accessors.budget)?.into(),
-            (None, Some(view)) => document
-                .views()
-                .nth(view.value())
-                .and_then(|view| accessors.view(&view))
-                .ok_or_else(|| damaged("its bytes reach beyond the end of its buffer".into()))?
-                .into(),
-            (None, None) => return Err(damaged("it has neither a file nor a buffer view".into())),
-        };
-        match Image::decode(&name, &read, accessors.budget) {
-            Ok(image) => {
-                places.push(Some(scene.images.len()));
-                scene.images.push(image);
-            }
-            Err(DecodeProblem::Unsupported(format)) => {
-                places.push(None);
-                scene.warnings.push(format!(
-                    "texture {name} is of {format} format, which is not read here (PNG and JPEG are); it is left out"
-                ));
-            }
-            Err(DecodeProblem::Damaged(problem)) => return Err(damaged(problem)),
-        }
-    }
-    Ok(places)
-}
-
-fn read_material(material: &gltf::Material, scene: &mut Scene) -> Material {
-    let name = label(material.name(), material.index().unwrap_or_default());
+fn read_material(name: &str, material: &gltf::Material, scene: &mut Scene) -> Material {
     let surface = material.pbr_metallic_roughness();
-    let mut take = |texture: usize, set: u32, extensions: Option<&Value>| {
-        texture_use(&name, texture, set, extensions, scene)
-    };
-    // Info of the gltf crate decodes the transform itself; the two special kinds of texture do not.
-    let mut info = |info: Option<gltf::texture::Info>| {
-        info.and_then(|i| {
-            let transform = i.texture_transform();
-            let set = transform.as_ref().and_then(|t| t.tex_coord()).unwrap_or(i.tex_coord());
-            let mut use_ = take(i.texture().index(), set, None)?;
-            if let Some(t) = transform {
-                use_.transform = TextureUse::uv_transform(t.offset(), t.rotation(), t.scale());
-            }
-            Some(use_)
-        })
-    };
-    let base_color_texture = info(surface.base_color_texture());
-    let metallic_roughness_texture = info(surface.metallic_roughness_texture());
-    let emissive_texture = info(material.emissive_texture());
+    let base_color_texture = uses::of_info(name, surface.base_color_texture(), scene);
+    let metallic_roughness_texture = uses::of_info(name, surface.metallic_roughness_texture(), scene);
+    let emissive_texture = uses::of_info(name, material.emissive_texture(), scene);
     let normal = material.normal_texture();
     let occlusion = material.occlusion_texture();
     const TRANSFORM: &str = "KHR_texture_transform";
+    let mut take = |texture: usize, set: u32, transform: Option<&Value>| {
+        uses::of_texture(name, texture, set, transform, scene)
+    };
+    // Without its texture a factor of 1 would turn everything into mirrors.
+    let lost = surface.metallic_roughness_texture().is_some() && metallic_roughness_texture.is_none();
     Material {
         name: material.name().unwrap_or_default().to_owned(),
         base_color: Vec4::from(surface.base_color_factor()),
         base_color_texture,
-        // Without its texture a factor of 1 would turn everything into mirrors.
-        metallic: match surface.metallic_roughness_texture() {
-            Some(_) if metallic_roughness_texture.is_none() => 0.0,
-            _ => surface.metallic_factor(),
-        },
-        roughness: match surface.metallic_roughness_texture() {
-            Some(_) if metallic_roughness_texture.is_none() => 0.6 * surface.roughness_factor(),
-            _ => surface.roughness_factor(),
-        },
+        metallic: if lost { 0.0 } else { surface.metallic_factor() },
+        roughness: if lost { 0.6 * surface.roughness_factor() } else { surface.roughness_factor() },
         metallic_roughness_texture,
+        reflectance: Material::default().reflectance,
         normal_scale: normal.as_ref().map_or(1.0, |n| n.scale()),
         normal_texture: normal
             .and_then(|n| take(n.texture().index(), n.tex_coord(), n.extension_value(TRANSFORM))),
@@ -170,39 +78,35 @@ fn read_material(material: &gltf::Material, scene: &mut Scene) -> Material {
     }
 }
 
-/// Use of a texture by a material; `None` where the texture has no image.
-fn texture_use(
-    material: &str,
-    texture: usize,
-    set: u32,
-    extensions: Option<&Value>,
-    scene: &mut Scene,
-) -> Option<TextureUse> {
-    let (transform, set) = texture_transform(extensions, set);
-    if set > 1 {
-        scene
-            .warnings
-            .push(format!("material {material} uses texture coordinates {set}; the second set is used"));
+/// Reflectance of KHR_materials_ior and KHR_materials_specular, whose colour is taken as its mean.
+fn reflect(source: &gltf::Material, material: &mut Material) {
+    if let Some(ior) = source.ior().filter(|ior| *ior >= 0.0) {
+        material.reflectance = ((ior - 1.0) / (ior + 1.0)).powi(2).min(1.0);
     }
-    let use_ = TextureUse { texture, uv_set: set.min(1), transform };
-    scene.textures.get(texture).and_then(|t| t.image).map(|_| use_)
+    if let Some(specular) = source.specular() {
+        let color = Vec3::from(specular.specular_color_factor()).element_sum() / 3.0;
+        let share = specular.specular_factor().clamp(0.0, 1.0);
+        material.reflectance = (material.reflectance * color.max(0.0)).min(1.0) * share;
+    }
 }
 
-/// Matrix and set of texture coordinates of KHR_texture_transform as plain JSON.
-fn texture_transform(extension: Option<&Value>, set: u32) -> (Affine2, u32) {
-    let Some(extension) = extension else { return (Affine2::IDENTITY, set) };
-    let number =
-        |value: Option<&Value>, default: f32| value.and_then(Value::as_f64).map_or(default, |v| v as f32);
-    let pair = |key: &str, default: f32| {
-        let list = extension.get(key);
-        [0, 1].map(|i| number(list.and_then(|l| l.get(i)), default))
-    };
-    let transform = TextureUse::uv_transform(
-        pair("offset", 0.0),
-        number(extension.get("rotation"), 0.0),
-        pair("scale", 1.0),
-    );
-    let set =
-        extension.get("texCoord").and_then(Value::as_u64).map_or(set, |s| s.min(u64::from(u32::MAX)) as u32);
-    (transform, set)
+/// Lets light through by blending over what lies behind, which is not bent and not blurred. Where a texture says how
+/// much, its mean counts.
+fn transmit(name: &str, source: &gltf::material::Transmission, material: &mut Material, scene: &mut Scene) {
+    let image = uses::of_info(name, source.transmission_texture(), scene)
+        .and_then(|use_| scene.textures[use_.texture].image)
+        .map(|image| scene.images[image].rgba.as_chunks::<4>().0);
+    let mean = image.map_or(1.0, |texels| {
+        let sum: f64 = texels.iter().map(|texel| f64::from(texel[0])).sum();
+        (sum / (255.0 * texels.len().max(1) as f64)) as f32
+    });
+    let share = (source.transmission_factor() * mean).clamp(0.0, 1.0);
+    // Metals let nothing through.
+    let share = share
+        * (1.0
+            - material.metallic.clamp(0.0, 1.0) * f32::from(material.metallic_roughness_texture.is_none()));
+    if share > 0.0 {
+        material.base_color.w *= 1.0 - share * (1.0 - LEAST_COVERAGE);
+        material.alpha_mode = AlphaMode::Blend;
+    }
 }

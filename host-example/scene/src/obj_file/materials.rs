@@ -1,20 +1,20 @@
-//! Materials of an OBJ file: its MTL files and the textures they name. What cannot be read there costs a
-//! warning with its line, and nothing else.
+//! Materials of an OBJ file, out of what its MTL files say and the textures that they name. A texture that is missing
+//! or cannot be read costs a warning.
 
-use std::cell::RefCell;
 use std::collections::HashMap;
-use std::fmt::Write;
 use std::fs::File;
-use std::io::Cursor;
 use std::path::{Path, PathBuf};
 
-use glam::Vec3;
+use glam::{Vec3, Vec4};
 
-use super::statements::{UNNAMED, number, statements, words};
+use super::library::{Definition, Kind};
+use super::options::Map;
 use crate::budget::Budget;
-use crate::gltf_file::open;
-use crate::material::{AlphaMode, DecodeProblem, Image, Material, Sampler, Texture, TextureUse};
+use crate::decode::{DecodeProblem, FORMATS, decode};
+use crate::material::{AlphaMode, Image, Material, Sampler, Texture, TextureUse, Wrap};
 use crate::model::Scene;
+use crate::references::Folders;
+use crate::texels::combined;
 use isophote_files::error::{Error, Result};
 
 /// Colour of surfaces that say nothing about it.
@@ -34,213 +34,299 @@ pub fn plain_material() -> Material {
     }
 }
 
-/// Reads what an OBJ file at `path` names as its material library: one file, whose name may hold spaces, or
-/// several with spaces between them.
-pub fn load_mtl(
-    path: &Path,
-    names: &Path,
-    budget: &Budget,
-    warnings: &RefCell<Vec<String>>,
-) -> tobj::MTLLoadResult {
-    let names = names.to_string_lossy();
-    let several: Vec<&str> = match open(path, &reference(&names)) {
-        Err(_) if names.contains(char::is_whitespace) => names.split_whitespace().collect(),
-        _ => vec![&names],
-    };
-    let mut text = String::new();
-    for name in several {
-        match read_mtl(path, name, budget, warnings) {
-            Ok(more) => text.push_str(&more),
-            Err(problem) => warnings.borrow_mut().push(format!("{problem}; plain materials are used")),
-        }
-    }
-    tobj::load_mtl_buf(&mut Cursor::new(text.as_bytes()))
-}
-
-/// The normal form of one file.
-fn read_mtl(
-    path: &Path,
-    name: &str,
-    budget: &Budget,
-    warnings: &RefCell<Vec<String>>,
-) -> std::result::Result<String, String> {
-    let (file, _) = open(path, &reference(name)).map_err(|problem| format!("the file {problem}"))?;
-    let bytes = budget.read(file).map_err(|e| format!("{name} cannot be read: {e}"))?;
-    Ok(normal_form(&String::from_utf8_lossy(&bytes), |line, problem| {
-        warnings.borrow_mut().push(format!("{name}, line {line}: {problem}; it is left out"));
-    }))
-}
-
-/// A file name of an OBJ or MTL file as the reference of a glTF, which has escapes and one kind of slash.
-fn reference(name: &str) -> String {
-    name.replace('%', "%25").replace('\\', "/")
-}
-
-/// The normal form of an MTL file: one statement per line, colours of three numbers, and nothing that `tobj`
-/// refuses. What is wrong is handed to `warn` with its line and dropped.
-fn normal_form(text: &str, mut warn: impl FnMut(usize, String)) -> String {
-    let mut out = String::with_capacity(text.len());
-    for statement in statements(text) {
-        let Some((keyword, rest)) = statement.split() else { continue };
-        let value = match keyword {
-            "newmtl" if rest.is_empty() => Ok(UNNAMED.to_owned()),
-            "Ka" | "Kd" | "Ks" | "Ke" => color(rest).map(|[r, g, b]| format!("{r} {g} {b}")),
-            "Ns" | "Ni" => one_number(rest),
-            "d" => one_number(rest.strip_prefix("-halo").unwrap_or(rest)),
-            // Not used, and refused by the parser where it is no whole number.
-            "illum" => continue,
-            "bump" | "norm" if rest.is_empty() => continue,
-            _ if rest.is_empty() && keyword.starts_with("map_") => continue,
-            _ => Ok(rest.to_owned()),
-        };
-        match value {
-            Ok(value) => writeln!(out, "{keyword} {value}").expect("strings can be written to"),
-            Err(problem) => warn(statement.line, format!("{keyword} {problem}")),
-        }
-    }
-    out
-}
-
-/// A colour of three numbers, or of one that stands for all three.
-fn color(rest: &str) -> std::result::Result<[f32; 3], String> {
-    let mut given = words(rest).peekable();
-    if let Some(kind @ ("spectral" | "xyz")) = given.peek().copied() {
-        return Err(format!("is given as {kind}, which is not read here"));
-    }
-    let values: Vec<f32> = given.map(number).collect::<std::result::Result<_, _>>()?;
-    match values[..] {
-        [value] => Ok([value; 3]),
-        [r, g, b, ..] => Ok([r, g, b]),
-        _ => Err(format!("takes 1 or 3 numbers, not {}", values.len())),
-    }
-}
-
-fn one_number(rest: &str) -> std::result::Result<String, String> {
-    let word = words(rest).next().ok_or("takes a number")?;
-    number(word).map(|value| value.to_string())
+/// The material for surfaces whose vertices have colours, where it has no colour of its own.
+pub fn for_colors(material: &Material) -> Option<Material> {
+    let plain = material.base_color.truncate() == PLAIN && material.base_color_texture.is_none();
+    plain.then(|| Material { base_color: Vec4::ONE.with_w(material.base_color.w), ..material.clone() })
 }
 
 /// An image named by the caller.
+///
+/// # Errors
+/// [`Error::Input`] where it cannot be read.
 pub fn named_texture(scene: &mut Scene, path: &Path, budget: &Budget) -> Result<usize> {
-    let unreadable = |problem: String| {
-        Error::file(path, problem, budget.fix("give the path of a readable PNG or JPEG file"))
-    };
+    let unreadable =
+        |problem: String| Error::file(path, problem, budget.fix("give the path of a readable image"));
     let file = File::open(path).map_err(|e| unreadable(e.to_string()))?;
     let bytes = budget.read(file).map_err(unreadable)?;
-    let image = Image::decode(&path.display().to_string(), &bytes, budget).map_err(|problem| {
+    let image = decode(&path.display().to_string(), &bytes, budget).map_err(|problem| {
         let problem = match problem {
-            DecodeProblem::Unsupported(_) => "is neither a PNG nor a JPEG image".into(),
+            DecodeProblem::Unsupported(_) => format!("is no image of a format that is read here ({FORMATS})"),
             DecodeProblem::Damaged(problem) => problem,
         };
         Error::file(path, problem, budget.fix("give a whole PNG or JPEG file"))
     })?;
-    Ok(add_texture(scene, image))
-}
-
-fn add_texture(scene: &mut Scene, image: Image) -> usize {
     scene.images.push(image);
     scene.textures.push(Texture { image: Some(scene.images.len() - 1), sampler: Sampler::default() });
-    scene.textures.len() - 1
+    Ok(scene.textures.len() - 1)
 }
 
-/// Turns materials of an MTL file into those of a scene.
+/// Turns definitions of MTL files into materials of a scene.
 pub struct Loader<'a> {
     /// The OBJ file.
-    pub path: &'a Path,
+    path: &'a Path,
     /// Counts what is read.
-    pub budget: &'a Budget,
-    /// The texture of each file read so far, where it could be read.
-    pub images: HashMap<PathBuf, Option<usize>>,
+    budget: &'a Budget,
+    /// The image of each file read so far, where it could be read.
+    files: HashMap<PathBuf, Option<usize>>,
+    /// Images that were made of others: those, and in words how.
+    made: HashMap<(Option<usize>, Option<usize>, String), usize>,
+    /// The texture of each image, clamped or not.
+    textures: HashMap<(usize, bool), usize>,
     /// Receives images, textures and warnings.
     pub scene: Scene,
 }
 
-impl Loader<'_> {
+impl<'a> Loader<'a> {
+    /// A loader of the materials of an OBJ file.
+    pub fn new(path: &'a Path, budget: &'a Budget, warnings: Vec<String>) -> Self {
+        let scene = Scene::empty(warnings);
+        Self { path, budget, files: HashMap::new(), made: HashMap::new(), textures: HashMap::new(), scene }
+    }
+
     /// Converts one material.
-    pub fn material(&mut self, source: &tobj::Material) -> Material {
-        let base_color_texture = source.diffuse_texture.as_deref().and_then(|name| self.texture(name));
+    pub fn material(&mut self, source: &Definition) -> Material {
+        let opacity =
+            source.dissolve.or(source.transparency.map(|tr| 1.0 - tr)).unwrap_or(1.0).clamp(0.0, 1.0);
+        let (base_color_texture, mut alpha_mode) = self.base_color(source);
+        if opacity < 1.0 {
+            alpha_mode = AlphaMode::Blend;
+        }
         // Exporters write black Kd beside a texture; the texture is what was meant.
+        let textured = base_color_texture.is_some() && source.maps.contains_key(&Kind::Diffuse);
         let diffuse = match source.diffuse {
-            Some(kd) if base_color_texture.is_none() || kd != [0.0; 3] => Vec3::from(kd),
-            _ if base_color_texture.is_some() => Vec3::ONE,
+            Some(kd) if !textured || kd != [0.0; 3] => Vec3::from(kd),
+            _ if textured => Vec3::ONE,
             _ => PLAIN,
         };
-        let opacity = source.dissolve.unwrap_or(1.0).clamp(0.0, 1.0);
+        let emissive_texture = self.plain_use(source, Kind::Emission);
         let emissive = source.emissive.map_or(Vec3::ZERO, |ke| Vec3::from(ke).max(Vec3::ZERO));
+        let emissive =
+            if emissive_texture.is_some() && emissive == Vec3::ZERO { Vec3::ONE } else { emissive };
+        let metallic_roughness_texture = self.metallic_roughness(source);
+        let has = |kind: Kind| metallic_roughness_texture.is_some() && source.maps.contains_key(&kind);
+        let (normal_texture, normal_scale) = self.normals(source);
         Material {
-            name: if source.name == UNNAMED { String::new() } else { source.name.clone() },
+            name: source.name.clone(),
             base_color: diffuse.max(Vec3::ZERO).extend(opacity),
             base_color_texture,
-            // The Blinn-Phong exponent Ns of a lobe as wide as that of GGX.
+            metallic: source
+                .metallic
+                .filter(|m| *m > 0.0)
+                .unwrap_or(f32::from(has(Kind::Metalness)))
+                .min(1.0),
             roughness: source
-                .shininess
-                .filter(|ns| *ns > 0.0)
-                .map_or(DEFAULT_ROUGHNESS, |ns| (2.0 / (ns + 2.0)).powf(0.25).clamp(0.05, 1.0)),
-            normal_texture: source.unknown_param.get("norm").and_then(|name| self.texture(name)),
+                .roughness
+                .filter(|roughness| *roughness > 0.0 || !has(Kind::Roughness))
+                .or(has(Kind::Roughness).then_some(1.0))
+                .or(source.shininess.filter(|ns| *ns > 0.0).map(roughness_of))
+                .unwrap_or(DEFAULT_ROUGHNESS)
+                .clamp(0.0, 1.0),
+            metallic_roughness_texture,
+            normal_texture,
+            normal_scale,
             emissive,
-            alpha_mode: if opacity < 1.0 { AlphaMode::Blend } else { AlphaMode::Opaque },
+            emissive_texture,
+            alpha_mode,
             ..plain_material()
         }
     }
 
-    /// A texture of the MTL file; options before its name are ignored.
-    fn texture(&mut self, statement: &str) -> Option<TextureUse> {
-        let name = without_options(statement);
-        let (file, path) = match open(self.path, &reference(name)) {
+    /// Texture of the base colour, with the coverage that a mask or the texture itself says.
+    fn base_color(&mut self, source: &Definition) -> (Option<TextureUse>, AlphaMode) {
+        let diffuse = self.map(source, Kind::Diffuse);
+        let mask = self.map(source, Kind::Coverage);
+        let image = match (&diffuse, &mask) {
+            (None, None) => return (None, AlphaMode::Opaque),
+            (Some((color, _)), None) => *color,
+            (color, Some((cover, map))) => {
+                let color = color.as_ref().map(|(image, _)| *image);
+                let channel = map.channel.map(|letter| letter.to_ascii_lowercase());
+                let own = color == Some(*cover);
+                let clear =
+                    self.scene.images[*cover].rgba.as_chunks::<4>().0.iter().any(|texel| texel[3] < 255);
+                let how = match channel {
+                    Some(letter @ ('r' | 'g' | 'b' | 'l')) => letter,
+                    Some('m') => 'm',
+                    _ if clear => 'm',
+                    // The colour of a texture says nothing of its coverage.
+                    _ if own => return self.used(diffuse, AlphaMode::Opaque),
+                    _ => 'l',
+                };
+                let made = self.combine(color, Some(*cover), &format!("coverage {how}"), |color, cover| {
+                    let [r, g, b, _] = color;
+                    [r, g, b, single(cover, how)]
+                });
+                match made {
+                    Some(made) => made,
+                    None => return self.used(diffuse, AlphaMode::Opaque),
+                }
+            }
+        };
+        let mode = self.scene.images[image].alpha_mode();
+        let map = diffuse.or(mask).map(|(_, map)| (image, map));
+        self.used(map, mode)
+    }
+
+    fn used(&mut self, map: Option<(usize, Map)>, mode: AlphaMode) -> (Option<TextureUse>, AlphaMode) {
+        (map.map(|(image, map)| self.texture_use(image, &map)), mode)
+    }
+
+    /// Texture of roughness and metalness, which MTL keeps apart.
+    fn metallic_roughness(&mut self, source: &Definition) -> Option<TextureUse> {
+        let roughness = self.map(source, Kind::Roughness);
+        let metalness = self.map(source, Kind::Metalness);
+        let images = [&roughness, &metalness].map(|map| map.as_ref().map(|(image, _)| *image));
+        let (_, map) = roughness.or(metalness)?;
+        let image = self.combine(images[0], images[1], "roughness and metalness", |rough, metal| {
+            [255, single(rough, 'l'), single(metal, 'l'), 255]
+        })?;
+        Some(self.texture_use(image, &map))
+    }
+
+    /// Texture of normals, and what multiplies them. Many exporters name it as that of bumps.
+    fn normals(&mut self, source: &Definition) -> (Option<TextureUse>, f32) {
+        if let Some((image, map)) = self.map(source, Kind::Normals) {
+            return (Some(self.texture_use(image, &map)), map.bumps);
+        }
+        let Some((image, map)) = self.map(source, Kind::Bumps) else { return (None, 1.0) };
+        if holds_normals(&self.scene.images[image]) {
+            return (Some(self.texture_use(image, &map)), map.bumps);
+        }
+        let name = &source.maps[&Kind::Bumps].name;
+        self.scene
+            .warnings
+            .push(format!("texture '{name}' holds heights, which are not read here; it is left out"));
+        (None, 1.0)
+    }
+
+    fn plain_use(&mut self, source: &Definition, kind: Kind) -> Option<TextureUse> {
+        let (image, map) = self.map(source, kind)?;
+        Some(self.texture_use(image, &map))
+    }
+
+    fn texture_use(&mut self, image: usize, map: &Map) -> TextureUse {
+        let textures = &mut self.scene.textures;
+        let texture = *self.textures.entry((image, map.clamp)).or_insert_with(|| {
+            let wrap = if map.clamp { Wrap::Clamp } else { Wrap::Repeat };
+            let sampler = Sampler { wrap_u: wrap, wrap_v: wrap, ..Sampler::default() };
+            textures.push(Texture { image: Some(image), sampler });
+            textures.len() - 1
+        });
+        TextureUse { transform: map.transform(), ..TextureUse::plain(texture) }
+    }
+
+    /// An image that is made of one or two others, of which a missing one is white.
+    fn combine(
+        &mut self,
+        first: Option<usize>,
+        second: Option<usize>,
+        how: &str,
+        combine: impl Fn([u8; 4], [u8; 4]) -> [u8; 4],
+    ) -> Option<usize> {
+        let key = (first, second, how.to_owned());
+        if let Some(made) = self.made.get(&key) {
+            return Some(*made);
+        }
+        let white = Image::solid("white", [255; 4]);
+        let image = |index: Option<usize>| index.map_or(&white, |index| &self.scene.images[index]);
+        let name = image(first.or(second)).name.clone();
+        match combined(name, image(first), image(second), self.budget, combine) {
+            Ok(image) => {
+                self.scene.images.push(image);
+                self.made.insert(key, self.scene.images.len() - 1);
+                Some(self.scene.images.len() - 1)
+            }
+            Err(problem) => {
+                self.scene.warnings.push(format!("the texture of {how} {problem}; it is left out"));
+                None
+            }
+        }
+    }
+
+    /// The image of a texture that a material names, with the range of its values as the material wants it.
+    fn map(&mut self, source: &Definition, kind: Kind) -> Option<(usize, Map)> {
+        let map = source.maps.get(&kind)?.clone();
+        let image = self.file(source, &map.name)?;
+        if (map.base, map.gain) == (0.0, 1.0) {
+            return Some((image, map));
+        }
+        let [base, gain] = [map.base * 255.0, map.gain];
+        let image =
+            self.combine(Some(image), None, &format!("base {base} gain {gain}"), |[r, g, b, a], _| {
+                let [r, g, b] =
+                    [r, g, b].map(|value| (base + gain * f32::from(value)).round().clamp(0.0, 255.0) as u8);
+                [r, g, b, a]
+            });
+        image.map(|image| (image, map))
+    }
+
+    /// The image of a file, which lies beside the MTL file or the OBJ file.
+    fn file(&mut self, source: &Definition, name: &str) -> Option<usize> {
+        let folders = Folders::of(self.path).beside(&source.file);
+        let opened = folders.open(name).or_else(|problem| {
+            // A comment may follow, but the sign of one may stand in a name as well.
+            let (name, _) = name.split_once(" #").ok_or(problem.clone())?;
+            folders.open(name).map_err(|_| problem)
+        });
+        let (file, path) = match opened {
             Ok(opened) => opened,
             Err(problem) => {
-                self.scene.warnings.push(format!("a material {problem}; it is left out"));
+                let warning = format!("a material {problem}; it is left out");
+                if !self.scene.warnings.contains(&warning) {
+                    self.scene.warnings.push(warning);
+                }
                 return None;
             }
         };
-        if let Some(known) = self.images.get(&path) {
-            return known.map(TextureUse::plain);
+        if let Some(known) = self.files.get(&path) {
+            return *known;
         }
-        let decoded = self.budget.read(file).and_then(|bytes| {
-            Image::decode(name, &bytes, self.budget).map_err(|problem| match problem {
-                DecodeProblem::Unsupported(_) => "is neither PNG nor JPEG".to_owned(),
-                DecodeProblem::Damaged(problem) => problem,
-            })
-        });
-        let texture = match decoded {
-            Ok(image) => Some(add_texture(&mut self.scene, image)),
+        let decoded = self
+            .budget
+            .read(file)
+            .and_then(|bytes| decode(name, &bytes, self.budget).map_err(|problem| problem.to_string()));
+        let image = match decoded {
+            Ok(mut image) => {
+                if image.rgba.as_chunks::<4>().0.iter().all(|texel| texel[3] == 0) {
+                    image.make_opaque();
+                }
+                self.scene.images.push(image);
+                Some(self.scene.images.len() - 1)
+            }
             Err(problem) => {
                 self.scene.warnings.push(format!("texture '{name}': {problem}; it is left out"));
                 None
             }
         };
-        self.images.insert(path, texture);
-        texture.map(TextureUse::plain)
+        self.files.insert(path, image);
+        image
     }
 }
 
-/// Drops options such as `-s 1 1 1` and `-clamp on` that may precede a file name, which itself may hold spaces.
-fn without_options(statement: &str) -> &str {
-    let mut rest = statement.trim();
-    while let Some(option) = rest.strip_prefix('-') {
-        let Some((_, mut after)) = option.split_once(char::is_whitespace) else { break };
-        loop {
-            after = after.trim_start();
-            match after.split_once(char::is_whitespace) {
-                Some((word, tail)) if word.parse::<f32>().is_ok() || matches!(word, "on" | "off") => {
-                    after = tail
-                }
-                _ => break,
-            }
-        }
-        rest = after.trim_start();
+/// One number of a texel: one of its channels, its luminance (`l`) or its alpha (`m`).
+fn single(texel: [u8; 4], channel: char) -> u8 {
+    let [r, g, b, a] = texel;
+    match channel {
+        'r' => r,
+        'g' => g,
+        'b' => b,
+        'm' => a,
+        _ => (0.2126 * f32::from(r) + 0.7152 * f32::from(g) + 0.0722 * f32::from(b)).round() as u8,
     }
-    rest
 }
 
-#[cfg(test)]
-mod tests {
-    use super::*;
+/// Roughness of a lobe of GGX as wide as that of a Blinn-Phong exponent.
+fn roughness_of(exponent: f32) -> f32 {
+    (2.0 / (exponent + 2.0)).powf(0.25).clamp(0.05, 1.0)
+}
 
-    #[test]
-    fn options_of_textures_are_skipped() {
-        assert_eq!(without_options("wall.png"), "wall.png");
-        assert_eq!(without_options("-s 2 2 1 -clamp on old wall.png"), "old wall.png");
-        assert_eq!(without_options("-bm 0.5 stone.jpg"), "stone.jpg");
-    }
+/// True where an image holds normals, most of which point out of the surface, and not heights.
+fn holds_normals(image: &Image) -> bool {
+    let texels = image.rgba.as_chunks::<4>().0;
+    let mean = |channel: usize| {
+        texels.iter().map(|texel| f64::from(texel[channel])).sum::<f64>() / texels.len().max(1) as f64
+    };
+    let [r, g, b] = [0, 1, 2].map(mean);
+    b > 180.0 && b > r + 30.0 && b > g + 30.0
 }

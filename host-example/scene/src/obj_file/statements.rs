@@ -3,9 +3,25 @@
 
 use std::borrow::Cow;
 
-/// Name given to a material, or chosen by faces, that has an empty name in the file. No name in a text can be
-/// the same.
-pub const UNNAMED: &str = "\0";
+/// The text of a file: UTF-8, UTF-16, or bytes of an older encoding, of which the first 256 characters are taken; ends
+/// of lines of all systems are the same.
+pub fn text_of(bytes: &[u8]) -> String {
+    let wide = |to: fn([u8; 2]) -> u16| {
+        let units: Vec<u16> = bytes.as_chunks::<2>().0.iter().map(|unit| to(*unit)).collect();
+        String::from_utf16_lossy(&units)
+    };
+    let text = match bytes {
+        [0xff, 0xfe, ..] => wide(u16::from_le_bytes),
+        [0xfe, 0xff, ..] => wide(u16::from_be_bytes),
+        [a, 0, b, 0, ..] if *a > 0 && *b > 0 => wide(u16::from_le_bytes),
+        [0, a, 0, b, ..] if *a > 0 && *b > 0 => wide(u16::from_be_bytes),
+        _ => match std::str::from_utf8(bytes) {
+            Ok(text) => text.to_owned(),
+            Err(_) => bytes.iter().map(|byte| char::from(*byte)).collect(),
+        },
+    };
+    if text.contains('\r') { text.replace("\r\n", "\n").replace('\r', "\n") } else { text }
+}
 
 /// One statement.
 pub struct Statement<'a> {
@@ -71,6 +87,25 @@ pub fn number(word: &str) -> Result<f32, String> {
 #[cfg(test)]
 mod tests {
     use super::*;
+
+    #[test]
+    fn encodings_and_ends_of_lines_are_one() {
+        let text = "v 1 2 3\nusemtl Mädchen\n";
+        let wide = |to: fn(u16) -> [u8; 2]| text.encode_utf16().flat_map(to).collect::<Vec<u8>>();
+        let (little, big) = (wide(u16::to_le_bytes), wide(u16::to_be_bytes));
+        for bytes in [
+            text.as_bytes().to_vec(),
+            text.replace('\n', "\r").into_bytes(),
+            text.replace('\n', "\r\n").into_bytes(),
+            text.chars().map(|c| c as u8).collect(),
+            [b"\xff\xfe".as_slice(), &little].concat(),
+            [b"\xfe\xff".as_slice(), &big].concat(),
+            little,
+            big,
+        ] {
+            assert_eq!(text_of(&bytes).trim_start_matches('\u{feff}'), text, "{bytes:?}");
+        }
+    }
 
     #[test]
     fn lines_are_joined_and_counted() {

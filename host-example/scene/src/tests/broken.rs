@@ -29,6 +29,9 @@ fn files_cut_off_anywhere_are_errors() {
 #[test]
 fn lying_headers_are_errors() {
     let whole = Builder::triangle().glb();
+    let mut old = whole.clone();
+    old[4] = 1;
+    assert!(load_bytes("scene.glb", &old).unwrap_err().to_string().contains("glTF version 1"));
     for (at, value) in [(4, 1u32), (8, 0), (8, 4), (8, 19), (8, u32::MAX), (12, 0), (12, u32::MAX), (16, 7)] {
         let mut bytes = whole.clone();
         bytes[at..at + 4].copy_from_slice(&value.to_le_bytes());
@@ -149,21 +152,12 @@ fn faults_of_the_text_are_found_by_their_line() {
 }
 
 #[test]
-fn missing_foreign_and_damaged_files_are_errors() {
+fn missing_and_foreign_files_are_errors() {
     let length = Builder::triangle().bytes.len();
     for uri in ["gone.bin", "../gone.bin", "/etc/hostname", "http://localhost/a.bin", "data:;base64,@@@"] {
         let mut b = Builder::triangle();
         b.json["buffers"] = json!([{"byteLength": length, "uri": uri}]);
         assert_clear(&b.load().expect_err(uri), uri);
-    }
-    let whole = png();
-    for length in [8, 20, whole.len() / 2, whole.len() - 14] {
-        let mut b = Builder::triangle();
-        let view = b.view(&whole[..length]);
-        b.push("images", json!({"bufferView": view, "mimeType": "image/png", "name": "bark"}));
-        let error = b.load().expect_err("a damaged image");
-        assert_clear(&error, "a damaged image");
-        assert!(error.to_string().contains("'bark'"), "{error}");
     }
     let folder = tempfile::tempdir().unwrap();
     for name in ["scene.gltf", "scene.obj", "scene.fbx", "scene."] {
@@ -171,6 +165,37 @@ fn missing_foreign_and_damaged_files_are_errors() {
     }
     fs::create_dir(folder.path().join("scene.glb")).unwrap();
     assert_clear(&Scene::load(&folder.path().join("scene.glb"), None).expect_err("a folder"), "a folder");
+}
+
+#[test]
+fn textures_that_cannot_be_read_leave_their_material_plain() {
+    let textured = |image: fn(&mut Builder) -> Value| {
+        let mut b = Builder::triangle();
+        let image = image(&mut b);
+        b.push("images", image);
+        b.push("textures", json!({"source": 0, "name": "skin"}));
+        b.push("materials", json!({"pbrMetallicRoughness": {"baseColorTexture": {"index": 0}}}));
+        b.primitive()["material"] = json!(0);
+        let scene = b.load().unwrap_or_else(|e| panic!("{e}"));
+        assert_eq!(scene.materials[0].base_color_texture, None);
+        let [warning] = &scene.warnings[..] else { panic!("{:?}", scene.warnings) };
+        assert!(warning.contains("texture 'skin'"), "{warning}");
+        assert_eq!(warning.lines().count(), 1, "{warning}");
+        warning.clone()
+    };
+    fn cut(b: &mut Builder, length: usize) -> Value {
+        let view = b.view(&png()[..length]);
+        json!({"bufferView": view, "mimeType": "image/png", "name": "bark"})
+    }
+    let damaged: [fn(&mut Builder) -> Value; 3] =
+        [|b| cut(b, 8), |b| cut(b, 20), |b| cut(b, png().len() - 14)];
+    for image in damaged {
+        assert!(textured(image).contains("'bark'"));
+    }
+    assert!(textured(|_| json!({"uri": "gone.png"})).contains("'gone.png'"));
+    assert!(textured(|_| json!({"uri": "http://localhost/a.png"})).contains("is a URL"));
+    assert!(textured(|_| json!({"uri": "data:;base64,@@@"})).contains("data URI"));
+    assert!(textured(|_| json!({"bufferView": 0, "mimeType": "image/png"})).contains("unknown format"));
 }
 
 #[test]
@@ -212,9 +237,19 @@ fn no_value_makes_the_loader_panic() {
     );
     b.push("images", json!({"bufferView": view, "mimeType": "image/png"}));
     b.push("samplers", json!({"magFilter": 9729, "wrapS": 10497}));
-    b.push("textures", json!({"source": 0, "sampler": 0}));
+    b.push("textures", json!({"source": 0, "sampler": 0, "extensions": {"EXT_texture_webp": {"source": 0}}}));
+    let places = b.floats("VEC3", &[0.0, 0.0, 0.0, 1.0, 0.0, 0.0]);
+    let instances = json!({"attributes": {"TRANSLATION": places}});
+    let extensions = json!({"EXT_mesh_gpu_instancing": instances, "KHR_node_visibility": {"visible": true}});
+    b.json["nodes"][0]["children"] = json!([1, 2]);
+    b.push("nodes", json!({"mesh": 0, "skin": 0, "extensions": extensions}));
     let map = json!({"index": 0, "texCoord": 0, "extensions": {"KHR_texture_transform": {"offset": [0, 0]}}});
-    b.push("materials", json!({"normalTexture": map, "pbrMetallicRoughness": {"baseColorTexture": map}}));
+    b.push("materials", json!({"normalTexture": map, "pbrMetallicRoughness": {"baseColorTexture": map}, "extensions": {
+        "KHR_materials_pbrSpecularGlossiness": {"specularGlossinessTexture": map, "specularFactor": [1, 1, 1]},
+        "KHR_materials_transmission": {"transmissionFactor": 1, "transmissionTexture": map},
+        "KHR_materials_ior": {"ior": 1.5}, "KHR_materials_specular": {"specularFactor": 1}
+    }}));
+    b.json["extensionsUsed"] = json!(["KHR_materials_ior", "VENDOR_thing"]);
     let times = b.floats("SCALAR", &[0.0, 1.0]);
     let values = b.floats("SCALAR", &[0.0, 1.0]);
     b.push(

@@ -121,6 +121,80 @@ fn materials_keep_what_the_file_says() {
 }
 
 #[test]
+fn extensions_of_materials_and_nodes_are_followed() {
+    let mut b = Builder::triangle();
+    let shiny = |ior: f32, specular: f32| json!({"KHR_materials_ior": {"ior": ior}, "KHR_materials_specular": {"specularFactor": specular}});
+    b.push("materials", json!({"extensions": shiny(2.0, 0.5)}));
+    b.push("materials", json!({"extensions": {"KHR_materials_pbrSpecularGlossiness": {
+        "diffuseFactor": [0.0, 0.0, 0.0, 1.0], "specularFactor": [1.0, 0.77, 0.34], "glossinessFactor": 0.75
+    }}}));
+    b.push("materials", json!({"extensions": {"KHR_materials_sheen": {}}}));
+    b.json["extensionsUsed"] = json!(["KHR_materials_ior", "KHR_materials_sheen", "VENDOR_thing"]);
+    b.json["nodes"] = json!([
+        {"mesh": 0, "children": [1]},
+        {"extensions": {"KHR_node_visibility": {"visible": false}}, "children": [2]},
+        {"mesh": 0},
+        {"mesh": 0, "extensions": {"KHR_node_visibility": {"visible": true}}}
+    ]);
+    b.json["scenes"][0]["nodes"] = json!([0, 3]);
+    let scene = b.load().unwrap();
+    assert!((scene.materials[0].reflectance - 1.0 / 18.0).abs() < 1e-6);
+    let gold = &scene.materials[1];
+    assert!(gold.base_color.truncate().abs_diff_eq(Vec3::new(1.0, 0.77, 0.34), 1e-3), "{}", gold.base_color);
+    assert!(gold.metallic > 0.999 && (gold.roughness - 0.25).abs() < 1e-6);
+    assert_eq!(scene.draws.iter().map(|draw| draw.node).collect::<Vec<_>>(), [0, 3]);
+    let [warning] = &scene.warnings[..] else { panic!("{:?}", scene.warnings) };
+    assert!(warning.contains("VENDOR_thing") && warning.contains("KHR_materials_sheen"), "{warning}");
+}
+
+#[test]
+fn glossy_textures_say_what_is_metal() {
+    let mut b = Builder::triangle();
+    let picture = |texels: [[u8; 4]; 2]| {
+        let mut bytes = std::io::Cursor::new(Vec::new());
+        let image = image::RgbaImage::from_raw(2, 1, texels.concat()).unwrap();
+        image.write_to(&mut bytes, image::ImageFormat::Png).unwrap();
+        bytes.into_inner()
+    };
+    // Red paint beside gold.
+    let diffuse = picture([[200, 20, 10, 255], [0, 0, 0, 255]]);
+    let specular = picture([[56, 56, 56, 0], [255, 226, 155, 255]]);
+    for (index, bytes) in [diffuse, specular].iter().enumerate() {
+        let view = b.view(bytes);
+        b.push("images", json!({"bufferView": view, "mimeType": "image/png"}));
+        b.push("textures", json!({"source": index}));
+    }
+    b.push(
+        "materials",
+        json!({"extensions": {"KHR_materials_pbrSpecularGlossiness": {
+            "diffuseTexture": {"index": 0}, "specularGlossinessTexture": {"index": 1}
+        }}}),
+    );
+    let scene = b.load().unwrap();
+    let material = &scene.materials[0];
+    let image =
+        |use_: Option<TextureUse>| &scene.images[scene.textures[use_.unwrap().texture].image.unwrap()].rgba;
+    let (base, rough) = (image(material.base_color_texture), image(material.metallic_roughness_texture));
+    let near = |found: &[u8], right: [u8; 3]| found.iter().zip(right).all(|(a, b)| a.abs_diff(b) <= 3);
+    assert!(near(&base[..3], [200, 20, 10]) && near(&base[4..7], [255, 226, 155]), "{base:?}");
+    assert!(near(&rough[..3], [255, 255, 0]) && near(&rough[4..7], [255, 0, 255]), "{rough:?}");
+    assert_eq!((material.metallic, material.roughness), (1.0, 1.0));
+}
+
+#[test]
+fn instances_may_be_wrong() {
+    for attributes in [json!({"TRANSLATION": 99}), json!({"TRANSLATION": 1}), json!({"TRANSLATION": "x"})] {
+        let mut b = Builder::triangle();
+        b.json["nodes"][0]["extensions"]["EXT_mesh_gpu_instancing"] = json!({"attributes": attributes});
+        let error = b.load().unwrap_err().to_string();
+        assert!(error.contains("instances of node number 0"), "{error}");
+    }
+    let mut b = Builder::triangle();
+    b.json["nodes"][0]["extensions"]["EXT_mesh_gpu_instancing"] = json!({"attributes": {}});
+    assert_eq!(b.load().unwrap().draws.len(), 1);
+}
+
+#[test]
 fn texture_transforms_turn_counter_clockwise_in_the_image() {
     let turned = TextureUse::uv_transform([0.0; 2], std::f32::consts::FRAC_PI_2, [1.0; 2]);
     // V points down the image: from right to up is towards -V.

@@ -3,5 +3,6 @@
 mod bounds;
 mod broken;
 pub(crate) mod build;
+mod cases;
 mod gltf;
 mod obj;

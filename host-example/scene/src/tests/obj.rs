@@ -73,7 +73,7 @@ fn what_the_mtl_lacks_costs_a_warning() {
         (None, "does not exist"),
         (Some("newmtl wall\nmap_Kd gone.png\n"), "gone.png"),
         (Some("newmtl wall\nmap_Kd ../a.png\n"), "outside"),
-        (Some("newmtl wall\nmap_Kd a.obj\n"), "neither PNG nor JPEG"),
+        (Some("newmtl wall\nmap_Kd a.obj\n"), "of unknown format"),
         (Some("newmtl wall\nKd one two\n"), "a.mtl, line 2: Kd 'one' is not a number"),
     ] {
         let obj = format!("mtllib a.mtl\n{triangle}");
@@ -177,6 +177,80 @@ fn vertices_without_a_colour_are_white_among_coloured_ones() {
         let found: Vec<[f32; 4]> = vertices.iter().map(|v| v.color).collect();
         assert_eq!(found, colors.map(|[r, g, b]| [r, g, b, 1.0]));
     }
+}
+
+#[test]
+fn colours_of_vertices_are_srgb_and_take_the_place_of_grey() {
+    let scene = load_bytes("a.obj", b"v 0 0 0 0.5 0.5 0.5\nv 1 0 0 0 0 0\nv 0 1 0 1 1 1\nf 1 2 3\n").unwrap();
+    let primitive = scene.primitive(&scene.draws[0]);
+    assert!((primitive.vertices[0].color[0] - 0.214).abs() < 1e-3, "{:?}", primitive.vertices[0].color);
+    assert_eq!(scene.materials[primitive.material].base_color.to_array(), [1.0; 4]);
+}
+
+#[test]
+fn texts_of_old_and_other_systems_are_read() {
+    let text = "mtllib \u{e4}.mtl\rv 0 0 0\rv 1 0 0\rv 0 1 0\rusemtl gr\u{fc}n\rf 1 2 3\r";
+    let mtl = "newmtl gr\u{fc}n\rKd 0 0.5 0\r";
+    let wide = |text: &str| text.encode_utf16().flat_map(u16::to_le_bytes).collect::<Vec<u8>>();
+    let latin = |text: &str| text.chars().map(|c| c as u8).collect::<Vec<u8>>();
+    let utf8 = |text: &str| text.as_bytes().to_vec();
+    for (obj, mtl) in [(wide(text), utf8(mtl)), (latin(text), wide(mtl)), (utf8(text), latin(mtl))] {
+        let scene = load(&[("a.obj", &obj), ("\u{e4}.mtl", &mtl)], None).unwrap();
+        assert!(scene.warnings.is_empty(), "{:?}", scene.warnings);
+        let material = &scene.materials[scene.primitive(&scene.draws[0]).material];
+        assert_eq!(material.base_color.to_array(), [0.0, 0.5, 0.0, 1.0]);
+    }
+}
+
+#[test]
+fn metals_emission_and_normals_come_from_the_mtl() {
+    let obj = format!("mtllib a.mtl\n{TRIANGLE}vt 0 0\nusemtl wall\nf 1/1 2/1 3/1\n");
+    let mtl = "newmtl wall\nPm 1\nPr 0.3\nmap_Ke glow.png\nmap_Bump -bm 0.5 bumps.png\nmap_Pr glow.png # a comment\n";
+    let bumps = {
+        let mut bytes = std::io::Cursor::new(Vec::new());
+        let image = image::RgbImage::from_pixel(2, 2, image::Rgb([128, 128, 255]));
+        image.write_to(&mut bytes, image::ImageFormat::Png).unwrap();
+        bytes.into_inner()
+    };
+    let files: [(&str, &[u8]); 4] =
+        [("a.obj", obj.as_bytes()), ("a.mtl", mtl.as_bytes()), ("glow.png", &png()), ("bumps.png", &bumps)];
+    let scene = load(&files, None).unwrap();
+    assert!(scene.warnings.is_empty(), "{:?}", scene.warnings);
+    let material = &scene.materials[scene.primitive(&scene.draws[0]).material];
+    assert_eq!((material.metallic, material.roughness, material.normal_scale), (1.0, 0.3, 0.5));
+    assert_eq!(material.emissive, Vec3::ONE);
+    assert!(material.emissive_texture.is_some() && material.normal_texture.is_some());
+    let rough = material.metallic_roughness_texture.expect("a texture of roughness");
+    let image = &scene.images[scene.textures[rough.texture].image.unwrap()];
+    assert_eq!(image.rgba[..4], [255, 1, 255, 255], "roughness is the luminance of the map");
+}
+
+#[test]
+fn smoothing_groups_reach_into_other_materials() {
+    let roof =
+        "v -1 0 0\nv 0 0 0\nv 0 0 1\nv -1 0 1\nv 0 -1 0\nv 0 -1 1\nS\nf 1 4 3 2\nusemtl b\nf 2 3 6 5\n";
+    for (statement, smooth) in [("s 7", true), ("s off", false), ("# s 7", false)] {
+        let mtl: &[u8] = b"newmtl b\nKd 1 0 0\n";
+        let obj = format!("mtllib a.mtl\n{}", roof.replace('S', statement));
+        let scene = load(&[("a.obj", obj.as_bytes()), ("a.mtl", mtl)], None).unwrap();
+        assert_eq!(scene.draws.len(), 2);
+        for draw in &scene.draws {
+            let ridge = scene.primitive(draw).vertices.iter().find(|v| v.position == [0.0; 3]).unwrap();
+            let bent =
+                Vec3::from(ridge.normal).abs_diff_eq(Vec3::new(0.5f32.sqrt(), 0.5f32.sqrt(), 0.0), 1e-4);
+            assert_eq!(bent, smooth, "{statement}: {:?}", ridge.normal);
+        }
+    }
+}
+
+#[test]
+fn normals_of_the_file_stay_beside_those_that_are_computed() {
+    let obj = format!("{TRIANGLE}v 0 0 1\nvn 0 1 0\nf 1//1 2//1 3//1\nf 1 3 4\n");
+    let scene = load_bytes("a.obj", obj.as_bytes()).unwrap();
+    let primitive = scene.primitive(&scene.draws[0]);
+    let normal = |slot: usize| primitive.vertices[primitive.indices[slot] as usize].normal;
+    assert_eq!([normal(0), normal(1), normal(2)], [[0.0, 1.0, 0.0]; 3]);
+    assert_eq!([normal(3), normal(4), normal(5)], [[1.0, 0.0, 0.0]; 3]);
 }
 
 #[test]
