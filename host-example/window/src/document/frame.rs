@@ -4,7 +4,7 @@ use isophote_files::error::{Error, Result};
 use isophote_files::limits;
 use isophote_finishing::apply::picture_request::PictureRequest;
 use isophote_loader::abi::{ISOPHOTE_ALPHA_EMISSIVE, IsophoteRequest};
-use isophote_pictures::convert;
+use isophote_pictures::primaries;
 use isophote_pictures::exr::Guide;
 use isophote_pictures::pixels::Pixels;
 use isophote_pictures::read::{ImageState, Source};
@@ -61,7 +61,7 @@ impl Frame {
         limits::must_have(size * (16 + picture.guides.len() as u64 * 16), name)?;
         let guides = std::mem::take(&mut picture.guides);
         let working = WorkingSpace::of(space, source.state, picture);
-        let changed = working.change.map(|(there, _)| convert::changed(&picture.pixels, &there));
+        let changed = working.change.map(|(there, _)| primaries::changed(&picture.pixels, &there));
         let (pixels, bad) = changed.as_ref().map_or((&picture.pixels, 0), |(pixels, bad)| (pixels, *bad));
         let (color, replaced) = colors(pixels);
         let named = guides.into_iter().filter_map(|(name, pixels)| {
