@@ -48,7 +48,7 @@ impl Pattern {
     /// # Errors
     /// [`Error::Input`] when there are several, or it has more digits than a name can have.
     pub fn new(path: &Path) -> Result<Option<Self>> {
-        if path.is_file() {
+        if path.exists() {
             return Ok(None);
         }
         match Self::in_name(path) {

@@ -341,11 +341,12 @@ pub fn check_size(path: &Path, width: u64, height: u64) -> Result<()> {
 fn picture(path: &Path, mut decoder: impl ImageDecoder, kind: &str) -> Result<Source> {
     let (width, height) = decoder.dimensions();
     check_size(path, width.into(), height.into())?;
+    // Before the limits of the picture, which are too small for the profile of a small one; decoders have others until then.
+    let profile = decoder.icc_profile().unwrap_or_default();
     // The size bounds the picture; what decoders need meanwhile is bounded by several times that.
     let mut limits = Limits::no_limits();
     limits.max_alloc = Some(decoder.total_bytes().saturating_mul(4).saturating_add(LEAST));
     decoder.set_limits(limits).map_err(|e| refused(path, kind, &e))?;
-    let profile = decoder.icc_profile().unwrap_or_default();
     let orientation = decoder.orientation().map_err(|e| refused(path, kind, &e))?;
     let mut decoded = DynamicImage::from_decoder(decoder).map_err(|e| refused(path, kind, &e))?;
     // Nothing but the pixels is kept, so what the camera noted of its attitude is done here.

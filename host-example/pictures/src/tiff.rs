@@ -15,6 +15,7 @@ const UNSIGNED: u16 = 1;
 
 /// A decoder of such a file that has read what it says of itself.
 pub struct Wide<'a> {
+    bytes: &'a [u8],
     inner: Decoder<Cursor<&'a [u8]>>,
     size: (u32, u32),
     color: ColorType,
@@ -34,7 +35,7 @@ impl<'a> Wide<'a> {
         // Unsigned ones need not be said to be so.
         let formats = inner.find_tag_unsigned_vec::<u16>(Tag::SampleFormat).ok()?.unwrap_or_default();
         let size = inner.dimensions().ok()?;
-        formats.iter().all(|format| *format == UNSIGNED).then_some(Self { inner, size, color })
+        formats.iter().all(|format| *format == UNSIGNED).then_some(Self { bytes, inner, size, color })
     }
 }
 
@@ -62,7 +63,7 @@ impl ImageDecoder for Wide<'_> {
         own.decoding_buffer_size = most;
         own.intermediate_buffer_size = most;
         own.ifd_value_size = most;
-        let again = Decoder::new(self.inner.inner().clone()).map_err(failed)?;
+        let again = Decoder::new(Cursor::new(self.bytes)).map_err(failed)?;
         self.inner = again.with_limits(own);
         Ok(())
     }

@@ -7,6 +7,7 @@ use isophote_files::files::Existing;
 use isophote_files::frames::Pattern;
 use isophote_pictures::exr::{Guide, GuideChoice, Selection};
 use isophote_pictures::pixels::Pixels;
+use isophote_pictures::primaries;
 use isophote_pictures::read::{self, Source};
 use isophote_pictures::write::{self, Format};
 
@@ -187,4 +188,47 @@ fn tiff_files_of_32_bit_integers_look_as_those_of_8() {
     let path = folder.path().join("said.tif");
     fs::write(&path, bytes).expect("the folder is writable");
     assert_eq!(source(&path).pictures[0].pixels.to_f32(), wide);
+}
+
+#[test]
+fn colour_spaces_by_name_are_those_of_their_chromaticities() {
+    let primaries = |name: &str| source(&case("exr_color_interop").join(name)).pictures[0].chromaticities;
+    for (named, written) in [("c_2020id.exr", "c_2020chr.exr"), ("c_ap1id.exr", "c_ap1chr.exr")] {
+        let (named, written) = (primaries(named).expect("known"), primaries(written).expect("written"));
+        assert!(primaries::same(named, written), "{named:?}");
+    }
+    assert_eq!(primaries("cs_Linear_Rec2020.exr"), Some(primaries::REC2020));
+    assert_eq!(primaries("c_p3id.exr"), Some(primaries::P3));
+    for name in ["c_plain.exr", "c_data.exr"] {
+        assert_eq!(primaries(name), None, "{name}");
+    }
+}
+
+#[test]
+fn profiles_are_kept_where_they_fit() {
+    let folder = tempfile::tempdir().expect("a folder");
+    for (name, format, is_kept) in [
+        ("p3.png", Format::Jpeg, true),
+        ("p3.jpg", Format::Png, true),
+        ("p3.tif", Format::Png, true),
+        ("p3.tif", Format::Tiff, true),
+        ("cmyk_icc.jpg", Format::Png, false),
+        ("cmyk_icc.tif", Format::Tiff, false),
+    ] {
+        let source = source(&case("icc_profiles").join(name));
+        let out = folder.path().join(format!("{name}.out"));
+        let pixels = source.pictures[0].pixels.clone();
+        write::write(&out, Existing::Replace, format, vec![pixels], &source, None)
+            .expect("it can be written");
+        assert_eq!(self::source(&out).profile.is_some(), is_kept, "{name} to {format:?}");
+    }
+    // A grey picture that becomes one of colours.
+    let mut grey = source(&case("icc_profiles").join("gicc.png"));
+    assert!(grey.profile.is_some());
+    let of_colours = source(&case("icc_profiles").join("p3.png")).pictures.remove(0).pixels;
+    grey.pictures[0].pixels = of_colours.clone();
+    let out = folder.path().join("grey.png");
+    write::write(&out, Existing::Replace, Format::Png, vec![of_colours], &grey, None)
+        .expect("it can be written");
+    assert_eq!(source(&out).profile, None);
 }

@@ -389,7 +389,7 @@ impl ApplyArgs {
             }
         };
         match tasks.ready.iter().find(|task| task.output.is_dir()) {
-            Some(task) => Err(Error::file(&task.output, "is a folder", "name a file")),
+            Some(task) => Err(Error::file(&task.output, "is a folder", "name a file, or the folder by --to")),
             None => Ok(tasks),
         }
     }
