@@ -147,14 +147,13 @@ pub fn encode(
     let encode = |(chunk, raw): (&Chunk, &Vec<u8>)| {
         let block = &chunk.block;
         let contents = levels.get(&block.level).map_or(&edit.contents, |level| level);
-        let new = assemble(part, block, raw, &edit.channels, contents);
+        let mut raw = assemble(part, block, raw, &edit.channels, contents);
         let mut packed = Vec::new();
-        let mut rest = new.as_slice();
         for piece in pieces(block) {
-            let (raw, left) = rest.split_at(piece.bytes(&edit.channels));
+            let rest = raw.split_off(piece.bytes(&edit.channels));
             let old = &bytes[chunk.data.clone()];
-            packed.push(codec::encode(part, &edit.channels, &piece, raw.to_vec(), old, &kept)?);
-            rest = left;
+            packed.push(codec::encode(part, &edit.channels, &piece, raw, old, &kept)?);
+            raw = rest;
         }
         Ok(packed)
     };

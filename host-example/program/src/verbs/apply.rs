@@ -12,7 +12,7 @@ use clap::{Args, ValueHint};
 use super::shared::{ForceArgs, LengthArgs, PrecisionArgs};
 use isophote_files::error::{Error, Result};
 use isophote_files::files::{self, Existing};
-use isophote_files::frames::{FrameList, Pattern};
+use isophote_files::frames::FrameList;
 use isophote_files::identity::is_same;
 use isophote_files::limits::{self, Threads};
 use isophote_files::stop::Stop;

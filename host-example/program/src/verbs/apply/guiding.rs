@@ -76,10 +76,11 @@ impl ApplyArgs {
         let has = |guide: Guide| {
             (guide.is_motion() && has_files) || offers.guides.iter().any(|(other, _)| *other == guide)
         };
-        // Other files than EXR have none; what was left out by hand is not missed.
+        // Other files than EXR have none; what was left out by hand is not missed, nor what few files have.
         let is_missed = |guide: &Guide| {
             let is_named = selection.guides.iter().any(|choice| choice.guide == *guide);
-            !offers.layers.is_empty() && is_used(guide) && !is_named && !has(*guide)
+            let is_rare = matches!(guide, Guide::Flow | Guide::RestPosition | Guide::MotionForward);
+            !offers.layers.is_empty() && is_used(guide) && !(is_named || is_rare || has(*guide))
         };
         let missed: Vec<&str> = Guide::ALL.into_iter().filter(is_missed).map(Guide::id).collect();
         if !missed.is_empty() {
