@@ -102,7 +102,7 @@ pub struct ApplyArgs {
     #[arg(long, value_enum, default_value_t = Backend::Auto)]
     pub backend: Backend,
     /// Colour space of the picture and of the result; without it sRGB for integers, linear for floats, and what
-    /// the chromaticities of an EXR file say.
+    /// the chromaticities or the colorInteropID of an EXR file say.
     #[arg(long, value_enum)]
     pub space: Option<Space>,
     /// The layer of an EXR file that is read and replaced [default: the main layer].
