@@ -1,6 +1,7 @@
 //! Decompressing and compressing single chunks.
 
 mod b44;
+mod dwa;
 mod foreign;
 mod zip;
 
@@ -80,8 +81,11 @@ pub fn working_memory(part: &Part, channels: &[Channel]) -> u64 {
         NONE => 0,
         // Tables of all 16-bit numbers, several of them.
         PIZ => 6 << 20,
-        // The same where halves are transformed, and floats of every block.
-        DWAA | DWAB => 2 << 20,
+        // The same where numbers are coded, and the blocks that are transformed, as halves and as floats.
+        DWAA | DWAB => {
+            let padded = part.chunks.iter().map(|c| dwa::padded(&part.channels, &c.block)).max();
+            (6 << 20) + 24 * padded.unwrap_or(0)
+        }
         // Of deflate, which wants most.
         _ => 512 << 10,
     };
@@ -96,6 +100,10 @@ pub fn decode(part: &Part, block: &Block, data: &[u8]) -> Result<Vec<u8>> {
     let size = block.bytes(&part.channels);
     if data.len() == size {
         return Ok(data.to_vec());
+    }
+    let is_dwa = matches!(part.compression, DWAA | DWAB);
+    if is_dwa && !dwa::is_possible(&part.channels, block, size, data) {
+        return Err(bad(part, "names impossible sizes"));
     }
     let raw = match part.compression {
         ZIPS | ZIP => zip::unzip(data, size),

@@ -278,7 +278,7 @@ fn unnamed(group: &Group, guide: Guide, tier: usize) -> Option<Vec<usize>> {
         }
         Guide::ObjectId => {
             let known = |word: &&str| group.members.iter().find(|(c, _)| key(c) == **word);
-            IDS.iter().find_map(|word| known(&word)).map(|member| vec![member.1])
+            IDS.iter().find_map(known).map(|member| vec![member.1])
         }
         Guide::RestPosition if REST.contains(&word.as_str()) => xyz(group),
         // "flow" alone may be optical flow.

@@ -15,6 +15,7 @@ use isophote_files::files::{self, Existing};
 use isophote_files::frames::FrameList;
 use isophote_files::identity::is_same;
 use isophote_files::limits::{self, Threads};
+use isophote_files::output;
 use isophote_files::stop::Stop;
 use isophote_finishing::apply::backend::Backend;
 use isophote_finishing::apply::dry_run::DryRun;
@@ -199,9 +200,7 @@ pub fn run(args: &ApplyArgs) -> Result<()> {
     let planner = Planner::new(library.clone(), args.looks(&library, files.style, &entries)?)?;
     let mut planner = planner.with_flow(args.flow.is_some());
     args.check_results(&tasks, &planner, &choices)?;
-    if let Some(opened) = &opened {
-        args.tell_guides(&tasks, &selection, &opened.offers(), &planner)?;
-    }
+    let guides = args.guides_found(&tasks, &selection, opened.as_ref(), &planner)?;
     let filter = Filter::new(library.clone(), looks, backend, args.space, args.threads)?;
     let most = args.memory.unwrap_or_else(memory::usual);
     let needs = args.needs(&mut planner, &tasks, opened.as_ref(), most)?;
@@ -209,7 +208,8 @@ pub fn run(args: &ApplyArgs) -> Result<()> {
         let (skip_existing, json) = (args.skip_existing, args.json);
         let run = DryRun { tasks: &tasks, selection: &selection, most, skip_existing, json };
         let refused = run.print(&mut planner, needs)?;
-        return report::check_failed(files.input, refused, &tasks, args.consent());
+        report::check_failed(files.input, refused, &tasks, args.consent())?;
+        return output::print(&guides);
     }
     let stop = Stop::on_signals();
     if !tasks.are_several() {
@@ -230,7 +230,8 @@ pub fn run(args: &ApplyArgs) -> Result<()> {
     let result = run.all(&mut filters, Reader::new(frame_source, planner, &tasks.ready, opened));
     let counts = report.end(result.is_ok());
     result?;
-    counts.check(files.input, &tasks, args.consent())
+    counts.check(files.input, &tasks, args.consent())?;
+    output::print(&guides)
 }
 
 /// Warns of keyframes of looks that no frame of a sequence reaches.

@@ -7,7 +7,8 @@ use isophote_files::output;
 use isophote_finishing::apply::filter::{self, MaskedStyle, Planner};
 use isophote_finishing::apply::tasks::Tasks;
 use isophote_loader::Library;
-use isophote_pictures::exr::{Guide, Offers, Selection};
+use isophote_pictures::exr::{Guide, Selection};
+use isophote_pictures::read::Opened;
 
 impl ApplyArgs {
     /// Guides that are looked for.
@@ -46,21 +47,21 @@ impl ApplyArgs {
         }
     }
 
-    /// Prints on one line which guides and which motion the first frame has for the style, and warns where nothing will be
-    /// steady for want of motion.
+    /// The line that says which guides and which motion the first frame has for the style; empty where there is nothing to
+    /// say. Warns where nothing will be steady for want of motion.
     ///
     /// # Errors
-    /// As [`Planner::span`] and [`output::print`].
-    pub(super) fn tell_guides(
+    /// As [`Planner::span`].
+    pub(super) fn guides_found(
         &self,
         tasks: &Tasks,
         selection: &Selection,
-        offers: &Offers,
+        opened: Option<&Opened>,
         planner: &Planner,
-    ) -> Result<()> {
-        if tasks.are_several() && !tasks.is_sequence() {
-            return Ok(());
-        }
+    ) -> Result<String> {
+        let is_one = tasks.is_sequence() || !tasks.are_several();
+        let Some(opened) = opened.filter(|_| is_one) else { return Ok(String::new()) };
+        let offers = opened.offers();
         let is_steady = planner.span(tasks.ready[0].frame)? > 1;
         let is_used = |guide: &Guide| selection.wanted.contains(guide) && (is_steady || !guide.is_motion());
         let has_files = self.motion.is_some();
@@ -86,9 +87,6 @@ impl ApplyArgs {
         if !missed.is_empty() {
             parts.push(format!("no {}", missed.join(", ")));
         }
-        if !(parts.is_empty() || self.json) {
-            output::print(&format!("guides: {}\n", parts.join("; ")))?;
-        }
         let is_left_out = selection.guides.iter().any(|choice| choice.guide.is_motion());
         let wants =
             [Guide::Motion, Guide::MotionForward].iter().any(|guide| selection.wanted.contains(guide));
@@ -99,6 +97,7 @@ impl ApplyArgs {
                  motion vectors by --motion",
             );
         }
-        Ok(())
+        let is_told = !(parts.is_empty() || self.json);
+        Ok(if is_told { format!("guides: {}\n", parts.join("; ")) } else { String::new() })
     }
 }
