@@ -205,6 +205,24 @@ fn sizes_that_the_file_cannot_pay_for_cost_nothing() {
     });
 }
 
+/// Sizes that a chunk of DWAA names are not believed.
+#[test]
+fn sizes_that_dwa_cannot_have_cost_nothing() {
+    let bytes = file(lossy()[0], (64, 32), 0.0);
+    let head = bytes.windows(17).position(|b| b == b"screenWindowWidth").expect("a header");
+    // A chunk begins with its version, and sizes of 64 bits follow.
+    let version = bytes[head..].windows(8).position(|b| b == 2u64.to_le_bytes()).expect("a chunk") + head;
+    for place in [1, 6, 7, 8, 9] {
+        for size in [1u64 << 20, 1 << 40, 1 << 62, u64::MAX] {
+            let mut bytes = bytes.clone();
+            bytes[version + 8 * place..][..8].copy_from_slice(&size.to_le_bytes());
+            let (used, result) = peak(&bytes, 16 << 20);
+            assert!(matches!(result, Err(Error::Damaged(_))), "{place}: {size}");
+            assert!(used <= SLACK, "{place}: {size}: {used}");
+        }
+    }
+}
+
 #[test]
 fn writing_keeps_to_the_limit_too() {
     alone(|| {

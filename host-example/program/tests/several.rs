@@ -97,7 +97,7 @@ fn what_belongs_to_sequences_is_refused() {
     fails(&mut apply(at, &["--to", "out"]), 2, &["--to", "no picture"]);
     fs::create_dir(at.join("empty")).expect("a folder");
     fails(&mut apply(at, &["empty", "--to", "out"]), 2, &["empty", "without pictures"]);
-    fails(&mut apply(at, &["in/a.jpg", "b.jpg", "c.jpg"]), 2, &["--to"]);
+    fails(&mut apply(at, &["in/a.jpg", "b.jpg", "c.jpg"]), 2, &["c.jpg: is one more", "--to"]);
     let (text, _) = succeeds(&mut apply(at, &["in", "--to", "out", "--dry-run"]));
     assert!(text.contains("4 pictures to be written"), "{text}");
     assert!(!at.join("out").exists());

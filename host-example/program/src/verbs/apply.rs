@@ -51,7 +51,7 @@ pub struct ApplyArgs {
     #[arg(required_unless_present_any = ["preset", "layered", "to"], value_hint = ValueHint::FilePath)]
     pub output: Option<PathBuf>,
     /// More pictures, with --to.
-    #[arg(requires = "to", value_hint = ValueHint::FilePath)]
+    #[arg(value_hint = ValueHint::FilePath)]
     pub more: Vec<PathBuf>,
     /// A folder for the results instead of a result: every picture that is named, and those of every folder, get a file of
     /// the same name in it (.png for .webp, .exr for .hdr). It is made where it is not there. A picture that fails does not

@@ -26,8 +26,12 @@ impl ApplyArgs {
     /// Meaning of what is named without an option: with a preset the style is left out, and with a folder the result.
     ///
     /// # Errors
-    /// [`Error::Input`] for a style beside a preset, and for a folder without pictures for it.
+    /// [`Error::Input`] for a style beside a preset, for a folder without pictures for it, and for more pictures without one.
     pub fn named(&self) -> Result<Named<'_>> {
+        if let (Some(first), None) = (self.more.first(), &self.to) {
+            let fix = "name the folder of the results of several by --to, or leave it out";
+            return Err(Error::file(first, "is one more than a style, a picture and a result", fix));
+        }
         let all = [Some(&self.style), self.input.as_ref(), self.output.as_ref()];
         let all: Vec<&Path> = all.into_iter().flatten().chain(&self.more).map(PathBuf::as_path).collect();
         match (self.preset.as_deref().or(self.layered.as_deref()), all.as_slice()) {
