@@ -1,4 +1,4 @@
-//! What the header of a Radiance HDR file says: the programs that write it, and the primaries of its light.
+//! Header of a Radiance HDR file: the programs that write it, and the primaries of its light.
 //!
 //! Source: the Radiance file format of Greg Ward, and his `rgbe.c`, whose files begin with `#?RGBE`.
 
@@ -17,7 +17,7 @@ const PRIMARIES: &str = "PRIMARIES=";
 /// A decoder that has read the header. Others than Radiance itself may write what they like behind `#?`.
 ///
 /// # Errors
-/// Those of the decoder.
+/// Errors of the decoder.
 pub fn decoder(bytes: &[u8]) -> ImageResult<HdrDecoder<Cursor<&[u8]>>> {
     HdrDecoder::with_strictness(Cursor::new(bytes), bytes.starts_with(USUAL))
 }

@@ -109,7 +109,7 @@ fn folder(path: &Path) -> &Path {
     path.parent().unwrap_or(Path::new(""))
 }
 
-/// Says once that results are compressed otherwise than the pictures that they are made from.
+/// Warns once that results are compressed otherwise than the pictures that they are made from.
 fn tell_recompressed([old, new]: [&str; 2]) {
     static TOLD: Once = Once::new();
     TOLD.call_once(|| {

@@ -12,7 +12,7 @@ use isophote_files::frames::{self, Pattern};
 use isophote_finishing::apply::tasks::Task;
 use isophote_pictures::write::Format;
 
-/// What is named without an option, by its meaning.
+/// Arguments without an option, by their meaning.
 pub struct Named<'a> {
     /// The style: a file or the name of a node or look.
     pub style: &'a Path,
@@ -23,7 +23,7 @@ pub struct Named<'a> {
 }
 
 impl ApplyArgs {
-    /// Meaning of what is named without an option: with a preset the style is left out, and with a folder the result.
+    /// Meaning of the arguments without an option: with a preset the style is left out, and with a folder the result.
     ///
     /// # Errors
     /// [`Error::Input`] for a style beside a preset, for a folder without pictures for it, and for more pictures without one.
