@@ -286,18 +286,24 @@ fn sources(
         });
         match (found, name) {
             (Some(source), _) => sources.push(source),
-            (None, Some(name)) => {
-                return Err(Fault::Choice {
-                    problem: format!("has no layer or channel '{name}' that could be the {}", guide.id()),
-                    fix: format!("name another by --guide {}=LAYER, or none", guide.id()),
-                });
-            }
+            (None, Some(name)) => return Err(no_guide(guide, name)),
             (None, None) => {}
         }
     }
     // Channels with fewer samples than pixels guide nothing.
     sources.retain(|s| s.channels.iter().all(|c| exr.parts()[s.part].channels[*c].sampling == (1, 1)));
     Ok(sources)
+}
+
+/// Error of a file that lacks the layer or channel that was asked for as a guide.
+fn no_guide(guide: Guide, name: &str) -> Fault {
+    let id = guide.id();
+    let channels =
+        if guide.is_of_surfaces() { format!(", its channels by --guide {id}=A,B,C") } else { String::new() };
+    Fault::Choice {
+        problem: format!("has no layer or channel '{name}' that could be the {id}"),
+        fix: format!("name another by --guide {id}=LAYER{channels}, or none"),
+    }
 }
 
 /// The channels of a guide that were asked for by their names.
