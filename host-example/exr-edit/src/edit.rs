@@ -111,7 +111,8 @@ impl Edit {
     }
 }
 
-/// Compresses every chunk of a part with what an edit says, and reserves what the result takes.
+/// Compresses every chunk of a part with what an edit says, in as many pieces as are written for it, and reserves what the
+/// result takes.
 ///
 /// # Errors
 /// [`Error::Damaged`] when a codec fails, [`Error::Memory`], [`Error::Argument`] when the edit is of another part.
@@ -121,7 +122,7 @@ pub fn encode(
     decoded: &Decoded,
     edit: &Edit,
     budget: &Arc<Budget>,
-) -> Result<(Vec<Vec<u8>>, Reserved)> {
+) -> Result<(Vec<Vec<Vec<u8>>>, Reserved)> {
     let kept: Vec<Option<usize>> = edit
         .contents
         .iter()
@@ -136,7 +137,9 @@ pub fn encode(
     if edit.window != part.window || !edit.channels.iter().zip(&kept).all(same) {
         return Err(Error::Argument("an edit is of another part".into()));
     }
-    let size: usize = part.chunks.iter().map(|c| c.block.bytes(&edit.channels) + CHUNK).sum();
+    let pieces = |block: &Block| codec::pieces(part, block);
+    let lists = |chunk: &Chunk| CHUNK * (1 + pieces(&chunk.block).count());
+    let size: usize = part.chunks.iter().map(|c| c.block.bytes(&edit.channels) + lists(c)).sum();
     let reserved = budget.reserve(size as u64)?;
     let _meanwhile = budget.reserve(codec::working_memory(part, &edit.channels))?;
     let _levels = budget.reserve(level_memory(part, &edit.contents))?;
@@ -144,8 +147,15 @@ pub fn encode(
     let encode = |(chunk, raw): (&Chunk, &Vec<u8>)| {
         let block = &chunk.block;
         let contents = levels.get(&block.level).map_or(&edit.contents, |level| level);
-        let new = assemble(part, block, raw, &edit.channels, contents);
-        codec::encode(part, &edit.channels, block, new, &bytes[chunk.data.clone()], &kept)
+        let mut raw = assemble(part, block, raw, &edit.channels, contents);
+        let mut packed = Vec::new();
+        for piece in pieces(block) {
+            let rest = raw.split_off(piece.bytes(&edit.channels));
+            let old = &bytes[chunk.data.clone()];
+            packed.push(codec::encode(part, &edit.channels, &piece, raw, old, &kept)?);
+            raw = rest;
+        }
+        Ok(packed)
     };
     let chunks = part.chunks.par_iter().zip(decoded.chunks()).map(encode).collect::<Result<_>>()?;
     Ok((chunks, reserved))

@@ -7,6 +7,7 @@ use std::io::Write;
 use std::sync::Arc;
 
 use crate::codec;
+use crate::compression;
 use crate::cursor::Cursor;
 use crate::edit::{self, Edit, PartEdit};
 use crate::error::{Error, Result};
@@ -17,6 +18,8 @@ use crate::planes::Decoded;
 
 /// Bit of the version field: names of more than [`SHORT_NAME`] bytes.
 const LONG_NAMES: u32 = 0x400;
+/// The newest compression whose chunks are known well.
+const NEWEST: u8 = 11;
 /// Longest name without that bit.
 const SHORT_NAME: usize = 31;
 
@@ -28,8 +31,8 @@ pub struct File {
     budget: Arc<Budget>,
 }
 
-/// Compressed chunks of a part, where it has new ones.
-type Data = Option<Vec<Vec<u8>>>;
+/// Compressed pieces that are written for each chunk of a part, where it has new ones.
+type Data = Option<Vec<Vec<Vec<u8>>>>;
 
 impl File {
     /// Finds the parts and chunks of a whole file in memory. Every chunk must lie where the table of offsets says.
@@ -67,7 +70,12 @@ impl File {
             part.chunks = Vec::with_capacity(count);
             for block in layout.blocks() {
                 let number = several.then_some(number);
-                part.chunks.push(chunk(&bytes, table.u64()?, number, block, part.tiles.is_some())?);
+                let found = chunk(&bytes, table.u64()?, number, block, part.tiles.is_some());
+                part.chunks.push(found.map_err(|problem| match problem {
+                    // Its chunks may be of another size than is known here.
+                    Error::Damaged(_) if part.compression > NEWEST => compression::unread(part.compression),
+                    problem => problem,
+                })?);
             }
         }
         let parts = parts.into_iter().map(Arc::new).collect();
@@ -84,6 +92,14 @@ impl File {
         self.parts.get(part).into_iter().flat_map(|part| part.texts(&self.bytes))
     }
 
+    /// Names of the compression of a part and of the one that [`write`](Self::write) takes where the part changes, where
+    /// they differ: what would lose something of every channel each time is not written.
+    pub fn recompressed(&self, part: usize) -> Option<[&'static str; 2]> {
+        let part = self.parts.get(part)?;
+        let written = codec::written(part);
+        (written != part.compression).then(|| [part.compression, written].map(compression::name))
+    }
+
     /// Length of the file in bytes.
     pub fn length(&self) -> usize {
         self.bytes.len()
@@ -97,7 +113,7 @@ impl File {
     /// Decompresses all chunks of a part, side by side on rayon's threads.
     ///
     /// # Errors
-    /// [`Error::Damaged`]; [`Error::Unsupported`] for compressions that could not be written again;
+    /// [`Error::Damaged`]; [`Error::Unsupported`] for compressions that are not read;
     /// [`Error::Memory`]; [`Error::Argument`] when there is no such part.
     pub fn decode(&self, part: usize) -> Result<Decoded> {
         let found =
@@ -136,7 +152,11 @@ impl File {
         let lists = changes.iter().flatten().flat_map(|edit| edit.channels()).map(|c| c.name.len() + 18);
         let head: usize =
             self.parts.iter().map(|p| p.header.len() + 16).sum::<usize>() + lists.sum::<usize>();
-        let chunks: usize = self.parts.iter().map(|p| p.chunks.len()).sum();
+        let count = |(part, change): (&Arc<Part>, &Option<&Edit>)| match change {
+            Some(_) => part.chunks.iter().map(|c| codec::pieces(part, &c.block).count()).sum(),
+            None => part.chunks.len(),
+        };
+        let chunks: usize = self.parts.iter().zip(changes).map(count).sum();
         // Offsets, and the order of the chunks with what sorting it takes.
         self.budget.reserve((GROWTH * head + chunks * (8 + 4 * size_of::<(usize, usize)>())) as u64)
     }
@@ -150,11 +170,13 @@ impl File {
         head.extend((version | if long { LONG_NAMES } else { 0 }).to_le_bytes());
         for (part, change) in self.parts.iter().zip(changes) {
             if let Some(edit) = change {
-                head.extend(&self.bytes[part.header.start..part.channel_list.start]);
+                let header = self.changed_header(part);
+                let (start, list) = (part.header.start, &part.channel_list);
+                head.extend(&header[..list.start - start]);
                 let value = channel_list(edit.channels());
                 head.extend((value.len() as u32).to_le_bytes());
                 head.extend(value);
-                head.extend(&self.bytes[part.channel_list.end..part.header.end]);
+                head.extend(&header[list.end - start..]);
             } else {
                 head.extend(&self.bytes[part.header.clone()]);
             }
@@ -164,6 +186,20 @@ impl File {
             head.push(0);
         }
         head
+    }
+
+    /// The header of a part that changes, with the compression and the number of chunks that are written.
+    fn changed_header(&self, part: &Part) -> Vec<u8> {
+        let mut header = self.bytes[part.header.clone()].to_vec();
+        let written = codec::written(part);
+        if written != part.compression {
+            header[part.compression_at - part.header.start] = written;
+            if let Some(at) = part.chunk_count_at {
+                let count: usize = part.chunks.iter().map(|c| codec::pieces(part, &c.block).count()).sum();
+                header[at - part.header.start..][..4].copy_from_slice(&(count as u32).to_le_bytes());
+            }
+        }
+        header
     }
 
     fn version(&self) -> u32 {
@@ -178,26 +214,49 @@ impl File {
             order.extend((0..part.chunks.len()).map(|chunk| (number, chunk)));
         }
         order.sort_by_key(|(part, chunk)| self.parts[*part].chunks[*chunk].prefix.start);
-        let bytes = |part: usize, chunk: usize| match &data[part] {
-            Some(chunks) => chunks[chunk].as_slice(),
-            None => &self.bytes[self.parts[part].chunks[chunk].data.clone()],
+        let pieces = |part: usize, chunk: usize| match &data[part] {
+            Some(chunks) => chunks[chunk].iter().map(Vec::as_slice).collect(),
+            None => vec![&self.bytes[self.parts[part].chunks[chunk].data.clone()]],
         };
-        let mut offset = (head.len() + 8 * order.len()) as u64;
-        let mut tables: Vec<Vec<u64>> = self.parts.iter().map(|p| vec![0; p.chunks.len()]).collect();
+        let count = |part: usize, chunk: usize| data[part].as_ref().map_or(1, |chunks| chunks[chunk].len());
+        // Where in the tables the pieces of each chunk begin.
+        let mut firsts: Vec<Vec<usize>> = Vec::with_capacity(self.parts.len());
+        let mut entries = 0;
+        for (number, part) in self.parts.iter().enumerate() {
+            let mut of_part = Vec::with_capacity(part.chunks.len());
+            for chunk in 0..part.chunks.len() {
+                of_part.push(entries);
+                entries += count(number, chunk);
+            }
+            firsts.push(of_part);
+        }
+        let mut offset = (head.len() + 8 * entries) as u64;
+        let mut table: Vec<u64> = vec![0; entries];
         for (part, chunk) in &order {
-            tables[*part][*chunk] = offset;
             let prefix = self.parts[*part].chunks[*chunk].prefix.len();
-            offset += (prefix + 4 + bytes(*part, *chunk).len()) as u64;
+            for (at, piece) in pieces(*part, *chunk).into_iter().enumerate() {
+                table[firsts[*part][*chunk] + at] = offset;
+                offset += (prefix + 4 + piece.len()) as u64;
+            }
         }
         out.write_all(head)?;
-        for entry in tables.iter().flatten() {
+        for entry in table {
             out.write_all(&entry.to_le_bytes())?;
         }
-        for (part, chunk) in &order {
-            let data = bytes(*part, *chunk);
-            out.write_all(&self.bytes[self.parts[*part].chunks[*chunk].prefix.clone()])?;
-            out.write_all(&(data.len() as u32).to_le_bytes())?;
-            out.write_all(data)?;
+        for (number, chunk) in &order {
+            let part = &self.parts[*number];
+            let Chunk { block, prefix, .. } = &part.chunks[*chunk];
+            let blocks = codec::pieces(part, block);
+            for (data, piece) in pieces(*number, *chunk).into_iter().zip(blocks) {
+                let mut prefix = self.bytes[prefix.clone()].to_vec();
+                // Scan lines are numbered by their first row, which ends the prefix.
+                if let (None, Some(row)) = (part.tiles, prefix.last_chunk_mut::<4>()) {
+                    *row = piece.number.1.to_le_bytes();
+                }
+                out.write_all(&prefix)?;
+                out.write_all(&(data.len() as u32).to_le_bytes())?;
+                out.write_all(data)?;
+            }
         }
         Ok(())
     }

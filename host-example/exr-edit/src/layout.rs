@@ -1,5 +1,6 @@
 //! Pixels that each chunk of a part holds, and their order in it when it is not compressed.
 
+use crate::compression;
 use crate::error::{Error, Result};
 
 /// Longest side of a tile.
@@ -169,7 +170,7 @@ impl Layout {
             let problem = format!("has {}x{} pixels", full.0, full.1);
             return Err(Error::unsupported(problem, format!("use a picture of 1 to {most} pixels")));
         }
-        let lines = lines(compression)?;
+        let lines = compression::lines(compression)?;
         let Some(tiles) = tiles else {
             let levels = vec![Level { number: (0, 0), size: full }];
             return Ok(Self { size: (full.0, lines), levels, top: Some(window.y) });
@@ -231,15 +232,4 @@ fn levels(full: (usize, usize), mode: u8) -> Result<Vec<Level>> {
     let level =
         |number: (usize, usize)| Level { number, size: (size(full.0, number.0), size(full.1, number.1)) };
     Ok(numbers.into_iter().map(level).collect())
-}
-
-/// Scan lines in a chunk of each compression.
-fn lines(compression: u8) -> Result<usize> {
-    match compression {
-        0..=2 => Ok(1),
-        3 | 5 => Ok(16),
-        4 | 6 | 7 | 8 | 11 => Ok(32),
-        9 | 10 => Ok(256),
-        other => Err(Error::damaged(format!("compression {other} is unknown"))),
-    }
 }

@@ -48,6 +48,7 @@
 #![forbid(unsafe_code)]
 
 mod codec;
+mod compression;
 pub mod create;
 mod cursor;
 mod edit;

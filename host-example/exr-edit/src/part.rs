@@ -40,7 +40,7 @@ pub struct Part {
     /// The display window, where it is one.
     pub display: Option<Window>,
     /// Number of the compression, as files have it: 0 none, 1 RLE, 2 ZIPS, 3 ZIP, 4 PIZ, 5 PXR24, 6 B44, 7 B44A,
-    /// 8 DWAA, 9 DWAB, 10 HTJ2K256, 11 HTJ2K32.
+    /// 8 DWAA, 9 DWAB, 10 HTJ2K256, 11 HTJ2K32, 12 LJ2K, 13 ZSTD.
     pub compression: u8,
     /// Red, green, blue, white: x and y of each (CIE 1931).
     pub chromaticities: Option<[f32; 8]>,
@@ -50,6 +50,10 @@ pub struct Part {
     pub(crate) header: Range<usize>,
     /// Range in the file of the value of `channels`, with its size before it.
     pub(crate) channel_list: Range<usize>,
+    /// Place in the file of the value of `compression`.
+    pub(crate) compression_at: usize,
+    /// Place in the file of the value of `chunkCount`, where there is one.
+    pub(crate) chunk_count_at: Option<usize>,
     /// Tiles, or nothing for scan lines.
     pub(crate) tiles: Option<Tiles>,
     /// All chunks, in the order of the offset table.
@@ -98,8 +102,11 @@ impl Part {
             let before = at.position();
             let size = at.u32()? as usize;
             let value = at.take(size)?;
-            if (name, kind) == ("channels", "chlist") {
-                header.part.channel_list = before..at.position();
+            match (name, kind, size) {
+                ("channels", "chlist", _) => header.part.channel_list = before..at.position(),
+                ("compression", "compression", 1) => header.part.compression_at = at.position() - size,
+                ("chunkCount", "int", 4) => header.part.chunk_count_at = Some(at.position() - size),
+                _ => {}
             }
             header.read(name, kind, value, budget)?;
         }
@@ -144,6 +151,8 @@ impl Header {
             world_to_camera: None,
             header: start..start,
             channel_list: 0..0,
+            compression_at: 0,
+            chunk_count_at: None,
             tiles: None,
             chunks: Vec::new(),
             reserved,

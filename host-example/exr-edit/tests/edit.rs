@@ -8,7 +8,7 @@ use exr::prelude::{
 };
 use isophote_exr_edit::{Channel, Edit, Error, File, Limits, PartEdit, Plane, Sample};
 use isophote_tests::two_parts;
-use support::{assets, encodings, file};
+use support::{assets, encodings, file, lossy};
 
 fn parse(bytes: Vec<u8>) -> File {
     File::parse(bytes, Limits::default()).expect("the file is whole")
@@ -71,7 +71,70 @@ fn other_channels_keep_their_bits() {
 }
 
 /// Compressions that are not read, with the scan lines of a chunk as OpenEXR's header `ImfCompression.h` has them.
-const NOT_READ: [(u8, usize); 4] = [(8, 32), (9, 256), (10, 256), (11, 32)];
+const NOT_READ: [(u8, usize); 2] = [(10, 256), (11, 32)];
+
+/// Channels that nobody changes lose nothing more: they are written with ZIP, whose chunks of lines are smaller.
+#[test]
+fn what_was_lossy_is_written_without_loss() {
+    for encoding in lossy() {
+        let (width, height) = (67, 301);
+        let before = parse(file(encoding, (width, height), 1.0));
+        assert_eq!(before.recompressed(0).map(|names| names[1]), Some("ZIP"));
+        let part = &before.parts()[0];
+        let decoded = before.decode(0).unwrap();
+        let mut edit = Edit::of(part);
+        edit.replace("G", vec![2.0; width * height]).unwrap();
+        let mut out = Vec::new();
+        before.write(&[PartEdit { decoded: &decoded, edit: &edit }], &mut out).unwrap();
+        // The crate's own reader finds every chunk.
+        let read = exr::prelude::read_first_flat_layer_from_file;
+        let folder = tempfile::tempdir().unwrap();
+        let path = folder.path().join("out.exr");
+        std::fs::write(&path, &out).unwrap();
+        assert_eq!(read(&path).unwrap().layer_data.size, Vec2(width, height), "{encoding:?}");
+
+        let after = parse(out);
+        assert_eq!((after.parts()[0].compression, after.recompressed(0)), (3, None));
+        let again = after.decode(0).unwrap();
+        for name in ["B", "R", "Z", "id"] {
+            let channel = part.channel(name).unwrap();
+            let (old, new) = (decoded.plane(channel).unwrap(), again.plane(channel).unwrap());
+            assert!(bits(&old) == bits(&new), "{encoding:?}, {name}");
+        }
+        let green = again.plane(part.channel("G").unwrap()).unwrap().to_f32();
+        assert!(green.iter().all(|v| *v == 2.0), "{encoding:?}");
+        // Nothing is decoded where nothing changes.
+        let bytes = file(encoding, (width, height), 1.0);
+        let mut same = Vec::new();
+        parse(bytes.clone()).write(&[], &mut same).unwrap();
+        assert!(bytes == same, "{encoding:?}");
+    }
+}
+
+/// A picture of one colour takes hardly any bytes.
+#[test]
+fn flat_pictures_of_lossy_kinds_are_read() {
+    for encoding in lossy() {
+        let file = parse(file(encoding, (1024, 256), 0.0));
+        let decoded = file.decode(0).unwrap();
+        let red = decoded.plane(file.parts()[0].channel("R").unwrap()).unwrap().to_f32();
+        assert!(red.iter().all(|v| (v - 0.25).abs() < 0.01), "{encoding:?}");
+    }
+}
+
+#[test]
+fn newer_compressions_are_named() {
+    for (compression, name) in [(10, "HTJ2K256"), (11, "HTJ2K32"), (12, "LJ2K"), (13, "ZSTD"), (14, "14")] {
+        let mut bytes = file(encodings()[0], (8, 8), 1.0);
+        let at = bytes.windows(12).position(|b| b == b"compression\0").unwrap() + 28;
+        bytes[at] = compression;
+        let error =
+            File::parse(bytes, Limits::default()).and_then(|file| file.decode(0)).unwrap_err().to_string();
+        // HTJ2K has other chunks than these lines.
+        let is_named = error.contains(name) && !error.contains("damaged");
+        assert!(is_named || compression < 12, "{compression}: {error}");
+    }
+}
 
 #[test]
 fn parts_that_are_not_read_pass_untouched() {

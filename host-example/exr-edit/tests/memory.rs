@@ -7,7 +7,7 @@ mod support;
 use std::cell::RefCell;
 
 use isophote_exr_edit::{Channel, Edit, Error, File, Limits, PartEdit, Result, Sample};
-use support::{assets, encodings, file};
+use support::{assets, encodings, file, lossy};
 
 /// Memory that does not follow from the file: messages of errors, the work lists of threads.
 const SLACK: u64 = 64 << 10;
@@ -86,7 +86,7 @@ fn spoilt(bytes: &[u8], seed: u32) -> Vec<u8> {
 fn reading_keeps_within_its_limit() {
     alone(|| {
         let (mut read, mut refused) = (0, 0);
-        for encoding in encodings() {
+        for encoding in encodings().into_iter().chain(lossy()) {
             let bytes = file(encoding, (96, 64), 1.0);
             for memory in [0, 1 << 10, 16 << 10, 256 << 10, 700 << 10, 1 << 20, 16 << 20] {
                 let (used, result) = peak(&bytes, memory);
@@ -114,7 +114,7 @@ fn spoilt_files_keep_within_the_limit() {
     const LIMIT: u64 = 2 << 20;
     alone(|| {
         let mut refused = 0;
-        for (index, encoding) in encodings().into_iter().enumerate() {
+        for (index, encoding) in encodings().into_iter().chain(lossy()).enumerate() {
             let bytes = file(encoding, (40, 24), 1.0);
             for seed in 0..150 {
                 let spoilt = spoilt(&bytes, seed * 31 + index as u32);
@@ -205,10 +205,28 @@ fn sizes_that_the_file_cannot_pay_for_cost_nothing() {
     });
 }
 
+/// Sizes that a chunk of DWAA names are not believed.
+#[test]
+fn sizes_that_dwa_cannot_have_cost_nothing() {
+    let bytes = file(lossy()[0], (64, 32), 0.0);
+    let head = bytes.windows(17).position(|b| b == b"screenWindowWidth").expect("a header");
+    // A chunk begins with its version, and sizes of 64 bits follow.
+    let version = bytes[head..].windows(8).position(|b| b == 2u64.to_le_bytes()).expect("a chunk") + head;
+    for place in [1, 6, 7, 8, 9] {
+        for size in [1u64 << 20, 1 << 40, 1 << 62, u64::MAX] {
+            let mut bytes = bytes.clone();
+            bytes[version + 8 * place..][..8].copy_from_slice(&size.to_le_bytes());
+            let (used, result) = peak(&bytes, 16 << 20);
+            assert!(matches!(result, Err(Error::Damaged(_))), "{place}: {size}");
+            assert!(used <= SLACK, "{place}: {size}: {used}");
+        }
+    }
+}
+
 #[test]
 fn writing_keeps_to_the_limit_too() {
     alone(|| {
-        for encoding in encodings() {
+        for encoding in encodings().into_iter().chain(lossy()) {
             let bytes = file(encoding, (96, 64), 1.0);
             assert!(use_all(bytes.clone(), Limits::default()).is_ok(), "{encoding:?}");
             // The callers' planes and the file that is written are beside the limit.

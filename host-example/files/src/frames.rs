@@ -1,23 +1,22 @@
-//! Sequences of frames: file names such as `shot.####.exr`, `shot.@@@@.exr` and `shot.%04d.exr`, and lists of
-//! frame numbers such as `1001-1100x2,1200`.
+//! Sequences of frames: file names such as `shot.####.exr`, `shot.@@@@.exr`, `shot.%04d.exr` and `shot.$F4.exr`, and
+//! lists of frame numbers such as `1001-1100x2,1200`.
 
-use std::collections::HashSet;
 use std::ffi::{OsStr, OsString};
 use std::fs;
-use std::iter::successors;
+use std::ops::RangeInclusive;
 use std::path::{Path, PathBuf};
-use std::str::FromStr;
 
 use crate::error::{Error, Result};
+use crate::place::{Place, places};
 
-/// Most frames of one run.
-const MOST_FRAMES: usize = 1_000_000;
+pub use crate::list::{FrameList, holes, range_expression, summary};
+
 /// Most digits of a place for the number: names of files are no longer.
 const MOST_DIGITS: usize = 255;
+/// Numbers of UDIM tiles.
+const TILES: RangeInclusive<i64> = 1001..=9999;
 /// Extensions of pictures.
 const KINDS: [&str; 8] = ["exr", "png", "jpg", "jpeg", "tif", "tiff", "webp", "hdr"];
-/// Most ranges in a message.
-const MOST_SHOWN: usize = 12;
 
 /// A file name with a place for the number of the frame.
 #[derive(Clone, Debug, PartialEq, Eq)]
@@ -25,21 +24,71 @@ pub struct Pattern {
     path: PathBuf,
     before: OsString,
     digits: usize,
+    /// True where a minus is one of the digits.
+    counts_sign: bool,
     after: OsString,
+    /// True where any number of digits may be meant, since one sign was written.
+    is_open: bool,
+    is_of_tiles: bool,
+}
+
+/// A number in the name of a file.
+struct Numbered {
+    number: i64,
+    /// Its digits, without a minus.
+    digits: usize,
+    is_padded: bool,
+    name: OsString,
 }
 
 impl Pattern {
-    /// The pattern in a path's last part; nothing when there is none.
+    /// The pattern in the last part of a path that is read; nothing when there is none, and where a file has just this
+    /// name. One sign alone stands for as many digits as the files have.
     ///
     /// # Errors
     /// [`Error::Input`] when there are several, or it has more digits than a name can have.
     pub fn new(path: &Path) -> Result<Option<Self>> {
-        let Some(name) = path.file_name().map(OsStr::as_encoded_bytes) else { return Ok(None) };
-        let Some((start, length, digits)) = place(name) else { return Ok(None) };
-        let (before, after) = (&name[..start], &name[start + length..]);
-        if place(after).is_some() {
-            return Err(Error::file(path, "has several places for the frame number", "leave one"));
+        if path.exists() {
+            return Ok(None);
         }
+        match Self::in_name(path) {
+            Ok(pattern) => Ok(pattern.map(Self::fitted)),
+            // The files tell which of several places is meant.
+            Err(error) => {
+                let mut found =
+                    Self::all(path)?.into_iter().map(Self::fitted).filter(|p| p.on_disk().is_ok());
+                match (found.next(), found.next()) {
+                    (Some(only), None) => Ok(Some(only)),
+                    _ => Err(error),
+                }
+            }
+        }
+    }
+
+    /// The pattern in a path's last part, whatever files there are; nothing when there is none.
+    ///
+    /// # Errors
+    /// As [`Pattern::new`].
+    pub fn in_name(path: &Path) -> Result<Option<Self>> {
+        let name = path.file_name().map(OsStr::as_encoded_bytes).unwrap_or_default();
+        let all = places(name);
+        let most = all.iter().map(|place| place.rank(name)).max();
+        let mut best = all.iter().filter(|place| Some(place.rank(name)) == most);
+        match (best.next(), best.next()) {
+            (None, _) => Ok(None),
+            (Some(place), None) => Self::at(path, name, place).map(Some),
+            _ => Err(Error::file(path, "has several places for the frame number", "leave one")),
+        }
+    }
+
+    /// The patterns of all places in a path's last part.
+    fn all(path: &Path) -> Result<Vec<Self>> {
+        let name = path.file_name().map(OsStr::as_encoded_bytes).unwrap_or_default();
+        places(name).iter().map(|place| Self::at(path, name, place)).collect()
+    }
+
+    fn at(path: &Path, name: &[u8], place: &Place) -> Result<Self> {
+        let Place { start, length, digits, counts_sign, is_tile } = *place;
         if digits > MOST_DIGITS {
             return Err(Error::file(
                 path,
@@ -47,10 +96,18 @@ impl Pattern {
                 "leave a few",
             ));
         }
-        Ok(Some(Self { path: path.to_owned(), before: piece(before), digits, after: piece(after) }))
+        Ok(Self {
+            path: path.to_owned(),
+            before: piece(&name[..start]),
+            digits,
+            counts_sign,
+            after: piece(&name[start + length..]),
+            is_open: digits == 1,
+            is_of_tiles: is_tile,
+        })
     }
 
-    /// The pattern in a path's last part; without one, `.####` before the extension.
+    /// The pattern in the last part of a path that is written; without one, `.####` before the extension.
     ///
     /// # Errors
     /// As [`Pattern::new`].
@@ -63,26 +120,83 @@ impl Pattern {
                 after.push(".");
                 after.push(extension);
             }
-            Self { path: path.to_owned(), before, digits: 4, after }
+            let path = path.to_owned();
+            Self { path, before, digits: 4, counts_sign: false, after, is_open: false, is_of_tiles: false }
         };
-        Ok(Self::new(path)?.unwrap_or_else(added))
+        Ok(Self::in_name(path)?.unwrap_or_else(added))
+    }
+
+    /// The same with as many digits as `other` has, where both were written with one sign.
+    #[must_use]
+    pub fn like(mut self, other: &Self) -> Self {
+        if self.is_open && other.is_open {
+            self.digits = other.digits;
+        }
+        self
+    }
+
+    /// True for UDIM tiles, whose numbers are places and no times.
+    pub fn is_of_tiles(&self) -> bool {
+        self.is_of_tiles
     }
 
     /// The file of a frame.
     pub fn file(&self, frame: i64) -> PathBuf {
-        let sign = if frame < 0 { "-" } else { "" };
-        let digits = self.digits;
+        self.path.with_file_name(self.name(frame, self.counts_sign))
+    }
+
+    fn name(&self, frame: i64, counts_sign: bool) -> OsString {
+        let (sign, digits) = match (frame < 0, counts_sign) {
+            (false, _) => ("", self.digits),
+            (true, false) => ("-", self.digits),
+            (true, true) => ("-", self.digits.saturating_sub(1)),
+        };
         let mut name = self.before.clone();
         name.push(format!("{sign}{:0digits$}", frame.unsigned_abs()));
         name.push(&self.after);
-        self.path.with_file_name(name)
+        name
     }
 
-    /// The number in the name of a file of the sequence.
-    fn number(&self, name: &OsStr) -> Option<i64> {
-        let rest = name.as_encoded_bytes().strip_prefix(self.before.as_encoded_bytes())?;
-        let number = rest.strip_suffix(self.after.as_encoded_bytes())?;
-        std::str::from_utf8(number).ok()?.parse().ok()
+    /// The same with the digits of the files that there are, where it leaves them open, and with their way to write
+    /// numbers below zero.
+    fn fitted(mut self) -> Self {
+        let Ok(found) = self.numbered() else { return self };
+        if self.is_open
+            && let Some(digits) = padding(&found)
+        {
+            self.digits = digits;
+        }
+        let has =
+            |counts_sign| found.iter().any(|n| n.number < 0 && self.name(n.number, counts_sign) == n.name);
+        if !has(self.counts_sign) && has(!self.counts_sign) {
+            self.counts_sign = !self.counts_sign;
+        }
+        self
+    }
+
+    fn folder(&self) -> &Path {
+        match self.path.parent() {
+            Some(folder) if !folder.as_os_str().is_empty() => folder,
+            _ => Path::new("."),
+        }
+    }
+
+    /// Files with any number in the place.
+    fn numbered(&self) -> std::io::Result<Vec<Numbered>> {
+        let mut found = Vec::new();
+        for entry in fs::read_dir(self.folder())? {
+            let name = entry?.file_name();
+            let rest = name.as_encoded_bytes().strip_prefix(self.before.as_encoded_bytes());
+            let text = rest.and_then(|rest| rest.strip_suffix(self.after.as_encoded_bytes()));
+            let text = text.and_then(|text| std::str::from_utf8(text).ok());
+            let Some((text, number)) = text.and_then(|text| Some((text, text.parse().ok()?))) else {
+                continue;
+            };
+            let digits = text.bytes().filter(u8::is_ascii_digit).count();
+            let is_padded = digits > 1 && text.trim_start_matches('-').starts_with('0');
+            found.push(Numbered { number, digits, is_padded, name });
+        }
+        Ok(found)
     }
 
     /// Frames that have a file, in order.
@@ -90,45 +204,49 @@ impl Pattern {
     /// # Errors
     /// [`Error::Input`] when the folder cannot be read or there are none.
     pub fn on_disk(&self) -> Result<Vec<i64>> {
-        let folder = match self.path.parent() {
-            Some(folder) if !folder.as_os_str().is_empty() => folder,
-            _ => Path::new("."),
+        let unreadable = |e: std::io::Error| {
+            Error::file(self.folder(), format!("cannot be read: {e}"), "name another folder")
         };
-        let unreadable =
-            |e: std::io::Error| Error::file(folder, format!("cannot be read: {e}"), "name another folder");
-        let mut frames = Vec::new();
-        for entry in fs::read_dir(folder).map_err(unreadable)? {
-            let name = entry.map_err(unreadable)?.file_name();
-            let number = self.number(&name);
-            // Only the name that the frame would have: 1 is no frame of ####.
-            frames.extend(number.filter(|n| self.file(*n).file_name() == Some(name.as_os_str())));
-        }
+        let found = self.numbered().map_err(unreadable)?;
+        // Only the name that the frame would have: 1 is no frame of ####.
+        let is_frame = |n: &&Numbered| {
+            self.name(n.number, self.counts_sign) == n.name
+                && (!self.is_of_tiles || TILES.contains(&n.number))
+        };
+        let mut frames: Vec<i64> = found.iter().filter(is_frame).map(|n| n.number).collect();
         if frames.is_empty() {
-            return Err(Error::file(&self.path, "matches no file", "name files that exist"));
+            return Err(self.none(&found));
         }
         frames.sort_unstable();
         Ok(frames)
     }
+
+    /// The error of a pattern that no file has; `found` are files with other numbers of digits.
+    fn none(&self, found: &[Numbered]) -> Error {
+        let fix = match found.iter().find(|n| n.is_padded).or(found.first()) {
+            Some(first) => {
+                let same = found.iter().all(|n| n.digits == first.digits);
+                let signs = if first.is_padded || same { first.digits } else { 1 };
+                let mut name = self.before.clone();
+                name.push("#".repeat(signs));
+                name.push(&self.after);
+                format!("write {}", self.path.with_file_name(name).display())
+            }
+            None => "name files that exist".into(),
+        };
+        Error::file(&self.path, "matches no file", fix)
+    }
 }
 
-/// Place of the number: start, length and digits.
-fn place(name: &[u8]) -> Option<(usize, usize, usize)> {
-    for (start, c) in name.iter().enumerate() {
-        let rest = &name[start..];
-        if matches!(c, b'#' | b'@') {
-            let length = rest.iter().take_while(|other| *other == c).count();
-            return Some((start, length, length));
-        }
-        if *c == b'%' {
-            let length = rest[1..].iter().take_while(|c| c.is_ascii_digit()).count();
-            if rest.get(1 + length) == Some(&b'd') && length <= 3 {
-                // %4d would pad with blanks, which no sequence means.
-                let digits = rest[1..=length].iter().fold(0, |sum, c| sum * 10 + usize::from(c - b'0'));
-                return Some((start, length + 2, digits.max(1)));
-            }
-        }
-    }
-    None
+/// Digits of numbers that zeros pad to one length; nothing where they are as long as they are.
+fn padding(found: &[Numbered]) -> Option<usize> {
+    // A minus may be one of the digits.
+    let is_below = found.iter().all(|n| n.number < 0);
+    let found = || found.iter().filter(|n| is_below || n.number >= 0);
+    let least = found().map(|n| n.digits).min()?;
+    let mut padded = found().filter(|n| n.is_padded).peekable();
+    padded.peek()?;
+    padded.all(|n| n.digits == least).then_some(least)
 }
 
 /// A part of a name that ends where ASCII begins or the other way round, whatever its letters are.
@@ -189,158 +307,9 @@ fn numbered(name: &OsStr) -> Option<String> {
         .then(|| format!("{}{}{}.{extension}", &stem[..end - digits], "#".repeat(digits), &stem[end..]))
 }
 
-/// Frames as they are written on the command line: numbers and ranges with steps after an x, or after a colon as
-/// Open Job Description has it; each frame once and in the order given.
-#[derive(Clone, Debug, PartialEq, Eq)]
-pub struct FrameList(Vec<i64>);
-
-impl FrameList {
-    /// The frames, at least one.
-    pub fn frames(&self) -> &[i64] {
-        &self.0
-    }
-
-    /// Reads a list, or a number alone as that many frames from 1.
-    ///
-    /// # Errors
-    /// The problem with the text.
-    pub fn or_count(text: &str) -> std::result::Result<Self, String> {
-        match text.trim().parse::<usize>() {
-            Ok(0) => {
-                Err("no frames are too few; write a number such as 48, or a list such as 1001-1100".into())
-            }
-            Ok(count) if count > MOST_FRAMES => Err(format!("more than {MOST_FRAMES} frames are too many")),
-            Ok(count) => Ok(Self((1..=count as i64).collect())),
-            Err(_) => text.parse(),
-        }
-    }
-}
-
-impl FromStr for FrameList {
-    type Err = String;
-
-    fn from_str(list: &str) -> std::result::Result<Self, String> {
-        let mut all = Vec::new();
-        let mut seen = HashSet::new();
-        for item in list.split(',') {
-            let (first, last, step) = range(item.trim()).ok_or_else(|| {
-                format!("'{}' is no range of frames; write a list such as 1001-1100x2,1200", item.trim())
-            })?;
-            let count = (last - first).abs() / step;
-            if all.len() as i64 + count >= MOST_FRAMES as i64 {
-                return Err(format!("more than {MOST_FRAMES} frames are too many"));
-            }
-            let signed = if last < first { -step } else { step };
-            all.extend((0..=count).map(|i| first + i * signed).filter(|frame| seen.insert(*frame)));
-        }
-        Ok(Self(all))
-    }
-}
-
-/// First frame, last frame and step of `1001-1100x2`, of `1001-1100` or of a single frame.
-fn range(item: &str) -> Option<(i64, i64, i64)> {
-    let (range, step) = match item.split_once(['x', ':']) {
-        Some((range, step)) => (range, step.trim().parse().ok()?),
-        None => (item, 1i64),
-    };
-    // A minus at the front is the number's own.
-    let split = range
-        .char_indices()
-        .skip(1)
-        .find(|(at, c)| *c == '-' && range[..*at].trim_end().ends_with(|c: char| c.is_ascii_digit()));
-    let number = |text: &str| text.trim().parse::<i64>().ok().filter(|n| n.unsigned_abs() < 1 << 40);
-    let (first, last) = match split {
-        Some((at, _)) => (number(&range[..at])?, number(&range[at + 1..])?),
-        None => (number(range)?, number(range)?),
-    };
-    (step > 0).then_some((first, last, step))
-}
-
-/// Frames that a sequence on disk seems to lack: holes in its smallest step.
-pub fn holes(frames: &[i64]) -> Vec<i64> {
-    let pairs = || frames.windows(2).filter(|pair| pair[0] < pair[1]);
-    let Some(step) = pairs().map(|pair| pair[1].abs_diff(pair[0])).min() else { return Vec::new() };
-    let next = move |frame: &i64| frame.checked_add_unsigned(step);
-    let between = |pair: &[i64]| {
-        successors(next(&pair[0]), next).take_while({
-            let end = pair[1];
-            move |f| *f < end
-        })
-    };
-    pairs().flat_map(between).take(MOST_FRAMES).collect()
-}
-
-/// Frames as a range expression of Open Job Description, in ascending order: `1001-1099:2,1200`.
-pub fn range_expression(frames: &[i64]) -> String {
-    ranges(frames).join(",")
-}
-
-/// As [`range_expression`], cut short where it is long, for messages.
-pub fn summary(frames: &[i64]) -> String {
-    let mut ranges = ranges(frames);
-    if ranges.len() > MOST_SHOWN {
-        ranges.truncate(MOST_SHOWN);
-        ranges.push("...".into());
-    }
-    ranges.join(",")
-}
-
-fn ranges(frames: &[i64]) -> Vec<String> {
-    let mut sorted = frames.to_vec();
-    sorted.sort_unstable();
-    let mut parts: Vec<(i64, i64, u64)> = Vec::new();
-    for frame in sorted {
-        match parts.last_mut() {
-            Some((first, last, step)) if *first == *last => {
-                *step = frame.abs_diff(*last);
-                *last = frame;
-            }
-            Some((_, last, step)) if last.abs_diff(frame) == *step => *last = frame,
-            _ => parts.push((frame, frame, 1)),
-        }
-    }
-    let text = |(first, last, step): &(i64, i64, u64)| match (last.abs_diff(*first), *step) {
-        (0, _) => first.to_string(),
-        (_, 1) => format!("{first}-{last}"),
-        (length, step) if length == step => format!("{first},{last}"),
-        (_, step) => format!("{first}-{last}:{step}"),
-    };
-    parts.iter().map(text).collect()
-}
-
 #[cfg(test)]
 mod tests {
     use super::*;
-
-    #[test]
-    fn lists_of_frames_are_read() {
-        let frames = |list: &str| list.parse::<FrameList>().map(|list| list.0);
-        assert_eq!(frames("1001-1007x2,1200").unwrap(), [1001, 1003, 1005, 1007, 1200]);
-        assert_eq!(frames("3-1, 2,-2--1").unwrap(), [3, 2, 1, -2, -1]);
-        assert_eq!(frames("1-5:2").unwrap(), [1, 3, 5]);
-        for bad in ["-9223372036854775808", "", "a", "1-", "1-5x0", "1-5x-1", "1--", "1-99999999999", "1..5"]
-        {
-            assert!(frames(bad).is_err(), "{bad}");
-        }
-        assert_eq!(holes(&[1, 3, 5, 9, 11]), [7]);
-        assert_eq!(holes(&[4]), [] as [i64; 0]);
-        assert_eq!(holes(&[i64::MIN, i64::MAX]), [] as [i64; 0]);
-        assert_eq!(holes(&[i64::MIN, i64::MAX - 2, i64::MAX]).first(), Some(&(i64::MIN + 2)));
-    }
-
-    #[test]
-    fn range_expressions_are_short() {
-        assert_eq!(range_expression(&[1, 3, 5, 7, 20]), "1-7:2,20");
-        assert_eq!(range_expression(&[3, 2, 1]), "1-3");
-        assert_eq!(range_expression(&[1, 9]), "1,9");
-        assert_eq!(range_expression(&[-2, -1, 5]), "-2--1,5");
-        assert_eq!(range_expression(&[4]), "4");
-        let ends = [i64::MIN, i64::MAX];
-        assert_eq!(range_expression(&ends), "-9223372036854775808,9223372036854775807");
-        assert_eq!(summary(&[1, 2, 3, 7, 9, 10]), "1-3,7,9,10");
-        let growing: Vec<i64> = (0..100).map(|n| n * n).collect();
-        assert!(summary(&growing).ends_with(",...") && summary(&growing).len() < 100);
-    }
 
     #[test]
     fn patterns_name_files() {
@@ -360,5 +329,83 @@ mod tests {
         assert_eq!(added("a/out.png"), "a/out.0007.png");
         assert_eq!(added("a/out.##.exr"), "a/out.07.exr");
         assert_eq!(added("out"), "out.0007");
+    }
+    /// A folder with files of these names.
+    fn folder(names: &[&str]) -> tempfile::TempDir {
+        let folder = tempfile::tempdir().unwrap();
+        names.iter().for_each(|name| fs::write(folder.path().join(name), "").unwrap());
+        folder
+    }
+
+    #[test]
+    fn a_file_that_exists_is_that_file() {
+        let names = ["photo #1.png", "a@b.png", "50%d.png", "a.####.png", "a.0001.png", "b#1@2.0007.png"];
+        let folder = folder(&names);
+        let pattern = |name: &str| Pattern::new(&folder.path().join(name));
+        for name in &names[..4] {
+            assert_eq!(pattern(name).unwrap(), None, "{name}");
+        }
+        // What is written is a pattern, whatever there is.
+        assert!(Pattern::in_name(&folder.path().join("a.####.png")).unwrap().is_some());
+        assert_eq!(pattern("b#1@2.%04d.png").unwrap().unwrap().on_disk().unwrap(), [7]);
+        assert_eq!(pattern("b#1@2.#.png").unwrap().unwrap().on_disk().unwrap(), [7]);
+        assert!(pattern("#.#.png").is_err());
+    }
+
+    #[test]
+    fn one_sign_stands_for_the_digits_that_files_have() {
+        let padded = folder(&["s.0001.exr", "s.0002.exr", "s.0010.exr"]);
+        for name in ["s.#.exr", "s.@.exr", "s.%d.exr", "s.$F.exr", "s.$F4.exr", "s.%04d.exr", "s.<F4>.exr"] {
+            let pattern = Pattern::new(&padded.path().join(name)).unwrap().unwrap();
+            assert_eq!(pattern.on_disk().unwrap(), [1, 2, 10], "{name}");
+            assert_eq!(pattern.file(7).file_name(), Some(OsStr::new("s.0007.exr")), "{name}");
+        }
+        for name in ["s.##.exr", "s.#####.exr", "s.%03d.exr"] {
+            let pattern = Pattern::new(&padded.path().join(name)).unwrap().unwrap();
+            let error = pattern.on_disk().unwrap_err().to_string();
+            assert!(error.contains("matches no file") && error.contains("s.####.exr"), "{error}");
+        }
+        let plain = folder(&["s.8.exr", "s.9.exr", "s.10.exr"]);
+        let pattern = |name: &str| Pattern::new(&plain.path().join(name)).unwrap().unwrap();
+        assert_eq!(pattern("s.#.exr").on_disk().unwrap(), [8, 9, 10]);
+        let error = pattern("s.####.exr").on_disk().unwrap_err().to_string();
+        assert!(error.contains("write ") && error.contains("s.#.exr"), "{error}");
+        // More digits than the padding are no other padding.
+        let grown = folder(&["s.098.exr", "s.999.exr", "s.1000.exr"]);
+        let pattern = Pattern::new(&grown.path().join("s.#.exr")).unwrap().unwrap();
+        assert_eq!(pattern.on_disk().unwrap(), [98, 999, 1000]);
+        // A result is written as its frames are read.
+        let result = Pattern::in_name(Path::new("out.#.exr")).unwrap().unwrap();
+        assert_eq!(result.clone().file(7), Path::new("out.7.exr"));
+        assert_eq!(result.like(&pattern).file(7), Path::new("out.007.exr"));
+    }
+
+    #[test]
+    fn numbers_below_zero_are_found_as_they_are_written() {
+        let file = |pattern: &str| Pattern::in_name(Path::new(pattern)).unwrap().unwrap().file(-7);
+        assert_eq!(file("s.%03d.exr"), Path::new("s.-07.exr"));
+        assert_eq!(file("s.%d.exr"), Path::new("s.-7.exr"));
+        assert_eq!(file("s.###.exr"), Path::new("s.-007.exr"));
+        for (names, pattern) in [
+            (["s.-007.exr", "s.000.exr"], "s.%03d.exr"),
+            (["s.-07.exr", "s.000.exr"], "s.###.exr"),
+            (["s.-07.exr", "s.000.exr"], "s.%03d.exr"),
+            (["s.-007.exr", "s.000.exr"], "s.#.exr"),
+        ] {
+            let folder = folder(&names);
+            let pattern = Pattern::new(&folder.path().join(pattern)).unwrap().unwrap();
+            assert_eq!(pattern.on_disk().unwrap(), [-7, 0], "{names:?}");
+            assert_eq!(pattern.file(-7).file_name(), Some(OsStr::new(names[0])));
+        }
+    }
+
+    #[test]
+    fn tiles_are_found_by_their_words() {
+        let folder = folder(&["t.1001.exr", "t.1011.exr", "t.0007.exr"]);
+        for name in ["t.<UDIM>.exr", "t.<udim>.exr", "t.%(UDIM)d.exr"] {
+            let pattern = Pattern::new(&folder.path().join(name)).unwrap().unwrap();
+            assert!(pattern.is_of_tiles());
+            assert_eq!(pattern.on_disk().unwrap(), [1001, 1011], "{name}");
+        }
     }
 }

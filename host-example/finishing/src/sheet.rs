@@ -20,6 +20,7 @@ use isophote_files::files::{self, Existing};
 use isophote_pictures::convert;
 use isophote_pictures::exr::Selection;
 use isophote_pictures::pixels::MOST_PIXELS;
+use isophote_pictures::primaries;
 use isophote_pictures::read::{self, ImageState};
 use isophote_pictures::space::srgb_encode;
 use isophote_pictures::working::WorkingSpace;
@@ -50,7 +51,7 @@ pub fn cells(path: &Path, label: &str, width: u32) -> Result<Vec<Cell>> {
     for (view, picture) in source.pictures.iter().enumerate() {
         let working = WorkingSpace::of(None, source.state, picture);
         let pixels = match &working.change {
-            Some((there, _)) => convert::changed(&picture.pixels, there).0,
+            Some((there, _)) => primaries::changed(&picture.pixels, there).0,
             None => picture.pixels.clone(),
         };
         let pixels = convert::between(pixels, source.state, working.space, ImageState::DisplayReferred);

@@ -5,9 +5,6 @@ use crate::primaries::{Change, REC709};
 use crate::read::ImageState;
 use crate::space::{Space, srgb_decode, srgb_encode};
 
-/// Number that an infinity becomes.
-const LARGEST_HALF: f32 = 65504.0;
-
 /// Turns colours that a graph gave for a picture of `from` in `space` into what a file of `to` holds. PNG and
 /// JPEG become sRGB from whatever EXR held; EXR becomes light of the same primaries.
 pub fn between(pixels: Pixels, from: ImageState, space: Space, to: ImageState) -> Pixels {
@@ -49,25 +46,6 @@ pub fn between(pixels: Pixels, from: ImageState, space: Space, to: ImageState) -
     let samples = Samples::F32(numbers);
     // The number of samples is that of `pixels`.
     Pixels::new(width, height, channels, samples).unwrap_or(pixels)
-}
-
-/// Colours of other primaries, premultiplied or not; what is no number or infinite is replaced first, as the
-/// library would, and counted, so that it does not spread to the other channels.
-pub fn changed(pixels: &Pixels, change: &Change) -> (Pixels, u64) {
-    let mut numbers = pixels.to_f32();
-    let mut replaced = 0;
-    for pixel in numbers.chunks_exact_mut(pixels.channels() as usize) {
-        if let Some(rgb) = pixel.first_chunk_mut::<3>() {
-            for value in rgb.iter_mut().filter(|v| !v.is_finite()) {
-                *value = if value.is_nan() { 0.0 } else { LARGEST_HALF.copysign(*value) };
-                replaced += 1;
-            }
-            *rgb = change.apply(*rgb);
-        }
-    }
-    // As many numbers as there were.
-    let changed = Pixels::new(pixels.width(), pixels.height(), pixels.channels(), Samples::F32(numbers));
-    (changed.unwrap_or_else(|| pixels.clone()), replaced)
 }
 
 #[cfg(test)]

@@ -17,6 +17,7 @@
 pub mod convert;
 pub mod exr;
 pub mod floats;
+mod hdr;
 mod jpeg;
 pub mod mix;
 pub mod pixels;
@@ -24,5 +25,6 @@ mod png;
 pub mod primaries;
 pub mod read;
 pub mod space;
+mod tiff;
 pub mod working;
 pub mod write;

@@ -2,11 +2,18 @@
 //!
 //! Source: SMPTE RP 177 (matrices from chromaticities) and Lam 1985 (Bradford adaptation).
 
+use crate::pixels::{Pixels, Samples};
+
+/// Number that an infinity becomes.
+const LARGEST_HALF: f32 = 65504.0;
+
 /// Red, green, blue, white: x and y of each.
 pub type Chromaticities = [f32; 8];
 
 /// ACEScg: AP1 with the white of ACES.
 pub const AP1: Chromaticities = [0.713, 0.293, 0.165, 0.830, 0.128, 0.044, 0.32168, 0.33767];
+/// ACES2065-1: AP0 with the white of ACES.
+pub const AP0: Chromaticities = [0.7347, 0.2653, 0.0, 1.0, 0.0001, -0.0770, 0.32168, 0.33767];
 /// P3 with white D65.
 pub const P3: Chromaticities = [0.680, 0.320, 0.265, 0.690, 0.150, 0.060, 0.3127, 0.3290];
 /// ITU-R BT.2020.
@@ -40,6 +47,25 @@ impl Change {
     pub fn apply(&self, [r, g, b]: [f32; 3]) -> [f32; 3] {
         self.0.map(|row| row[0] * r + row[1] * g + row[2] * b)
     }
+}
+
+/// Colours of other primaries, premultiplied or not; what is no number or infinite is replaced first, as the
+/// library would, and counted, so that it does not spread to the other channels.
+pub fn changed(pixels: &Pixels, change: &Change) -> (Pixels, u64) {
+    let mut numbers = pixels.to_f32();
+    let mut replaced = 0;
+    for pixel in numbers.chunks_exact_mut(pixels.channels() as usize) {
+        if let Some(rgb) = pixel.first_chunk_mut::<3>() {
+            for value in rgb.iter_mut().filter(|v| !v.is_finite()) {
+                *value = if value.is_nan() { 0.0 } else { LARGEST_HALF.copysign(*value) };
+                replaced += 1;
+            }
+            *rgb = change.apply(*rgb);
+        }
+    }
+    // As many numbers as there were.
+    let changed = Pixels::new(pixels.width(), pixels.height(), pixels.channels(), Samples::F32(numbers));
+    (changed.unwrap_or_else(|| pixels.clone()), replaced)
 }
 
 /// True where two sets of primaries are the same but for rounding.

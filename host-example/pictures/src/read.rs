@@ -4,7 +4,6 @@ use std::fs::File;
 use std::io::{self, Cursor, Read};
 use std::path::Path;
 
-use image::codecs::hdr::HdrDecoder;
 use image::codecs::jpeg::JpegDecoder;
 use image::codecs::png::PngDecoder;
 use image::codecs::tiff::TiffDecoder;
@@ -13,7 +12,9 @@ use image::{DynamicImage, ImageDecoder, ImageError, ImageResult, Limits};
 
 use crate::exr::{self, ExrFile, Offers, Picture, Selection};
 use crate::pixels::{MOST_PIXELS, Pixels, Precision, Samples};
-use crate::{jpeg, png};
+use crate::primaries::{self, Change, REC709, same};
+use crate::tiff::Wide;
+use crate::{hdr, jpeg, png};
 use isophote_files::error::{Error, Result};
 use isophote_files::frames;
 use isophote_files::input;
@@ -259,7 +260,18 @@ fn decode(path: &Path, bytes: &[u8]) -> Result<Source> {
     if !is_whole {
         return Err(Error::malformed(path, kind, "it ends before the picture does"));
     }
-    picture(path, decoder, kind)
+    let mut source = picture(path, decoder, kind)?;
+    if kind == "HDR"
+        && let Some(own) = hdr::primaries(bytes).filter(|own| !same(*own, REC709))
+    {
+        // Results keep no header that could say so.
+        let change = Change::new(own, REC709)
+            .ok_or_else(|| Error::malformed(path, kind, "its PRIMARIES span no colours"))?;
+        for picture in &mut source.pictures {
+            picture.pixels = primaries::changed(&picture.pixels, &change).0;
+        }
+    }
+    Ok(source)
 }
 
 /// The kind of any file but an EXR file, and a decoder that has read what it says of itself.
@@ -279,13 +291,14 @@ fn decoder<'a>(path: &Path, bytes: &'a [u8]) -> Result<(&'static str, Box<dyn Im
         [0x89, b'P', b'N', b'G', ..] => boxed(path, "PNG", PngDecoder::new(start)),
         [0xff, 0xd8, 0xff, ..] => boxed(path, "JPEG", JpegDecoder::new(start)),
         // The second number is that of BigTIFF, for files of more than 4 GiB.
-        [b'I', b'I', 42 | 43, 0, ..] | [b'M', b'M', 0, 42 | 43, ..] => {
-            boxed(path, "TIFF", TiffDecoder::new(start))
-        }
+        [b'I', b'I', 42 | 43, 0, ..] | [b'M', b'M', 0, 42 | 43, ..] => match Wide::new(bytes) {
+            Some(decoder) => Ok(("TIFF", Box::new(decoder))),
+            None => boxed(path, "TIFF", TiffDecoder::new(start)),
+        },
         [b'R', b'I', b'F', b'F', _, _, _, _, b'W', b'E', b'B', b'P', ..] => {
             boxed(path, "WebP", WebPDecoder::new(start))
         }
-        [b'#', b'?', ..] => boxed(path, "HDR", HdrDecoder::new(start)),
+        [b'#', b'?', ..] => boxed(path, "HDR", hdr::decoder(bytes)),
         [] => Err(Error::file(path, "is empty", "name a picture")),
         _ => Err(Error::file(
             path,
@@ -328,11 +341,12 @@ pub fn check_size(path: &Path, width: u64, height: u64) -> Result<()> {
 fn picture(path: &Path, mut decoder: impl ImageDecoder, kind: &str) -> Result<Source> {
     let (width, height) = decoder.dimensions();
     check_size(path, width.into(), height.into())?;
+    // Before the limits of the picture, which are too small for the profile of a small one; decoders have others until then.
+    let profile = decoder.icc_profile().unwrap_or_default();
     // The size bounds the picture; what decoders need meanwhile is bounded by several times that.
     let mut limits = Limits::no_limits();
     limits.max_alloc = Some(decoder.total_bytes().saturating_mul(4).saturating_add(LEAST));
     decoder.set_limits(limits).map_err(|e| refused(path, kind, &e))?;
-    let profile = decoder.icc_profile().unwrap_or_default();
     let orientation = decoder.orientation().map_err(|e| refused(path, kind, &e))?;
     let mut decoded = DynamicImage::from_decoder(decoder).map_err(|e| refused(path, kind, &e))?;
     // Nothing but the pixels is kept, so what the camera noted of its attitude is done here.

@@ -1,5 +1,6 @@
 //! Results to files, as the extension says.
 
+use std::ops::Range;
 use std::path::Path;
 
 use image::{ExtendedColorType, ImageEncoder, ImageResult};
@@ -12,6 +13,8 @@ use isophote_files::error::{Error, Result};
 use isophote_files::files::{self, Existing};
 use isophote_files::output;
 
+/// Place in an ICC profile of the colour space of its pictures.
+const PROFILE_SPACE: Range<usize> = 16..20;
 /// Quality of JPEG files, 1 to 100.
 const JPEG_QUALITY: u8 = 95;
 
@@ -94,7 +97,7 @@ pub fn write(
             // PNG wants the larger byte first; the encoder takes the machine's order.
             files::write(path, existing, |file| {
                 let mut encoder = image::codecs::png::PngEncoder::new(file);
-                keep_profile(&mut encoder, source.profile.clone());
+                keep_profile(&mut encoder, source.profile.as_deref(), pixels.channels());
                 as_text(encoder.write_image(pixels.bytes(), pixels.width(), pixels.height(), color))
             })
         }
@@ -108,7 +111,7 @@ pub fn write(
             let color = color_type(&pixels);
             files::write(path, existing, |file| {
                 let mut encoder = image::codecs::tiff::TiffEncoder::new(file);
-                keep_profile(&mut encoder, source.profile.clone());
+                keep_profile(&mut encoder, source.profile.as_deref(), pixels.channels());
                 as_text(encoder.write_image(pixels.bytes(), pixels.width(), pixels.height(), color))
             })
         }
@@ -117,7 +120,7 @@ pub fn write(
             let color = color_type(&pixels);
             files::write(path, existing, |file| {
                 let mut encoder = image::codecs::jpeg::JpegEncoder::new_with_quality(file, JPEG_QUALITY);
-                keep_profile(&mut encoder, source.profile.clone());
+                keep_profile(&mut encoder, source.profile.as_deref(), pixels.channels());
                 as_text(encoder.write_image(pixels.bytes(), pixels.width(), pixels.height(), color))
             })
         }
@@ -150,10 +153,13 @@ fn write_exr(path: &Path, existing: Existing, pixels: &Pixels, picture: &Picture
     floats::save_exr(path, existing, &data, components(channels), precision)
 }
 
-fn keep_profile(encoder: &mut impl ImageEncoder, profile: Option<Vec<u8>>) {
-    if let Some(profile) = profile {
+/// Keeps a colour profile where it is one of pictures with these channels.
+fn keep_profile(encoder: &mut impl ImageEncoder, profile: Option<&[u8]>, channels: u32) {
+    let Some(profile) = profile else { return };
+    let wanted: &[u8] = if channels == 1 { b"GRAY" } else { b"RGB " };
+    if profile.get(PROFILE_SPACE) == Some(wanted) {
         // An encoder that cannot keep it leaves a picture that is taken for sRGB, as most are.
-        let _ = encoder.set_icc_profile(profile);
+        let _ = encoder.set_icc_profile(profile.to_vec());
     }
 }
 

@@ -243,6 +243,21 @@ fn parts_under_other_compressions_pass_untouched() {
     }
 }
 
+/// DWAA and DWAB are read where a style wants them, and not where nothing does.
+#[test]
+fn parts_beside_the_picture_are_not_decoded() {
+    let folder = folder();
+    let at = |name: &str| folder.path().join(name);
+    for (compression, lines) in [(8, 32), (9, 256)] {
+        let (bytes, chunks) = two_parts::file(compression, lines);
+        fs::write(at("in.exr"), &bytes).expect("the folder is writable");
+        apply(folder.path(), "gaussian", "in.exr", "out.exr", &[]);
+        let out = fs::read(at("out.exr")).expect("a result");
+        let tail: usize = chunks.iter().map(|chunk| 12 + chunk.len()).sum();
+        assert!(out[out.len() - tail..] == bytes[bytes.len() - tail..], "{compression}");
+    }
+}
+
 /// Result of the library for a picture in linear light.
 fn by_the_library(color: &Pixels, guides: &[(&str, &Pixels)]) -> Pixels {
     let library = Library::from_file(support::library()).expect("the library");

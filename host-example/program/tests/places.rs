@@ -124,7 +124,7 @@ fn folders_and_patterns_of_shells_say_how_to_write_them() {
         picture(8, 8).save(path).expect("the picture can be written");
     }
     for input in
-        ["shot", "shot/a.*.png", "shot/a.00?.png", "shot/a.{008,009}.png", "shot/*", "shot/a.$F3.png"]
+        ["shot", "shot/a.*.png", "shot/a.00?.png", "shot/a.{008,009}.png", "shot/*", "shot/a.$FRAME.png"]
     {
         fails(
             &mut apply(folder.path(), &[input, "out.png"]),
@@ -132,6 +132,16 @@ fn folders_and_patterns_of_shells_say_how_to_write_them() {
             &[input, "cannot be read", "write shot/a.###.png"],
         );
     }
+    // Houdini's own is a pattern, and so is a sign for any number of digits.
+    for input in ["shot/a.$F3.png", "shot/a.#.png"] {
+        fails(
+            &mut apply(folder.path(), &[input, "out.png"]),
+            2,
+            &["out.png", "has no place for a frame number"],
+        );
+    }
+    let wrong = ["shot/a.####.png", "out.####.png"];
+    fails(&mut apply(folder.path(), &wrong), 2, &["matches no file", "write shot/a.###.png"]);
     fails(&mut apply(folder.path(), &[".", "out.png"]), 2, &["is a folder", "name a picture"]);
     fails(&mut apply(folder.path(), &["none.*.png", "out.png"]), 2, &["cannot be read", "name a picture"]);
 }

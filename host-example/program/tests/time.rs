@@ -180,3 +180,31 @@ fn rendered_frames_are_steady_in_any_order() {
         assert_eq!(pixels(&name("all")) == pixels(&name("still")), is_first, "frame {frame}");
     }
 }
+
+#[test]
+fn what_guides_and_what_steadies_is_told() {
+    let folder = folder();
+    let at = folder.path();
+    shot(at, INPUT, "48x32");
+    let (text, warnings) =
+        succeeds(&mut apply(at, &["cartoon", INPUT, "o.####.exr", "--frames", "2", "--steadiness", "0.5"]));
+    let line = text.lines().find(|line| line.starts_with("guides: ")).expect("a line");
+    for part in ["normal from ", "depth from ", "motion from "] {
+        assert!(line.contains(part), "{line}");
+    }
+    assert!(!warnings.contains("nothing will be steady"), "{warnings}");
+    // Pictures know of no motion.
+    for frame in 1..=3 {
+        let path = at.join(format!("p.{frame:04}.png"));
+        support::picture(48, 32).save(path).expect("the picture can be written");
+    }
+    let still = ["cartoon", "p.####.png", "q.####.png"];
+    let run = |more: &[&str]| succeeds(&mut apply(at, &[&still[..], more].concat())).1;
+    let warnings = run(&["--steadiness", "0.5"]);
+    assert!(
+        warnings.contains("nothing will be steady") && warnings.contains("--motion estimate"),
+        "{warnings}"
+    );
+    assert!(!run(&["--force"]).contains("steady"));
+    assert!(!run(&["--force", "--steadiness", "0.5", "--motion", "estimate"]).contains("steady"));
+}

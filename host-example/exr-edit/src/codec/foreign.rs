@@ -1,4 +1,4 @@
-//! The codecs of the `exr` crate on single chunks: RLE, PIZ, PXR24, and one channel of B44.
+//! The codecs of the `exr` crate on single chunks: RLE, PIZ, PXR24, DWAA, DWAB, and one channel of B44.
 
 use std::cell::Cell;
 use std::panic::{AssertUnwindSafe, catch_unwind};
@@ -17,6 +17,8 @@ pub const PIZ: u8 = 4;
 pub const PXR24: u8 = 5;
 pub const B44: u8 = 6;
 pub const B44A: u8 = 7;
+pub const DWAA: u8 = 8;
+pub const DWAB: u8 = 9;
 
 /// The crate's description of a chunk by itself, with its place. Nothing when a pixel has no whole number of
 /// bytes, by which the crate reckons.
@@ -46,6 +48,8 @@ pub fn header(
         PXR24 => Compression::PXR24,
         B44 => Compression::B44,
         B44A => Compression::B44A,
+        DWAA => Compression::DWAA(None),
+        DWAB => Compression::DWAB(None),
         _ => return None,
     };
     let size = Vec2(block.width, block.height);

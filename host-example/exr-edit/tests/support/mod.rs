@@ -5,6 +5,15 @@ use std::path::{Path, PathBuf};
 
 use exr::prelude::*;
 
+/// DWAA and DWAB, which are read only, on scan lines and on tiles with mip maps.
+pub fn lossy() -> Vec<Encoding> {
+    let compressions = [Compression::DWAA(None), Compression::DWAB(None)];
+    let of = |blocks: Blocks| {
+        compressions.map(|compression| Encoding { compression, blocks, line_order: LineOrder::Increasing })
+    };
+    [of(Blocks::ScanLines), of(Blocks::Tiles(Vec2(16, 8)))].concat()
+}
+
 /// Every compression that can be written again, on scan lines and on tiles with mip maps.
 pub fn encodings() -> Vec<Encoding> {
     let compressions = [

@@ -81,7 +81,7 @@ impl DryRun<'_> {
 
     fn summary(&self, done: u64, refused: u64, needs: Option<Needs>) -> String {
         let planned = self.tasks.ready.len() as u64 - done - refused;
-        let mut text = format!("{planned} frames to be written");
+        let mut text = format!("{planned} {} to be written", self.tasks.noun());
         let missing = self.tasks.missing.len() as u64;
         for (count, what) in [(done, "there already"), (refused, "refused"), (missing, "missing")] {
             if count > 0 {

@@ -18,7 +18,7 @@ use isophote_pictures::convert;
 use isophote_pictures::exr::{ExrFile, Guide};
 use isophote_pictures::mix::{self, Meaning};
 use isophote_pictures::pixels::{Pixels, Precision};
-use isophote_pictures::primaries::Change;
+use isophote_pictures::primaries::{self, Change};
 use isophote_pictures::read::{ImageState, Opened};
 use isophote_pictures::space::Space;
 use isophote_pictures::working::WorkingSpace;
@@ -267,7 +267,7 @@ impl Filter {
                 result = convert::between(result, source.state, working.space, to);
                 let is_shown = source.state == ImageState::SceneReferred && to == ImageState::DisplayReferred;
                 if let Some((_, back)) = working.change.filter(|_| !is_shown) {
-                    result = convert::changed(&result, &back).0;
+                    result = primaries::changed(&result, &back).0;
                 }
             }
             filtered.results.push(result);

@@ -3,10 +3,9 @@
 use std::sync::{Arc, Mutex, OnceLock, PoisonError};
 
 use super::memory::Share;
-use isophote_pictures::convert;
 use isophote_pictures::exr::{ExrFile, Picture};
 use isophote_pictures::pixels::Pixels;
-use isophote_pictures::primaries::Change;
+use isophote_pictures::primaries::{self, Change};
 use isophote_pictures::read::Source;
 
 /// A frame that was read.
@@ -42,7 +41,7 @@ impl<'a> CachedFrame<'a> {
         let picture = self.source.pictures.get(at)?;
         let Some(change) = change else { return Some((&picture.pixels, 0)) };
         let (pixels, replaced) =
-            self.changed.get(at)?.get_or_init(|| convert::changed(&picture.pixels, change));
+            self.changed.get(at)?.get_or_init(|| primaries::changed(&picture.pixels, change));
         Some((pixels, *replaced))
     }
 }

@@ -8,7 +8,7 @@ use std::time::Instant;
 use indicatif::{ProgressBar, ProgressStyle};
 use serde_json::{Value, json};
 
-use super::tasks::Task;
+use super::tasks::{Task, Tasks};
 use isophote_files::error::{Error, Result};
 use isophote_files::output;
 use isophote_files::replacing::Consent;
@@ -47,29 +47,29 @@ impl Counts {
         self.written + self.skipped + self.failed
     }
 
-    /// Checks that all of so many frames were done.
+    /// Checks that all of these were done.
     ///
     /// # Errors
     /// [`Error::Failure`] when the run was stopped before, and as [`check_failed`].
-    pub fn check(&self, input: &Path, frames: usize, consent: Consent) -> Result<()> {
-        if self.done() < frames as u64 {
-            let problem = format!("stopped after {} frames were written", self.written);
+    pub fn check(&self, input: &Path, tasks: &Tasks, consent: Consent) -> Result<()> {
+        if self.done() < tasks.ready.len() as u64 {
+            let problem = format!("stopped after {} {} were written", self.written, tasks.noun());
             return Err(Error::failure(problem, consent.resuming()));
         }
-        check_failed(input, self.failed, frames, consent)
+        check_failed(input, self.failed, tasks, consent)
     }
 }
 
-/// Checks that no frame failed.
+/// Checks that none of them failed.
 ///
 /// # Errors
 /// [`Error::Input`] with how many did.
-pub fn check_failed(input: &Path, failed: u64, frames: usize, consent: Consent) -> Result<()> {
+pub fn check_failed(input: &Path, failed: u64, tasks: &Tasks, consent: Consent) -> Result<()> {
     match failed {
         0 => Ok(()),
         _ => Err(Error::file(
             input,
-            format!("{failed} of {frames} frames could not be done"),
+            format!("{failed} of {} {} could not be done", tasks.ready.len(), tasks.noun()),
             format!("fix these files and {}", consent.resuming()),
         )),
     }
@@ -81,6 +81,8 @@ pub struct Report {
     bar: ProgressBar,
     json: bool,
     sequence: bool,
+    /// True where every result gets a line.
+    lists: bool,
     /// Number of all frames; none where nobody knows exactly.
     frames: Option<u64>,
     /// Hundredths of the picture that were told of.
@@ -108,6 +110,7 @@ impl Report {
             bar,
             json,
             sequence,
+            lists: false,
             frames: Some(frames as u64),
             told: AtomicU32::new(0),
             unheard: AtomicBool::new(false),
@@ -121,6 +124,11 @@ impl Report {
     /// The same where the number of frames is a guess.
     pub fn about(frames: usize, json: bool) -> Self {
         Self { frames: None, ..Self::new(frames, true, json) }
+    }
+
+    /// A report on so many pictures that have nothing to do with each other, with a line for each result.
+    pub fn listing(pictures: usize, json: bool) -> Self {
+        Self { lists: true, ..Self::new(pictures, true, json) }
     }
 
     /// The share of the frame at hand that is done.
@@ -167,6 +175,11 @@ impl Report {
         if self.sequence {
             self.bar.inc(1);
         }
+        if self.lists && !self.json && matches!(outcome, Outcome::Written(_) | Outcome::Skipped) {
+            let note = if matches!(outcome, Outcome::Skipped) { " (there already)" } else { "" };
+            let text = format!("{} -> {}{note}\n", task.input.display(), task.output.display());
+            self.bar.suspend(|| self.say(&text));
+        }
         self.line(&json!({
             "event": "frame",
             "frame": task.frame,
@@ -205,7 +218,7 @@ impl Report {
         }));
         let is_complete =
             counts.failed == 0 && self.frames.is_none_or(|frames| counts.done() + counts.missing == frames);
-        if self.sequence && !self.json && whole && is_complete {
+        if self.sequence && !self.lists && !self.json && whole && is_complete {
             let mut text = format!("{} frames written in {seconds:.1} s", counts.written);
             for (count, what) in [
                 (counts.skipped, "there already"),

@@ -29,8 +29,6 @@ pub const MOST_IN_FLIGHT: u64 = 5;
 pub struct Run<'a> {
     /// All frames.
     pub tasks: &'a [Task],
-    /// Kind of the outputs.
-    pub format: Format,
     /// Consent to replace files.
     pub consent: Consent,
     /// Threads on which frames are read and written beside being filtered, if they are.
@@ -59,8 +57,8 @@ struct Done<'a> {
 type Lane<'scope, 'a> = (SyncSender<Ready<'a>>, ScopedJoinHandle<'scope, Result<()>>);
 
 impl<'a> Run<'a> {
-    /// Does all frames. Frames that cannot be read or filtered are reported and left out; a run of one picture ends
-    /// with its error. `reader` reads these frames for the filters' style; there is at least one filter.
+    /// Does all frames. Frames that cannot be read or filtered are reported and left out, and of several pictures by
+    /// themselves those that cannot be written; a run of one picture ends with its error. `reader` reads these frames for the filters' style; there is at least one filter.
     ///
     /// # Errors
     /// The problem that kept a frame from being written, [`Error::Failure`] of the library or the device.
@@ -178,7 +176,8 @@ impl<'a> Run<'a> {
         let name = task.input.display().to_string();
         let mut progress = |done: f32| self.report.progress(done);
         let exr = window.own.take_exr();
-        match filter.run(&name, &window, exr.as_ref(), self.format, &mut progress) {
+        let format = Format::of(&task.output)?;
+        match filter.run(&name, &window, exr.as_ref(), format, &mut progress) {
             Ok(filtered) => Ok(Some(Done { task, own: window.own, exr, filtered })),
             // Neither device nor memory is better for the next frame.
             Err(error @ Error::Failure { .. }) => Err(error),
@@ -188,17 +187,23 @@ impl<'a> Run<'a> {
 
     fn write_one(&self, Done { task, own, exr, filtered }: Done<'a>) -> Result<()> {
         let replaced = filtered.replaced;
+        let format = Format::of(&task.output)?;
         let is_written = self.consent.write(task.made(), read::is_whole, |existing| {
-            write::write(&task.output, existing, self.format, filtered.results, &own.source, exr)
-        })?;
+            write::write(&task.output, existing, format, filtered.results, &own.source, exr)
+        });
         drop(own);
+        let is_written = match is_written {
+            // What keeps one picture from being written is no matter of the others.
+            Err(error @ Error::Input { .. }) if task.frame.is_none() => return self.failed(task, error),
+            written => written?,
+        };
         self.report.frame(task, &if is_written { Outcome::Written(replaced) } else { Outcome::Skipped });
         Ok(())
     }
 
-    /// A frame of a sequence is reported; a picture by itself ends the run.
+    /// One of several is reported; a picture alone ends the run.
     fn failed(&self, task: &Task, error: Error) -> Result<()> {
-        if task.frame.is_none() {
+        if task.frame.is_none() && self.tasks.len() == 1 {
             return Err(error);
         }
         self.report.frame(task, &Outcome::Failed(error));

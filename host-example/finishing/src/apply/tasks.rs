@@ -43,7 +43,7 @@ pub struct Tasks {
     pub ready: Vec<Task>,
     /// Frames of the sequence that have no file.
     pub missing: Vec<Task>,
-    /// The sequence that they are of; otherwise there is one picture.
+    /// The sequence that they are of; otherwise they are pictures by themselves.
     pub sequence: Option<Pattern>,
 }
 
@@ -59,8 +59,7 @@ impl Tasks {
         list: Option<&FrameList>,
         on_missing: OnMissing,
     ) -> Result<Self> {
-        let (from, to) = (Pattern::new(input)?, Pattern::new(output)?);
-        let Some(from) = from else {
+        let Some(from) = Pattern::new(input)? else {
             if list.is_some() {
                 return Err(Error::file(input, "has no place for a frame number", "write shot.####.exr"));
             }
@@ -71,17 +70,22 @@ impl Tasks {
             Some(list) => list.frames().iter().partition(|frame| from.file(**frame).is_file()),
             None => {
                 let frames = from.on_disk()?;
-                let holes = frames::holes(&frames);
+                let holes = if from.is_of_tiles() { Vec::new() } else { frames::holes(&frames) };
                 (frames, holes)
             }
         };
-        let Some(to) = to else {
+        if ready.is_empty() {
+            // A pattern that no file has is the likelier mistake.
+            from.on_disk()?;
+        }
+        let Some(to) = Pattern::in_name(output)? else {
             return Err(Error::file(
                 output,
                 "has no place for a frame number, but there may be several frames",
                 "write shot.####.exr",
             ));
         };
+        let to = to.like(&from);
         check_missing(input, &missing, on_missing)?;
         if ready.is_empty() {
             return Err(Error::file(input, "has none of the frames asked for", "give other --frames"));
@@ -95,9 +99,24 @@ impl Tasks {
         })
     }
 
+    /// Pictures that have nothing to do with each other; at least one.
+    pub fn of_pictures(ready: Vec<Task>) -> Self {
+        Self { ready, missing: Vec::new(), sequence: None }
+    }
+
+    /// True where one that fails does not end the run.
+    pub fn are_several(&self) -> bool {
+        self.is_sequence() || self.ready.len() > 1
+    }
+
     /// True where they are frames of a sequence.
     pub fn is_sequence(&self) -> bool {
         self.sequence.is_some()
+    }
+
+    /// Word for them in messages.
+    pub fn noun(&self) -> &'static str {
+        if !self.is_sequence() && self.are_several() { "pictures" } else { "frames" }
     }
 
     /// Number of frames, with those that are missing.

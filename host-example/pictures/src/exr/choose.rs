@@ -1,17 +1,17 @@
 //! Choosing what of a file is the picture and what guides it.
 
 use std::path::Path;
-use std::str::FromStr;
 
 use isophote_exr_edit::{File, Sample};
-use isophote_motion::{Convention, Rule};
+use isophote_motion::{Convention, Way};
 
 use super::cryptomatte::MatteChoice;
 use super::fault::Fault;
+use super::guides::{self, Guide, GuideChoice, GuideSource, Meaning, is_guide, is_named, positions};
 use super::mask::{ChosenMask, MaskSource, OnUnknown};
 use super::mattes::{Matte, Ranks, mattes, pick};
 use super::motion;
-use super::names::{Group, Model, REST, groups, is_matte, rank};
+use super::names::{Group, Model, REST, groups, is_matte};
 
 /// Selection of what is read of a file, and where the result goes.
 #[derive(Clone, Debug, Default)]
@@ -54,84 +54,6 @@ impl Selection {
     }
 }
 
-/// Guides that a renderer gives beside colour.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Guide {
-    /// Normals.
-    Normal,
-    /// Distances.
-    Depth,
-    /// Numbers of objects.
-    ObjectId,
-    /// Places of things in the frame before.
-    Motion,
-    /// Places of things in the frame after.
-    MotionForward,
-    /// Positions of surfaces before anything moves.
-    RestPosition,
-    /// A painted flow map.
-    Flow,
-}
-
-impl Guide {
-    /// All of them.
-    pub const ALL: [Self; 7] = [
-        Self::Normal,
-        Self::Depth,
-        Self::ObjectId,
-        Self::Motion,
-        Self::MotionForward,
-        Self::RestPosition,
-        Self::Flow,
-    ];
-
-    /// The name of the graph's input.
-    pub fn id(self) -> &'static str {
-        match self {
-            Self::Normal => "normal",
-            Self::Depth => "depth",
-            Self::ObjectId => "object_id",
-            Self::Motion => "motion",
-            Self::MotionForward => "motion_forward",
-            Self::RestPosition => "rest_position",
-            Self::Flow => "flow",
-        }
-    }
-
-    /// True for motion.
-    pub fn is_motion(self) -> bool {
-        matches!(self, Self::Motion | Self::MotionForward)
-    }
-
-    /// True where it has three components, of which all are 0 where there is no surface.
-    pub fn is_of_surfaces(self) -> bool {
-        matches!(self, Self::Normal | Self::RestPosition)
-    }
-}
-
-/// Forms in which a guide is written.
-const FIX: &str = "write normal=LAYER, depth=LAYER, object_id=LAYER, motion=LAYER, motion_forward=LAYER, rest_position=LAYER or flow=LAYER";
-
-/// One `--guide`.
-#[derive(Clone, Debug, PartialEq, Eq)]
-pub struct GuideChoice {
-    /// The guide.
-    pub guide: Guide,
-    /// The layer or channel; nothing for none.
-    pub layer: Option<String>,
-}
-
-impl FromStr for GuideChoice {
-    type Err = String;
-
-    fn from_str(text: &str) -> Result<Self, String> {
-        let (name, layer) = text.split_once('=').ok_or(FIX)?;
-        let name = if name == "id" { "object_id" } else { name };
-        let guide = Guide::ALL.into_iter().find(|guide| guide.id() == name).ok_or(FIX)?;
-        Ok(Self { guide, layer: (layer != "none").then(|| layer.to_owned()) })
-    }
-}
-
 /// A picture in a file.
 #[derive(Clone, Debug)]
 pub struct Chosen {
@@ -156,32 +78,6 @@ impl Chosen {
         let guides = self.guides.iter().map(|guide| guide.part);
         guides.chain(masks.map(|layer| layer.part)).chain([self.group.part])
     }
-}
-
-/// Source of a guide.
-#[derive(Clone, Debug)]
-pub struct GuideSource {
-    /// The guide.
-    pub guide: Guide,
-    /// Index of the part.
-    pub part: usize,
-    /// Its channels.
-    pub channels: Vec<usize>,
-    /// Meaning of the channels.
-    pub meaning: Meaning,
-}
-
-/// Meaning of the channels of a guide.
-#[derive(Clone, Copy, Debug)]
-pub enum Meaning {
-    /// They are it.
-    Same,
-    /// Positions in the world, of which depth is to be reckoned.
-    Position,
-    /// Vectors of some convention.
-    Vectors(Rule),
-    /// Ids of a Cryptomatte.
-    Hashes,
 }
 
 /// The pictures of a file in `folder` that are asked for: one for every view that has the layer.
@@ -270,11 +166,46 @@ fn no_view(groups: &[Group], selection: &Selection) -> Fault {
     }
 }
 
-fn is_named(exr: &File, group: &Group, wanted: &str) -> bool {
-    let part = &exr.parts()[group.part].name;
-    group.layer == wanted
-        || (!group.prefix.is_empty() && group.prefix == wanted)
-        || (group.prefix.is_empty() && part == wanted)
+/// Rank of a layer as the picture that an artist means when naming none: less is more likely.
+fn rank(group: &Group) -> Option<u32> {
+    const MAIN: [&str; 9] = ["rgba", "rgb", "beauty", "combined", "color", "colour", "main", "c", "image"];
+    // Data that guide nothing; guides are told by their own names.
+    const DATA: [&str; 23] = [
+        "pcam",
+        "motion",
+        "forward",
+        "backward",
+        "vector",
+        "velocity",
+        "cgeometryvelocity",
+        "vrayvelocity",
+        "motionvector",
+        "motionvectors",
+        "finalimagemotionvectors",
+        "motionback",
+        "motionfore",
+        "uv",
+        "st",
+        "disparityl",
+        "disparityr",
+        "materialid",
+        "materialindex",
+        "indexma",
+        "tangent",
+        "tangents",
+        "tangentnormal",
+    ];
+    let (word, key) = (group.word(), group.key());
+    let is_data = DATA.contains(&key.as_str()) || REST.contains(&key.as_str()) || is_guide(&key);
+    if word.is_empty() {
+        Some(0)
+    } else if let Some(at) = MAIN.iter().position(|m| *m == word) {
+        Some(1 + at as u32)
+    } else if is_data || is_matte(&group.layer) {
+        None
+    } else {
+        Some(100)
+    }
 }
 
 /// Rank of a layer as the picture that is meant, as [`rank`], where Cryptomattes may have any name.
@@ -334,16 +265,17 @@ fn sources(
         };
         let mut near: Vec<&Group> = groups.iter().filter(is_near).collect();
         near.sort_by_key(|g| (g.part != picture.part, g.view != picture.view, g.prefix != picture.prefix));
-        let found = near.iter().find_map(|group| match guide.is_motion() {
-            true => vectors(exr, group, guide, name, selection.convention),
-            false => source(exr, group, guide, name),
-        });
+        let found = match (guide.is_motion(), name) {
+            (true, _) => near.iter().find_map(|g| vectors(exr, g, guide, name, selection.convention)),
+            (false, Some(name)) => near.iter().find_map(|g| guides::named(exr, g, guide, name)),
+            (false, None) => guides::found(&near, guide),
+        };
+        let found = found.or_else(|| listed(exr, picture.part, guide, name?, selection.convention));
         let found = found.or_else(|| {
             let has_camera = exr.parts()[picture.part].world_to_camera.is_some();
             (guide == Guide::Depth && name.is_none() && has_camera).then_some(())?;
             near.iter().find_map(|group| {
-                let channels =
-                    xyz(group).filter(|_| matches!(group.word().as_str(), "p" | "pworld" | "position"))?;
+                let channels = positions(group)?;
                 Some(GuideSource { guide, part: group.part, channels, meaning: Meaning::Position })
             })
         });
@@ -354,18 +286,41 @@ fn sources(
         });
         match (found, name) {
             (Some(source), _) => sources.push(source),
-            (None, Some(name)) => {
-                return Err(Fault::Choice {
-                    problem: format!("has no layer or channel '{name}' that could be the {}", guide.id()),
-                    fix: format!("name another by --guide {}=LAYER, or none", guide.id()),
-                });
-            }
+            (None, Some(name)) => return Err(no_guide(guide, name)),
             (None, None) => {}
         }
     }
     // Channels with fewer samples than pixels guide nothing.
     sources.retain(|s| s.channels.iter().all(|c| exr.parts()[s.part].channels[*c].sampling == (1, 1)));
     Ok(sources)
+}
+
+/// Error of a file that lacks the layer or channel that was asked for as a guide.
+fn no_guide(guide: Guide, name: &str) -> Fault {
+    let id = guide.id();
+    let channels =
+        if guide.is_of_surfaces() { format!(", its channels by --guide {id}=A,B,C") } else { String::new() };
+    Fault::Choice {
+        problem: format!("has no layer or channel '{name}' that could be the {id}"),
+        fix: format!("name another by --guide {id}=LAYER{channels}, or none"),
+    }
+}
+
+/// The channels of a guide that were asked for by their names.
+fn listed(
+    exr: &File,
+    near: usize,
+    guide: Guide,
+    names: &str,
+    convention: Option<Convention>,
+) -> Option<GuideSource> {
+    let (part, channels) = guides::listed(exr, near, guide, names)?;
+    let way = if guide == Guide::MotionForward { Way::Forward } else { Way::Backward };
+    let meaning = match guide.is_motion() {
+        true => Meaning::Vectors(convention.unwrap_or(Convention::OWN).rule(way)),
+        false => Meaning::Same,
+    };
+    Some(GuideSource { guide, part, channels, meaning })
 }
 
 /// The ids in front, of a Cryptomatte or of the one of objects.
@@ -414,14 +369,6 @@ fn of_vectors(group: &Group, guide: Guide, motion::Found { channels, rule }: mot
     GuideSource { guide, part: group.part, channels, meaning: Meaning::Vectors(rule) }
 }
 
-fn xyz(group: &Group) -> Option<Vec<usize>> {
-    group.all(["X", "Y", "Z"]).or_else(|| group.all(["R", "G", "B"]))
-}
-
-fn rgba(group: &Group) -> Option<Vec<usize>> {
-    group.all(["R", "G", "B", "A"])
-}
-
 /// Motion vectors in a group; `name` is the layer that was asked for.
 fn vectors(
     exr: &File,
@@ -436,61 +383,4 @@ fn vectors(
     }
     let found = motion::find(group, guide == Guide::MotionForward, is_named, convention)?;
     Some(of_vectors(group, guide, found))
-}
-
-/// The channels of a guide in a group; `name` is the layer or channel that was asked for.
-fn source(exr: &File, group: &Group, guide: Guide, name: Option<&str>) -> Option<GuideSource> {
-    let part = &exr.parts()[group.part];
-    let found = |channels| GuideSource { guide, part: group.part, channels, meaning: Meaning::Same };
-    let single = |components: &[&str]| {
-        let known = components.iter().find_map(|c| group.member(c));
-        known.or(match group.members.as_slice() {
-            [(_, one)] => Some(*one),
-            _ => None,
-        })
-    };
-    if let Some(name) = name {
-        let channel = group.members.iter().find(|(_, at)| part.channels[*at].name == name).map(|m| m.1);
-        if !guide.is_of_surfaces() && guide != Guide::Flow && channel.is_some() {
-            return channel.map(|c| found(vec![c]));
-        }
-        if !is_named(exr, group, name) {
-            return None;
-        }
-        return match guide {
-            Guide::Normal | Guide::RestPosition => xyz(group),
-            Guide::Depth => single(&["Z", "depth", "Y", "V", "R"]).map(|c| vec![c]),
-            Guide::ObjectId => single(&["id", "object_id", "Y", "R"]).map(|c| vec![c]),
-            Guide::Flow => rgba(group),
-            Guide::Motion | Guide::MotionForward => None,
-        }
-        .map(found);
-    }
-    if is_matte(&group.layer) {
-        return None;
-    }
-    let word = group.word();
-    let channels = match guide {
-        Guide::Normal => match word.as_str() {
-            "n" | "normal" | "normals" => xyz(group)?,
-            _ => return None,
-        },
-        Guide::Depth => match word.as_str() {
-            "depth" | "z" => vec![single(&["Z", "depth", "Y", "V", "R"])?],
-            // A vector's third component is none.
-            _ if group.member("X").is_none() => {
-                vec![group.member("Z").or_else(|| group.member("depth"))?]
-            }
-            _ => return None,
-        },
-        Guide::ObjectId => match word.as_str() {
-            "id" | "object_id" | "objectid" => vec![single(&["id", "Y", "R", "X"])?],
-            _ => vec![["id", "object_id", "objectid"].iter().find_map(|c| group.member(c))?],
-        },
-        Guide::RestPosition if REST.contains(&word.as_str()) => xyz(group)?,
-        // "flow" alone may be optical flow.
-        Guide::Flow if matches!(word.as_str(), "flow_map" | "flowmap") => rgba(group)?,
-        Guide::RestPosition | Guide::Flow | Guide::Motion | Guide::MotionForward => return None,
-    };
-    Some(found(channels))
 }

@@ -1,6 +1,7 @@
 //! A file with the pictures that were chosen in it, and their results back into it.
 
 use std::path::Path;
+use std::sync::Once;
 
 use isophote_exr_edit::{Decoded, Edit, File, Limits, PartEdit, Sample, Window};
 
@@ -11,6 +12,7 @@ use super::offers::{self, Offers};
 use super::picture::{self, Picture};
 use crate::pixels::{MOST_PIXELS, Pixels, Samples};
 use isophote_files::error::Result;
+use isophote_files::output;
 
 /// Most that one file may take, whatever it says of itself. The number of files that are in memory at the same time is
 /// decided by what they weigh; see [`Opened::weight`].
@@ -105,6 +107,16 @@ pub fn mask_of(
 /// The folder of a file.
 fn folder(path: &Path) -> &Path {
     path.parent().unwrap_or(Path::new(""))
+}
+
+/// Warns once that results are compressed otherwise than the pictures that they are made from.
+fn tell_recompressed([old, new]: [&str; 2]) {
+    static TOLD: Once = Once::new();
+    TOLD.call_once(|| {
+        output::warn(format_args!(
+            "{old} compression loses something each time; results take {new}, and layers that are kept lose nothing more"
+        ));
+    });
 }
 
 /// True where all chunks of a file are there.
@@ -253,6 +265,8 @@ impl ExrFile {
     /// # Errors
     /// The reason as text: of the disk, or of a codec.
     pub fn write(&self, out: &mut impl std::io::Write) -> std::result::Result<(), String> {
+        let changed = (0..self.edits.len()).filter(|part| self.edits[*part].is_some());
+        changed.filter_map(|part| self.exr.recompressed(part)).for_each(tell_recompressed);
         let both = self.decoded.iter().zip(&self.edits);
         let edits: Vec<PartEdit<'_>> = both
             .filter_map(|(decoded, edit)| Some(PartEdit { decoded: decoded.as_ref()?, edit: edit.as_ref()? }))

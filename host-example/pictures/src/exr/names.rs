@@ -6,6 +6,14 @@
 
 use isophote_exr_edit::{File, Part, Sample};
 
+/// Words for components of colour.
+const WORDS: [(&str, &str); 4] = [("R", "red"), ("G", "green"), ("B", "blue"), ("A", "alpha")];
+
+/// Letters and digits of a name, in lower case: what is compared where programs differ in spaces and signs.
+pub fn key(name: &str) -> String {
+    name.chars().filter(char::is_ascii_alphanumeric).map(|c| c.to_ascii_lowercase()).collect()
+}
+
 /// Channels of one layer and view in one part.
 #[derive(Clone, Debug)]
 pub struct Group {
@@ -33,10 +41,12 @@ pub enum Model {
 }
 
 impl Group {
-    /// The channel of a component, whatever its case.
+    /// The channel of a component, whatever its case; colours may be written as words, as Nuke does.
     pub fn member(&self, component: &str) -> Option<usize> {
         let exact = self.members.iter().find(|(c, _)| c == component);
-        exact.or_else(|| self.members.iter().find(|(c, _)| c.eq_ignore_ascii_case(component))).map(|m| m.1)
+        let alike = |word: &str| self.members.iter().find(|(c, _)| c.eq_ignore_ascii_case(word)).map(|m| m.1);
+        let word = WORDS.iter().find(|(letter, _)| letter.eq_ignore_ascii_case(component));
+        exact.map(|m| m.1).or_else(|| alike(component)).or_else(|| alike(word?.1))
     }
 
     /// The channels of all these components.
@@ -47,6 +57,11 @@ impl Group {
     /// The last word of the layer's name, in lower case.
     pub fn word(&self) -> String {
         self.layer.rsplit('.').next().unwrap_or_default().to_ascii_lowercase()
+    }
+
+    /// The letters and digits of that word.
+    pub fn key(&self) -> String {
+        key(&self.word())
     }
 
     /// The channels of the group's colours, in order. `named` says that the layer was asked for, so that a
@@ -122,62 +137,8 @@ fn own_name(part: &Part) -> String {
     bare.map_or(part.name.as_str(), |name| name.trim_end_matches(['.', '_', '-'])).to_owned()
 }
 
-/// Layers of points of undeformed objects, in lower case: RenderMan's and Arnold's names, Houdini's, and words.
-pub const REST: [&str; 6] = ["pref", "__pref", "p_ref", "rest", "restposition", "rest_position"];
-
-/// Rank of a layer as the picture that an artist means when naming none: less is more likely.
-pub fn rank(group: &Group) -> Option<u32> {
-    const MAIN: [&str; 9] = ["rgba", "rgb", "beauty", "combined", "color", "colour", "main", "c", "image"];
-    const DATA: [&str; 37] = [
-        "n",
-        "normal",
-        "normals",
-        "p",
-        "pworld",
-        "pcam",
-        "position",
-        "motion",
-        "forward",
-        "backward",
-        "vector",
-        "velocity",
-        "motionvector",
-        "motion_vector",
-        "motionvectors",
-        "finalimagemotionvectors",
-        "motionback",
-        "motionfore",
-        "uv",
-        "st",
-        "z",
-        "depth",
-        "id",
-        "object_id",
-        "disparityl",
-        "disparityr",
-        "worldposition",
-        "world_position",
-        "worldnormal",
-        "world_normal",
-        "zdepth",
-        "zbuffer",
-        "objectid",
-        "materialid",
-        "material_id",
-        "tangent",
-        "tangents",
-    ];
-    let word = group.word();
-    if word.is_empty() {
-        Some(0)
-    } else if let Some(at) = MAIN.iter().position(|m| *m == word) {
-        Some(1 + at as u32)
-    } else if DATA.contains(&word.as_str()) || REST.contains(&word.as_str()) || is_matte(&group.layer) {
-        None
-    } else {
-        Some(100)
-    }
-}
+/// Layers of points of undeformed objects, by their keys: RenderMan's and Arnold's names, Houdini's, and words.
+pub const REST: [&str; 3] = ["pref", "rest", "restposition"];
 
 /// True where a layer is a Cryptomatte, whose numbers are neither colours nor ids.
 pub fn is_matte(layer: &str) -> bool {

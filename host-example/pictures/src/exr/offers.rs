@@ -2,7 +2,8 @@
 
 use isophote_exr_edit::File;
 
-use super::choose::{Chosen, Guide, likely};
+use super::choose::{Chosen, likely};
+use super::guides::Guide;
 use super::mattes::mattes;
 use super::names::groups;
 

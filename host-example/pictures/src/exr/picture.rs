@@ -4,8 +4,10 @@ use std::path::Path;
 
 use isophote_exr_edit::{Channel, Decoded, Edit, Error as ExrError, File, Part, Plane, Window};
 
-use super::choose::{Chosen, GuideSource, Meaning, Selection};
+use super::choose::{Chosen, Selection};
 use super::fault::Fault;
+use super::guides::{GuideSource, Meaning};
+use super::interop;
 use super::motion::applied;
 use super::names::{Model, components};
 use crate::pixels::{Pixels, Samples};
@@ -103,7 +105,7 @@ pub fn read(
     Ok(Picture {
         pixels,
         guides,
-        chromaticities: part.chromaticities,
+        chromaticities: interop::chromaticities(exr, chosen.group.part),
         origin: [part.window.x, part.window.y],
         display: part.display,
         masks,

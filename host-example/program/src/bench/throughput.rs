@@ -84,7 +84,6 @@ pub fn measure(
     let stop = Stop::default();
     let run = Run {
         tasks: &tasks,
-        format: Format::Exr,
         consent: Consent::default(),
         threads: Threads::Several,
         report: &report,

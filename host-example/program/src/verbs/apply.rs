@@ -1,7 +1,10 @@
 //! `isophote apply`: a node, graph or preset on a picture or a sequence of frames, without any scene.
 
+mod guiding;
 mod on_video;
+mod several;
 
+use std::borrow::Cow;
 use std::path::{Path, PathBuf};
 
 use clap::{Args, ValueHint};
@@ -9,13 +12,14 @@ use clap::{Args, ValueHint};
 use super::shared::{ForceArgs, LengthArgs, PrecisionArgs};
 use isophote_files::error::{Error, Result};
 use isophote_files::files::{self, Existing};
-use isophote_files::frames::{FrameList, Pattern};
+use isophote_files::frames::FrameList;
 use isophote_files::identity::is_same;
 use isophote_files::limits::{self, Threads};
+use isophote_files::output;
 use isophote_files::stop::Stop;
 use isophote_finishing::apply::backend::Backend;
 use isophote_finishing::apply::dry_run::DryRun;
-use isophote_finishing::apply::filter::{self, Filter, MaskedStyle, Planner};
+use isophote_finishing::apply::filter::{Filter, MaskedStyle, Planner};
 use isophote_finishing::apply::looks::{self, Entry};
 use isophote_finishing::apply::masks::{MaskChoice, Masks};
 use isophote_finishing::apply::memory::{self, Budget, Bytes, Needs, too_large};
@@ -26,7 +30,7 @@ use isophote_finishing::apply::tasks::{OnMissing, Task, Tasks};
 use isophote_finishing::stylize::style::{Setting, Style};
 use isophote_finishing::video::{self, OnError};
 use isophote_loader::Library;
-use isophote_pictures::exr::{Convention, Guide, GuideChoice, MaskSource, OnUnknown, Selection};
+use isophote_pictures::exr::{Convention, GuideChoice, MaskSource, OnUnknown, Selection};
 use isophote_pictures::read::{self, Opened};
 use isophote_pictures::space::Space;
 use isophote_pictures::write::Format;
@@ -37,14 +41,23 @@ pub struct ApplyArgs {
     /// The id of a node, a look, or a graph file or preset (.json). Left out where --preset or --layered is given.
     #[arg(value_hint = ValueHint::FilePath)]
     pub style: PathBuf,
-    /// The picture: PNG, JPEG, TIFF, WebP, HDR or EXR. A sequence: shot.####.exr, shot.@@@@.exr or shot.%04d.exr. A video
-    /// that ffmpeg reads, such as .mp4, .mov, .mkv or .webm; or - for YUV4MPEG on standard input.
-    #[arg(value_hint = ValueHint::FilePath)]
-    pub input: PathBuf,
+    /// The picture: PNG, JPEG, TIFF, WebP, HDR or EXR. A sequence: shot.####.exr, shot.@@@@.exr, shot.%04d.exr, shot.$F4.exr or
+    /// shot.<UDIM>.exr; one # alone for any number of digits. A file that has just this name is meant first. A video
+    /// that ffmpeg reads, such as .mp4, .mov, .mkv or .webm; or - for YUV4MPEG on standard input. With --to a folder as well.
+    #[arg(required_unless_present = "to", value_hint = ValueHint::AnyPath)]
+    pub input: Option<PathBuf>,
     /// The result: .png, .jpg, .tif or .exr; the input itself with --in-place only. For a sequence with #### as well. For a
     /// video another one, or - for YUV4MPEG on standard output.
-    #[arg(required_unless_present_any = ["preset", "layered"], value_hint = ValueHint::FilePath)]
+    #[arg(required_unless_present_any = ["preset", "layered", "to"], value_hint = ValueHint::FilePath)]
     pub output: Option<PathBuf>,
+    /// More pictures, with --to.
+    #[arg(value_hint = ValueHint::FilePath)]
+    pub more: Vec<PathBuf>,
+    /// A folder for the results instead of a result: every picture that is named, and those of every folder, get a file of
+    /// the same name in it (.png for .webp, .exr for .hdr). It is made where it is not there. A picture that fails does not
+    /// keep the others from being done.
+    #[arg(long, value_name = "FOLDER", value_hint = ValueHint::DirPath)]
+    pub to: Option<PathBuf>,
     /// A preset with the style and its parameters, or a look.
     #[arg(long, value_name = "FILE", value_hint = ValueHint::FilePath)]
     pub preset: Option<PathBuf>,
@@ -90,7 +103,7 @@ pub struct ApplyArgs {
     #[arg(long, value_enum, default_value_t = Backend::Auto)]
     pub backend: Backend,
     /// Colour space of the picture and of the result; without it sRGB for integers, linear for floats, and what
-    /// the chromaticities of an EXR file say.
+    /// the chromaticities or the colorInteropID of an EXR file say.
     #[arg(long, value_enum)]
     pub space: Option<Space>,
     /// The layer of an EXR file that is read and replaced [default: the main layer].
@@ -109,9 +122,10 @@ pub struct ApplyArgs {
     #[arg(long, value_name = "NEWLAYER")]
     pub into: Option<String>,
     /// The layer of an EXR file that guides the filter: normal=LAYER, depth=LAYER, object_id=LAYER, motion=LAYER,
-    /// motion_forward=LAYER, rest_position=LAYER or flow=LAYER, or none instead of a layer. Without it guides are found by names
-    /// such as N, normal, Z, depth, P, id, backward, Vector, velocity, Pref, rest and flow_map; where there is no id, the Cryptomatte of objects
-    /// stands for it, which is object_id=cryptomatte, or `object_id=cryptomatte[LAYER]` for another. May be repeated.
+    /// motion_forward=LAYER, rest_position=LAYER or flow=LAYER, or none instead of a layer; normal=A,B,C names its channels.
+    /// Without it guides are found by the names that renderers give them, such as N, normal, Z, depth, P, id, IndexOB, backward,
+    /// Vector, velocity, Pref, rest and flow_map; where there is no id, the Cryptomatte of objects stands for it, which is
+    /// object_id=cryptomatte, or `object_id=cryptomatte[LAYER]` for another. May be repeated.
     #[arg(long, value_name = "GUIDE=LAYER")]
     pub guide: Vec<GuideChoice>,
     /// Share of the result that is used where: a file such as mask.png, one for each frame (mask.####.exr), a layer
@@ -163,14 +177,14 @@ pub struct ApplyArgs {
 /// when the library or the device fails. Each output is written as a whole or not at all.
 pub fn run(args: &ApplyArgs) -> Result<()> {
     let files = args.files()?;
-    if video::is_video(files.input) || video::is_video(files.output) {
+    if video::is_video(files.input) || video::is_video(&files.output) {
         return args.run_on_video(&files);
     }
     if args.on_error == OnError::Skip {
         return Err(Error::input("--on-error", "is for videos", "leave it out"));
     }
-    let format = Format::of(files.output)?;
     let tasks = args.tasks()?;
+    let format = Format::of(&tasks.ready[0].output)?;
     let library = Library::open()?;
     let threads = limits::start_threads(args.threads as usize)?;
     let entries = args.entries()?;
@@ -186,6 +200,7 @@ pub fn run(args: &ApplyArgs) -> Result<()> {
     let planner = Planner::new(library.clone(), args.looks(&library, files.style, &entries)?)?;
     let mut planner = planner.with_flow(args.flow.is_some());
     args.check_results(&tasks, &planner, &choices)?;
+    let guides = args.guides_found(&tasks, &selection, opened.as_ref(), &planner)?;
     let filter = Filter::new(library.clone(), looks, backend, args.space, args.threads)?;
     let most = args.memory.unwrap_or_else(memory::usual);
     let needs = args.needs(&mut planner, &tasks, opened.as_ref(), most)?;
@@ -193,14 +208,15 @@ pub fn run(args: &ApplyArgs) -> Result<()> {
         let (skip_existing, json) = (args.skip_existing, args.json);
         let run = DryRun { tasks: &tasks, selection: &selection, most, skip_existing, json };
         let refused = run.print(&mut planner, needs)?;
-        return report::check_failed(files.input, refused, tasks.ready.len(), args.consent());
+        report::check_failed(files.input, refused, &tasks, args.consent())?;
+        return output::print(&guides);
     }
     let stop = Stop::on_signals();
-    if !tasks.is_sequence() {
+    if !tasks.are_several() {
         stop.ends_the_process("the picture");
     }
     let report = args.report(&tasks);
-    let is_parallel = tasks.is_sequence() && threads == Threads::Several;
+    let is_parallel = tasks.are_several() && threads == Threads::Several;
     let mut filters = filters(filter, is_parallel, || args.looks(&library, files.style, &entries))?;
     let budget = Budget::new(most.0, filters.len());
     let frame_source = FrameSource {
@@ -210,12 +226,12 @@ pub fn run(args: &ApplyArgs) -> Result<()> {
         masks: &masks,
         budget: &budget,
     };
-    let run =
-        Run { tasks: &tasks.ready, format, consent: args.consent(), threads, report: &report, stop: &stop };
+    let run = Run { tasks: &tasks.ready, consent: args.consent(), threads, report: &report, stop: &stop };
     let result = run.all(&mut filters, Reader::new(frame_source, planner, &tasks.ready, opened));
     let counts = report.end(result.is_ok());
     result?;
-    counts.check(files.input, tasks.ready.len(), args.consent())
+    counts.check(files.input, &tasks, args.consent())?;
+    output::print(&guides)
 }
 
 /// Warns of keyframes of looks that no frame of a sequence reaches.
@@ -247,13 +263,18 @@ pub struct Files<'a> {
     /// Path that is read.
     pub input: &'a Path,
     /// Path that is written.
-    pub output: &'a Path,
+    pub output: Cow<'a, Path>,
 }
 
 impl ApplyArgs {
     /// Report of a run, with the frames that are missing.
     fn report(&self, tasks: &Tasks) -> Report {
-        let report = Report::new(tasks.count(), tasks.is_sequence(), self.json);
+        let is_listed = tasks.are_several() && !tasks.is_sequence();
+        let report = if is_listed {
+            Report::listing(tasks.count(), self.json)
+        } else {
+            Report::new(tasks.count(), tasks.is_sequence(), self.json)
+        };
         for task in &tasks.missing {
             report.frame(task, &Outcome::Missing);
         }
@@ -273,6 +294,10 @@ impl ApplyArgs {
             Some(opened) => planner.needs(&first.input, first.frame, opened)?,
             None => None,
         };
+        if tasks.are_several() && !tasks.is_sequence() {
+            // Each of them is measured by itself when its turn comes.
+            return Ok(needs);
+        }
         let span = planner.span(first.frame)?;
         if let Some(needs) = needs.map(|needs| needs.of(span)).filter(|needs| needs.total() > most.0) {
             return Err(too_large(&first.input, span, needs, most));
@@ -280,34 +305,12 @@ impl ApplyArgs {
         let is_in_place = |task: &Task| is_same(&task.input, &task.output);
         if span > 1 && self.in_place && self.into.is_none() && tasks.ready.iter().any(is_in_place) {
             return Err(Error::file(
-                self.files()?.output,
+                &self.files()?.output,
                 "would take the place of frames that others depend on",
                 "name another folder for the results, or leave --steadiness out",
             ));
         }
         Ok(needs)
-    }
-
-    /// The files that the command line names. With a preset the style is left out, and the other two move up.
-    ///
-    /// # Errors
-    /// [`Error::Input`] for a style beside a preset.
-    pub fn files(&self) -> Result<Files<'_>> {
-        match (&self.output, self.preset.as_ref().or(self.layered.as_ref())) {
-            (Some(output), None) => Ok(Files { style: &self.style, input: &self.input, output }),
-            (None, Some(style)) => Ok(Files { style, input: &self.style, output: &self.input }),
-            _ => {
-                let (option, problem) = match self.preset {
-                    Some(_) => ("--preset", "the preset names the style"),
-                    None => ("--layered", "its looks name the styles"),
-                };
-                Err(Error::input(
-                    option,
-                    problem,
-                    format!("give the picture and the result alone, or leave {option} out"),
-                ))
-            }
-        }
     }
 
     /// The looks of a file; none where there is a style.
@@ -374,41 +377,20 @@ impl ApplyArgs {
         Masks::new(choices, self.mask_from.as_deref(), self.on_unknown)?.with_flow(self.flow.as_deref())
     }
 
-    /// The files of motion vectors.
-    ///
-    /// # Errors
-    /// [`Error::Input`] where they would not be used, and where none is there.
-    fn motion_files(&self, tasks: &Tasks, selection: &Selection) -> Result<Option<Pattern>> {
-        let Some(path) = &self.motion else { return Ok(None) };
-        let wrong = |problem: &str, fix: &str| Err(Error::input("--motion", problem, fix));
-        if !tasks.is_sequence() {
-            return wrong("a picture by itself has no neighbours", "name a sequence such as shot.####.exr");
-        }
-        if self.estimates_motion() {
-            return Ok(None);
-        }
-        if selection.wanted.iter().all(|guide| !guide.is_motion()) {
-            return wrong("the style reads no motion", "give --steadiness 0.5, or another style");
-        }
-        let Some(pattern) = Pattern::new(path)? else {
-            return wrong("has no place for a frame number", "write mv.####.exr");
-        };
-        let mut frames = tasks.ready.iter().filter_map(|task| task.frame);
-        match frames.find(|frame| pattern.file(*frame).is_file()) {
-            Some(_) => Ok(Some(pattern)),
-            None => Err(Error::file(path, "has none of the frames", "name files that exist")),
-        }
-    }
-
     /// The frames that are read and written.
     ///
     /// # Errors
     /// As [`Tasks::find`]; [`Error::Input`] for an output that is a folder.
     fn tasks(&self) -> Result<Tasks> {
-        let files = self.files()?;
-        let tasks = Tasks::find(files.input, files.output, self.frames.as_ref(), self.on_missing)?;
+        let tasks = match self.pictures()? {
+            Some(pictures) => Tasks::of_pictures(pictures),
+            None => {
+                let files = self.files()?;
+                Tasks::find(files.input, &files.output, self.frames.as_ref(), self.on_missing)?
+            }
+        };
         match tasks.ready.iter().find(|task| task.output.is_dir()) {
-            Some(task) => Err(Error::file(&task.output, "is a folder", "name a file")),
+            Some(task) => Err(Error::file(&task.output, "is a folder", "name a file, or the folder by --to")),
             None => Ok(tasks),
         }
     }
@@ -430,26 +412,20 @@ impl ApplyArgs {
         let first = &tasks.ready[0];
         let opened = match read::open(&first.input, selection) {
             // A picture that cannot be read is reported before a folder that cannot be written.
-            Err(error) if !tasks.is_sequence() && !self.skip_existing => return Err(error),
+            Err(error) if !tasks.are_several() && !self.skip_existing => return Err(error),
             opened => opened.ok(),
         };
+        if self.dry_run && self.to.as_deref().is_some_and(|folder| !folder.exists()) {
+            return Ok(opened);
+        }
         if self.dry_run {
             files::check(&first.output, Existing::Replace)?;
         } else {
+            self.make_folder()?;
             files::check_writable(&first.output, Existing::Replace)?;
             files::sweep(&first.output);
         }
         Ok(opened)
-    }
-
-    /// Guides that are looked for.
-    fn wanted(&self, library: &Library, looks: &[MaskedStyle]) -> Result<Vec<Guide>> {
-        let mut wanted = Vec::new();
-        for look in looks {
-            wanted.extend(filter::usable_guides(library, &look.style)?);
-        }
-        wanted.retain(|guide| !(self.estimates_motion() && guide.is_motion()));
-        Ok(wanted)
     }
 
     /// Selection of what is read of EXR files.

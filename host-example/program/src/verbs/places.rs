@@ -44,24 +44,29 @@ impl ApplyArgs {
     /// # Errors
     /// As [`ApplyArgs::files`].
     pub fn places(&self) -> Result<Vec<Place<'_>>> {
-        let files = self.files()?;
+        let named = self.named()?;
+        let styled = match (&self.preset, &self.layered) {
+            (Some(_), _) => "preset",
+            (None, _) => "style",
+        };
         // With a preset the input is the first of the arguments without a name.
-        let is_moved = self.output.is_none();
-        let styled = if self.preset.is_some() { "preset" } else { "style" };
-        let [input, output] = if is_moved { ["style", "input"] } else { ["input", "output"] };
+        let is_moved = self.preset.is_some() || self.layered.is_some();
+        let [first, second] = if is_moved { ["style", "input"] } else { ["input", "output"] };
+        let ids = [first, second].into_iter().chain(std::iter::repeat("more"));
+        let inputs = named.inputs.iter().zip(ids).map(|(path, id)| (id, Part::Frames, Some(*path)));
         let mask = self.mask.as_ref().and_then(|mask| match mask {
             MaskSource::File(path) => Some(path.as_path()),
             MaskSource::Layer(_) | MaskSource::Mattes(_) => None,
         });
-        let named = [
+        let others = [
             (
                 styled,
                 Part::Style,
-                Some(files.style).filter(|style| self.layered.is_none() && style::is_file(style)),
+                Some(named.style).filter(|style| self.layered.is_none() && style::is_file(style)),
             ),
             ("layered", Part::Style, self.layered.as_deref()),
-            (input, Part::Frames, Some(files.input)),
-            (output, Part::Result, Some(files.output)),
+            (second, Part::Result, named.output),
+            ("to", Part::Result, self.to.as_deref()),
             ("mask", Part::Frames, mask),
             ("mask_from", Part::Frames, self.mask_from.as_deref()),
             ("flow", Part::Frames, self.flow.as_deref()),
@@ -71,7 +76,7 @@ impl ApplyArgs {
         let is_path = |path: &&Path| *path != Path::new("-");
         let place =
             |(id, part, path): (_, _, Option<_>)| Some(Place { id, part, path: path.filter(is_path)? });
-        Ok(named.into_iter().filter_map(place).collect())
+        Ok(inputs.chain(others).filter_map(place).collect())
     }
 
     /// True where motion is to be found in the pictures themselves.
@@ -111,7 +116,7 @@ impl ApplyArgs {
     /// As [`Consent::check`].
     pub fn check_results(&self, tasks: &Tasks, planner: &Planner, masks: &[MaskChoice]) -> Result<()> {
         let made: Vec<Made<'_>> = tasks.ready.iter().map(Task::made).collect();
-        self.consent().check(&made, tasks.is_sequence(), || {
+        self.consent().check(&made, tasks.are_several(), || {
             let mut frames = BTreeSet::new();
             for task in &tasks.ready {
                 let Some(number) = task.frame else { continue };

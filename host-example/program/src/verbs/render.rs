@@ -148,7 +148,7 @@ impl RenderArgs {
     /// Numbers and files of the results; of a video there is one file for all.
     fn results(&self) -> Result<Vec<(i64, PathBuf)>> {
         let frames = self.frames.frames();
-        let pattern = match Pattern::new(&self.out)? {
+        let pattern = match Pattern::in_name(&self.out)? {
             _ if video::is_video(&self.out) => None,
             None if frames.len() == 1 => None,
             _ => Some(Pattern::or_added(&self.out)?),

@@ -18,7 +18,7 @@ impl ApplyArgs {
     /// Filters a video.
     pub(super) fn run_on_video(&self, files: &Files<'_>) -> Result<()> {
         let wrong = |place: &str, problem: &str, fix: &str| Err(Error::input(place, problem, fix));
-        if !video::is_video(files.input) || !video::is_video(files.output) {
+        if !video::is_video(files.input) || !video::is_video(&files.output) {
             let place = files.output.display().to_string();
             return wrong(&place, "a video becomes a video, and pictures pictures", "name two of a kind");
         }
@@ -32,16 +32,17 @@ impl ApplyArgs {
             return wrong(option, "is not for videos", "leave it out");
         }
         let choices = self.masks(&self.entries()?);
-        let made = Made { from: Some(files.input), to: files.output };
-        if files.output != Path::new("-") {
+        let made = Made { from: Some(files.input), to: &files.output };
+        if &*files.output != Path::new("-") {
             self.consent().check(&[made], false, || self.inputs(&choices, None))?;
         }
         if self.skip_existing && files.output.is_file() {
             return Ok(());
         }
-        if files.output != Path::new("-") {
-            files::check_writable(files.output, Existing::Replace)?;
-            files::sweep(files.output);
+        if &*files.output != Path::new("-") {
+            self.make_folder()?;
+            files::check_writable(&files.output, Existing::Replace)?;
+            files::sweep(&files.output);
         }
         let library = Library::open()?;
         limits::start_threads(self.threads as usize)?;
@@ -58,7 +59,7 @@ impl ApplyArgs {
         masks.check(None)?;
         let mut filter = Filter::new(library, looks, self.backend, self.space, self.threads)?;
         let stop = Stop::on_signals();
-        let (input, output, encode) = (files.input, files.output, self.encode.as_deref());
+        let (input, output, encode) = (files.input, &*files.output, self.encode.as_deref());
         let run = |existing| {
             let (on_error, json, masks, stop) = (self.on_error, self.json, &masks, &stop);
             let job = video::VideoJob { input, output, existing, encode, on_error, json, masks, stop };

@@ -8,9 +8,9 @@ use isophote_loader::abi::{
     ISOPHOTE_GUIDE_MOTION_FORWARD, ISOPHOTE_GUIDE_NORMAL, ISOPHOTE_GUIDE_OBJECT_ID,
     ISOPHOTE_GUIDE_REST_POSITION, IsophoteRequest,
 };
-use isophote_pictures::convert;
 use isophote_pictures::exr::Guide;
 use isophote_pictures::pixels::Pixels;
+use isophote_pictures::primaries;
 use isophote_pictures::read::{ImageState, Source};
 use isophote_pictures::space::Space;
 use isophote_pictures::working::WorkingSpace;
@@ -65,7 +65,7 @@ impl Frame {
         limits::must_have(size * (16 + picture.guides.len() as u64 * 16), name)?;
         let guides = std::mem::take(&mut picture.guides);
         let working = WorkingSpace::of(space, source.state, picture);
-        let changed = working.change.map(|(there, _)| convert::changed(&picture.pixels, &there));
+        let changed = working.change.map(|(there, _)| primaries::changed(&picture.pixels, &there));
         let (pixels, bad) = changed.as_ref().map_or((&picture.pixels, 0), |(pixels, bad)| (pixels, *bad));
         let (color, replaced) = colors(pixels);
         let named = guides.into_iter().filter_map(|(name, pixels)| {

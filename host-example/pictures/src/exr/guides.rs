@@ -1,0 +1,311 @@
+//! Guides in files: which layers and channels hold them, by the names that renderers give them.
+//!
+//! Sources: the lists of passes of Arnold, Blender 4 and 5, Corona, Houdini's Karma and Mantra, Octane, pbrt, Redshift,
+//! RenderMan, Unreal and V-Ray. Names are compared by their letters and digits alone, in lower case.
+
+use std::str::FromStr;
+
+use isophote_exr_edit::File;
+use isophote_motion::Rule;
+
+use super::names::{Group, REST, is_matte, key};
+
+/// Layers of normals: those of shading first, which show what a picture does, then those of the geometry.
+const NORMALS: [&[&str]; 2] = [
+    &[
+        "n",
+        "normal",
+        "normals",
+        "ns",
+        "shadingnormal",
+        "shadingnormals",
+        "normalshading",
+        "normalsshading",
+        "normalsmooth",
+        "smoothnormal",
+        "worldnormal",
+        "worldnormals",
+        "normalworld",
+        "normalsworld",
+        "bumpnormal",
+        "bumpnormals",
+        "vraynormals",
+        "vraybumpnormals",
+        "cgeometrynormalsshading",
+        "hitn",
+        "denoisingnormal",
+    ],
+    &["ng", "geometricnormal", "geometrynormal", "normalgeometric", "cgeometrynormalsgeometry", "facenormal"],
+];
+/// Layers of distances.
+const DEPTHS: [&str; 10] = [
+    "depth",
+    "z",
+    "zdepth",
+    "vrayzdepth",
+    "cgeometryzdepth",
+    "cameradepth",
+    "hitpz",
+    "pz",
+    "zbuffer",
+    "denoisingdepth",
+];
+/// Layers of numbers of objects.
+const IDS: [&str; 12] = [
+    "id",
+    "objectid",
+    "indexob",
+    "objectindex",
+    "vrayobjectid",
+    "cmaskingid",
+    "objectlayerid",
+    "nodeid",
+    "vraynodeid",
+    "vrayrenderid",
+    "primid",
+    "opid",
+];
+/// Layers of positions in the world.
+const POSITIONS: [&str; 6] = ["p", "pworld", "position", "worldposition", "cgeometryworldposition", "hitp"];
+
+/// True where a layer or a channel by this key holds a guide.
+pub fn is_guide(key: &str) -> bool {
+    let normal = NORMALS.iter().any(|words| words.contains(&key));
+    normal || DEPTHS.contains(&key) || IDS.contains(&key) || POSITIONS.contains(&key)
+}
+
+/// Guides that a renderer gives beside colour.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Guide {
+    /// Normals.
+    Normal,
+    /// Distances.
+    Depth,
+    /// Numbers of objects.
+    ObjectId,
+    /// Places of things in the frame before.
+    Motion,
+    /// Places of things in the frame after.
+    MotionForward,
+    /// Positions of surfaces before anything moves.
+    RestPosition,
+    /// A painted flow map.
+    Flow,
+}
+
+impl Guide {
+    /// All of them.
+    pub const ALL: [Self; 7] = [
+        Self::Normal,
+        Self::Depth,
+        Self::ObjectId,
+        Self::Motion,
+        Self::MotionForward,
+        Self::RestPosition,
+        Self::Flow,
+    ];
+
+    /// The name of the graph's input.
+    pub fn id(self) -> &'static str {
+        match self {
+            Self::Normal => "normal",
+            Self::Depth => "depth",
+            Self::ObjectId => "object_id",
+            Self::Motion => "motion",
+            Self::MotionForward => "motion_forward",
+            Self::RestPosition => "rest_position",
+            Self::Flow => "flow",
+        }
+    }
+
+    /// True for motion.
+    pub fn is_motion(self) -> bool {
+        matches!(self, Self::Motion | Self::MotionForward)
+    }
+
+    /// True where it has three components, of which all are 0 where there is no surface.
+    pub fn is_of_surfaces(self) -> bool {
+        matches!(self, Self::Normal | Self::RestPosition)
+    }
+}
+
+/// Forms in which a guide is written.
+const FIX: &str = "write normal=LAYER, depth=LAYER, object_id=LAYER, motion=LAYER, motion_forward=LAYER, rest_position=LAYER or flow=LAYER";
+
+/// One `--guide`.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct GuideChoice {
+    /// The guide.
+    pub guide: Guide,
+    /// The layer or channel; nothing for none.
+    pub layer: Option<String>,
+}
+
+impl FromStr for GuideChoice {
+    type Err = String;
+
+    fn from_str(text: &str) -> Result<Self, String> {
+        let (name, layer) = text.split_once('=').ok_or(FIX)?;
+        let name = if name == "id" { "object_id" } else { name };
+        let guide = Guide::ALL.into_iter().find(|guide| guide.id() == name).ok_or(FIX)?;
+        Ok(Self { guide, layer: (layer != "none").then(|| layer.to_owned()) })
+    }
+}
+
+/// Source of a guide.
+#[derive(Clone, Debug)]
+pub struct GuideSource {
+    /// The guide.
+    pub guide: Guide,
+    /// Index of the part.
+    pub part: usize,
+    /// Its channels.
+    pub channels: Vec<usize>,
+    /// Meaning of the channels.
+    pub meaning: Meaning,
+}
+
+/// Meaning of the channels of a guide.
+#[derive(Clone, Copy, Debug)]
+pub enum Meaning {
+    /// They are it.
+    Same,
+    /// Positions in the world, of which depth is to be reckoned.
+    Position,
+    /// Vectors of some convention.
+    Vectors(Rule),
+    /// Ids of a Cryptomatte.
+    Hashes,
+}
+
+/// The channels of x, y and z.
+pub fn xyz(group: &Group) -> Option<Vec<usize>> {
+    group.all(["X", "Y", "Z"]).or_else(|| group.all(["R", "G", "B"]))
+}
+
+fn rgba(group: &Group) -> Option<Vec<usize>> {
+    group.all(["R", "G", "B", "A"])
+}
+
+/// The channels of x, y and z that have this word and a letter for their name, such as `Nsx`, `Nsy` and `Nsz`.
+fn flat(group: &Group, word: &str) -> Option<Vec<usize>> {
+    let with = |letter: &char| {
+        let wanted = format!("{word}{letter}");
+        group.members.iter().find(|(component, _)| key(component) == wanted).map(|member| member.1)
+    };
+    ['x', 'y', 'z'].iter().map(with).collect()
+}
+
+/// True where a layer is the one that was asked for.
+pub fn is_named(exr: &File, group: &Group, wanted: &str) -> bool {
+    let part = &exr.parts()[group.part].name;
+    group.layer == wanted
+        || (!group.prefix.is_empty() && group.prefix == wanted)
+        || (group.prefix.is_empty() && part == wanted)
+}
+
+/// Positions in the world, where a group has them.
+pub fn positions(group: &Group) -> Option<Vec<usize>> {
+    xyz(group).filter(|_| POSITIONS.contains(&group.key().as_str()))
+}
+
+/// The channels of these full names, with commas between them, in one part: as many as the guide has components. Those of
+/// the part `near` are taken first.
+pub fn listed(exr: &File, near: usize, guide: Guide, names: &str) -> Option<(usize, Vec<usize>)> {
+    let names: Vec<&str> = names.split(',').map(str::trim).collect();
+    let count = match guide {
+        Guide::Normal | Guide::RestPosition => 3,
+        Guide::Motion | Guide::MotionForward => 2,
+        Guide::Flow => 4,
+        Guide::Depth | Guide::ObjectId => 1,
+    };
+    if names.len() != count || count == 1 {
+        return None;
+    }
+    let others = (0..exr.parts().len()).filter(|part| *part != near);
+    std::iter::once(near).chain(others).find_map(|number| {
+        let part = exr.parts().get(number)?;
+        Some((number, names.iter().map(|name| part.channel(name)).collect::<Option<_>>()?))
+    })
+}
+
+/// The guide that a style wants in the first of these groups that has it, by the names of layers and channels; of normals
+/// those of shading.
+pub fn found(near: &[&Group], guide: Guide) -> Option<GuideSource> {
+    let tiers = if guide == Guide::Normal { NORMALS.len() } else { 1 };
+    (0..tiers).find_map(|tier| {
+        near.iter().find_map(|group| {
+            let channels = unnamed(group, guide, tier)?;
+            Some(GuideSource { guide, part: group.part, channels, meaning: Meaning::Same })
+        })
+    })
+}
+
+/// The channel of one of these components, or the only one.
+fn single(group: &Group, components: &[&str]) -> Option<usize> {
+    let known = components.iter().find_map(|c| group.member(c));
+    known.or(match group.members.as_slice() {
+        [(_, one)] => Some(*one),
+        _ => None,
+    })
+}
+
+/// The channels of a guide that nobody named in a group.
+fn unnamed(group: &Group, guide: Guide, tier: usize) -> Option<Vec<usize>> {
+    if is_matte(&group.layer) {
+        return None;
+    }
+    let word = group.key();
+    let is_of = |words: &[&str]| words.contains(&word.as_str());
+    match guide {
+        Guide::Normal => {
+            let flat = |word: &&str| flat(group, word);
+            // pbrt's N is that of the geometry where it has Ns beside it.
+            let shading = || flat(&"ns").or_else(|| NORMALS[tier].iter().find_map(flat));
+            if is_of(NORMALS[tier]) { xyz(group).or_else(shading) } else { shading() }
+        }
+        Guide::Depth if is_of(&DEPTHS) => {
+            single(group, &["Z", "depth", "Y", "V", "R"]).map(|channel| vec![channel])
+        }
+        // A vector's third component is none.
+        Guide::Depth if group.member("X").is_none() => {
+            let known = group.member("Z").or_else(|| group.member("depth"));
+            let other = || group.members.iter().find(|(c, _)| DEPTHS[2..].contains(&key(c).as_str()));
+            known.or_else(|| other().map(|member| member.1)).map(|channel| vec![channel])
+        }
+        Guide::ObjectId if is_of(&IDS) => {
+            single(group, &["id", "Y", "R", "X", "V"]).map(|channel| vec![channel])
+        }
+        Guide::ObjectId => {
+            let known = |word: &&str| group.members.iter().find(|(c, _)| key(c) == **word);
+            IDS.iter().find_map(known).map(|member| vec![member.1])
+        }
+        Guide::RestPosition if REST.contains(&word.as_str()) => xyz(group),
+        // "flow" alone may be optical flow.
+        Guide::Flow if is_of(&["flowmap"]) => rgba(group),
+        Guide::Depth | Guide::RestPosition | Guide::Flow | Guide::Motion | Guide::MotionForward => None,
+    }
+}
+
+/// The channels of a guide in a group that has or is the layer or channel that was asked for.
+pub fn named(exr: &File, group: &Group, guide: Guide, name: &str) -> Option<GuideSource> {
+    let part = &exr.parts()[group.part];
+    let found = |channels| GuideSource { guide, part: group.part, channels, meaning: Meaning::Same };
+    let channel = group.members.iter().find(|(_, at)| part.channels[*at].name == name).map(|m| m.1);
+    if !guide.is_of_surfaces() && guide != Guide::Flow && channel.is_some() {
+        return channel.map(|c| found(vec![c]));
+    }
+    if !is_named(exr, group, name) {
+        // Components may have the name in theirs.
+        let is_inner = guide.is_of_surfaces() && !name.is_empty();
+        return if is_inner { flat(group, &key(name)).map(found) } else { None };
+    }
+    match guide {
+        Guide::Normal | Guide::RestPosition => xyz(group),
+        Guide::Depth => single(group, &["Z", "depth", "Y", "V", "R"]).map(|c| vec![c]),
+        Guide::ObjectId => single(group, &["id", "object_id", "Y", "R"]).map(|c| vec![c]),
+        Guide::Flow => rgba(group),
+        Guide::Motion | Guide::MotionForward => None,
+    }
+    .map(found)
+}

@@ -1,0 +1,121 @@
+//! TIFF files of 32-bit unsigned integers, which the decoder of others takes for floats: read as 16 bits, with which they
+//! look the same.
+
+use std::io::Cursor;
+
+use image::error::{DecodingError, LimitError, LimitErrorKind};
+use image::metadata::Orientation;
+use image::{ColorType, ImageDecoder, ImageError, ImageFormat, ImageResult};
+use tiff::decoder::{Decoder, DecodingResult, Limits};
+use tiff::tags::Tag;
+use tiff::{ColorType as TiffColor, TiffError};
+
+/// The number of unsigned integers among sample formats.
+const UNSIGNED: u16 = 1;
+
+/// A decoder of such a file that has read what it says of itself.
+pub struct Wide<'a> {
+    bytes: &'a [u8],
+    inner: Decoder<Cursor<&'a [u8]>>,
+    size: (u32, u32),
+    color: ColorType,
+}
+
+impl<'a> Wide<'a> {
+    /// The decoder; nothing for files of another kind, and for damaged ones.
+    pub fn new(bytes: &'a [u8]) -> Option<Self> {
+        let mut inner = Decoder::new(Cursor::new(bytes)).ok()?;
+        let color = match inner.colortype().ok()? {
+            TiffColor::Gray(32) => ColorType::L16,
+            TiffColor::GrayA(32) => ColorType::La16,
+            TiffColor::RGB(32) => ColorType::Rgb16,
+            TiffColor::RGBA(32) => ColorType::Rgba16,
+            _ => return None,
+        };
+        // Unsigned ones need not be said to be so.
+        let formats = inner.find_tag_unsigned_vec::<u16>(Tag::SampleFormat).ok()?.unwrap_or_default();
+        let size = inner.dimensions().ok()?;
+        formats.iter().all(|format| *format == UNSIGNED).then_some(Self { bytes, inner, size, color })
+    }
+}
+
+impl ImageDecoder for Wide<'_> {
+    fn dimensions(&self) -> (u32, u32) {
+        self.size
+    }
+
+    fn color_type(&self) -> ColorType {
+        self.color
+    }
+
+    fn icc_profile(&mut self) -> ImageResult<Option<Vec<u8>>> {
+        Ok(self.inner.get_tag_u8_vec(Tag::IccProfile).ok())
+    }
+
+    fn orientation(&mut self) -> ImageResult<Orientation> {
+        let found = self.inner.find_tag_unsigned::<u8>(Tag::Orientation).ok().flatten();
+        Ok(found.and_then(Orientation::from_exif).unwrap_or(Orientation::NoTransforms))
+    }
+
+    fn set_limits(&mut self, limits: image::Limits) -> ImageResult<()> {
+        let most = limits.max_alloc.map_or(usize::MAX, |most| usize::try_from(most).unwrap_or(usize::MAX));
+        let mut own = Limits::default();
+        own.decoding_buffer_size = most;
+        own.intermediate_buffer_size = most;
+        own.ifd_value_size = most;
+        let again = Decoder::new(Cursor::new(self.bytes)).map_err(failed)?;
+        self.inner = again.with_limits(own);
+        Ok(())
+    }
+
+    fn read_image(mut self, buffer: &mut [u8]) -> ImageResult<()> {
+        let mut decoded = DecodingResult::U32(Vec::new());
+        let layout = self.inner.read_image_to_buffer(&mut decoded).map_err(failed)?;
+        let DecodingResult::U32(samples) = decoded else {
+            return Err(failed(TiffError::IntSizeError));
+        };
+        let channels = usize::from(self.color.channel_count());
+        let pixels = buffer.len() / 2 / channels;
+        if samples.len() < pixels * channels {
+            return Err(ImageError::Limits(LimitError::from_kind(LimitErrorKind::InsufficientMemory)));
+        }
+        for (at, to) in buffer.as_chunks_mut::<2>().0.iter_mut().enumerate() {
+            // Planes follow each other where they are apart.
+            let from = if layout.planes > 1 { at % channels * pixels + at / channels } else { at };
+            *to = narrow(samples[from]).to_ne_bytes();
+        }
+        Ok(())
+    }
+
+    fn read_image_boxed(self: Box<Self>, buffer: &mut [u8]) -> ImageResult<()> {
+        (*self).read_image(buffer)
+    }
+}
+
+/// The nearest number of 16 bits for the same share of the range.
+fn narrow(wide: u32) -> u16 {
+    let (most, half) = (u64::from(u32::MAX), u64::from(u32::MAX / 2));
+    // At most 65535.
+    ((u64::from(wide) * u64::from(u16::MAX) + half) / most) as u16
+}
+
+fn failed(problem: TiffError) -> ImageError {
+    match problem {
+        TiffError::LimitsExceeded => {
+            ImageError::Limits(LimitError::from_kind(LimitErrorKind::InsufficientMemory))
+        }
+        problem => ImageError::Decoding(DecodingError::new(ImageFormat::Tiff.into(), problem)),
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn shares_of_the_range_are_kept() {
+        for (wide, narrowed) in [(0, 0), (u32::MAX, u16::MAX), (0x8080_8080, 0x8080), (65536, 1)] {
+            assert_eq!(narrow(wide), narrowed);
+        }
+    }
+}
