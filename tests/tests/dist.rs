@@ -332,7 +332,7 @@ fn every_manual_page_is_shown_without_a_warning() {
         assert!(shown.contains("SYNOPSIS") && shown.contains(&command), "{name}: {shown}");
     }
     let apply = words(&unpacked.run_in(&pages, "man -l isophote-apply.1"));
-    assert!(apply.contains("--skip-existing") && apply.contains("<STYLE> <INPUT>"), "{apply}");
+    assert!(apply.contains("--skip-existing") && apply.contains("<STYLE> [INPUT] [OUTPUT]"), "{apply}");
 }
 
 #[test]

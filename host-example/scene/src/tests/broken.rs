@@ -217,9 +217,8 @@ fn channels_that_do_not_fit_are_left_out() {
     }
 }
 
-/// Replaces every value of a document, one at a time, by awkward ones: whatever comes of it is no panic.
-#[test]
-fn no_value_makes_the_loader_panic() {
+/// A document in which every kind of value stands that is read.
+fn whole() -> Builder {
     let mut b = Builder::triangle();
     let joints = b.add(U16, "VEC4", 3, &[0; 24]);
     let weights = b.floats("VEC4", &[1.0; 12]);
@@ -259,6 +258,13 @@ fn no_value_makes_the_loader_panic() {
             "channels": [{"sampler": 0, "target": {"node": 0, "path": "weights"}}]
         }),
     );
+    b
+}
+
+/// Replaces every value of a document, one at a time, by awkward ones: whatever comes of it is no panic.
+#[test]
+fn no_value_makes_the_loader_panic() {
+    let b = whole();
     b.load().expect("the file is good before it is changed");
     let mut paths = Vec::new();
     collect(&b.json, String::new(), &mut paths);
