@@ -35,13 +35,14 @@ pub struct Carried<S: Simd, const N: usize> {
     pub place: [f32x8<S>; 2],
 }
 
-/// Fills a band with the average and, where the other frame counts for something, with what `mixed` makes of both.
+/// Fills a band with the average and, where the other frame counts for something, with what `mixed` makes of both: a closure
+/// that is inlined, since a function handed over stays a call.
 #[inline(always)]
 pub fn take_in<S: Simd, const N: usize>(
     simd: S,
     pass: &CpuPass<'_>,
     band: &mut Band<'_>,
-    mixed: impl Fn(S, &CpuPass<'_>, &Carried<S, N>) -> [f32x8<S>; N],
+    mixed: impl Fn(&Carried<S, N>) -> [f32x8<S>; N],
 ) {
     let zero = f32x8::splat(simd, 0.0);
     for_blocks::<N>(
@@ -57,7 +58,7 @@ pub fn take_in<S: Simd, const N: usize>(
             let motion: [f32x8<S>; 2] = block.read(simd, &pass.inputs[1]);
             let [x, y] = block.centres(simd);
             let place = [x + counts.select(motion[0], zero), y + counts.select(motion[1], zero)];
-            let mixed = mixed(simd, pass, &Carried { block, own, share, motion, place });
+            let mixed = mixed(&Carried { block, own, share, motion, place });
             let mut result = own;
             for c in 0..N {
                 result[c] = counts.select(mixed[c], own[c]);

@@ -11,7 +11,13 @@ use isophote_engine::fearless_simd::{Simd, f32x8};
 use isophote_engine::{Class, CpuPass, ImageId, PlanBuilder, Tolerance};
 
 crate::kernel!(carry_colour {
-    cpu: |simd, pass, band| take_in(simd, pass, band, mixed),
+    cpu: |simd, pass, band| take_in(
+        simd,
+        pass,
+        band,
+        #[inline(always)]
+        |carried| mixed(simd, pass, carried),
+    ),
     cost: |_| 180.0,
     tolerance: Tolerance {
         absolute: 1e-3,

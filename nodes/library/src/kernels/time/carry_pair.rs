@@ -9,7 +9,13 @@ use isophote_engine::fearless_simd::{Simd, f32x8, prelude::*};
 use isophote_engine::{CpuPass, ImageId, PlanBuilder, Tolerance};
 
 crate::kernel!(carry_pair {
-    cpu: |simd, pass, band| take_in(simd, pass, band, mixed),
+    cpu: |simd, pass, band| take_in(
+        simd,
+        pass,
+        band,
+        #[inline(always)]
+        |carried| mixed(simd, pass, carried),
+    ),
     cost: |_| 120.0,
     tolerance: Tolerance {
         absolute: 1e-3,

@@ -12,7 +12,13 @@ use isophote_engine::fearless_simd::{Simd, f32x8, prelude::*};
 use isophote_engine::{Class, CpuPass, ImageId, PlanBuilder, Tolerance};
 
 crate::kernel!(carry_tensor {
-    cpu: |simd, pass, band| take_in(simd, pass, band, mixed),
+    cpu: |simd, pass, band| take_in(
+        simd,
+        pass,
+        band,
+        #[inline(always)]
+        |carried| mixed(simd, pass, carried),
+    ),
     cost: |_| 110.0,
     tolerance: Tolerance {
         absolute: 1e-6,
