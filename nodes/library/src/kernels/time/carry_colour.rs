@@ -8,7 +8,7 @@ use crate::kernels::shared::motion::sample_sharp_covered4;
 use crate::kernels::simd::carrying::{self, Carried, take_in};
 use isophote_engine::fearless_simd::prelude::*;
 use isophote_engine::fearless_simd::{Simd, f32x8};
-use isophote_engine::{Class, CpuPass, ImageId, PlanBuilder, Tolerance};
+use isophote_engine::{Class, ImageId, PlanBuilder, Tolerance, View};
 
 crate::kernel!(carry_colour {
     cpu: |simd, pass, band| take_in(
@@ -16,7 +16,7 @@ crate::kernel!(carry_colour {
         pass,
         band,
         #[inline(always)]
-        |carried| mixed(simd, pass, carried),
+        |carried| mixed(simd, &pass.inputs[3], carried),
     ),
     cost: |_| 180.0,
     tolerance: Tolerance {
@@ -34,10 +34,10 @@ pub fn pass(plan: &mut PlanBuilder, images: [ImageId; 2], by: [ImageId; 2], reac
 }
 
 #[inline(always)]
-fn mixed<S: Simd>(simd: S, pass: &CpuPass<'_>, carried: &Carried<S, 4>) -> [f32x8<S>; 4] {
+fn mixed<S: Simd>(simd: S, theirs: &View<'_>, carried: &Carried<S, 4>) -> [f32x8<S>; 4] {
     let Carried { own, share, place: [x, y], .. } = *carried;
     let (zero, one) = (f32x8::splat(simd, 0.0), f32x8::splat(simd, 1.0));
-    let mut carried = sample_sharp_covered4(simd, &pass.inputs[3], x, y);
+    let mut carried = sample_sharp_covered4(simd, theirs, x, y);
     carried[3] = carried[3].within(zero, one);
     let carried = unpremultiply(carried);
     let alpha = (carried[3] - own[3]).mul_add(share, own[3]);

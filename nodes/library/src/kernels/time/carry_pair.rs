@@ -6,7 +6,7 @@
 use crate::kernels::shared::motion::sample_sharp2;
 use crate::kernels::simd::carrying::{self, Carried, take_in};
 use isophote_engine::fearless_simd::{Simd, f32x8, prelude::*};
-use isophote_engine::{CpuPass, ImageId, PlanBuilder, Tolerance};
+use isophote_engine::{ImageId, PlanBuilder, Tolerance, View};
 
 crate::kernel!(carry_pair {
     cpu: |simd, pass, band| take_in(
@@ -14,7 +14,7 @@ crate::kernel!(carry_pair {
         pass,
         band,
         #[inline(always)]
-        |carried| mixed(simd, pass, carried),
+        |carried| mixed(simd, &pass.inputs[3], carried),
     ),
     cost: |_| 120.0,
     tolerance: Tolerance {
@@ -33,9 +33,9 @@ pub fn pass(plan: &mut PlanBuilder, images: [ImageId; 2], by: [ImageId; 2], reac
 }
 
 #[inline(always)]
-fn mixed<S: Simd>(simd: S, pass: &CpuPass<'_>, carried: &Carried<S, 2>) -> [f32x8<S>; 2] {
+fn mixed<S: Simd>(simd: S, theirs: &View<'_>, carried: &Carried<S, 2>) -> [f32x8<S>; 2] {
     let Carried { own, share, place: [x, y], .. } = *carried;
-    let carried = sample_sharp2(simd, &pass.inputs[3], x, y);
+    let carried = sample_sharp2(simd, theirs, x, y);
     let mut mixed = own;
     for c in 0..2 {
         mixed[c] = (carried[c] - own[c]).mul_add(share, own[c]);

@@ -9,7 +9,7 @@
 use crate::kernels::shared::motion::{beside, sample_linear_near4};
 use crate::kernels::simd::carrying::{self, Carried, take_in};
 use isophote_engine::fearless_simd::{Simd, f32x8, prelude::*};
-use isophote_engine::{Class, CpuPass, ImageId, PlanBuilder, Tolerance};
+use isophote_engine::{Class, ImageId, PlanBuilder, Tolerance, View};
 
 crate::kernel!(carry_tensor {
     cpu: |simd, pass, band| take_in(
@@ -17,7 +17,7 @@ crate::kernel!(carry_tensor {
         pass,
         band,
         #[inline(always)]
-        |carried| mixed(simd, pass, carried),
+        |carried| mixed(simd, [&pass.inputs[1], &pass.inputs[3]], carried),
     ),
     cost: |_| 110.0,
     tolerance: Tolerance {
@@ -38,8 +38,7 @@ pub fn pass(plan: &mut PlanBuilder, images: [ImageId; 2], by: [ImageId; 2], reac
 }
 
 #[inline(always)]
-fn mixed<S: Simd>(simd: S, pass: &CpuPass<'_>, carried: &Carried<S, 4>) -> [f32x8<S>; 4] {
-    let (motion, theirs) = (&pass.inputs[1], &pass.inputs[3]);
+fn mixed<S: Simd>(simd: S, [motion, theirs]: [&View<'_>; 2], carried: &Carried<S, 4>) -> [f32x8<S>; 4] {
     let Carried { block, own, share, motion: at, place: [x, y] } = *carried;
     let (left, right) = (beside(simd, motion, block, [-1, 0]), beside(simd, motion, block, [1, 0]));
     let (above, below) = (beside(simd, motion, block, [0, -1]), beside(simd, motion, block, [0, 1]));
