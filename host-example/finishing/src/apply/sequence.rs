@@ -58,7 +58,8 @@ type Lane<'scope, 'a> = (SyncSender<Ready<'a>>, ScopedJoinHandle<'scope, Result<
 
 impl<'a> Run<'a> {
     /// Does all frames. Frames that cannot be read or filtered are reported and left out, and of several pictures by
-    /// themselves those that cannot be written; a run of one picture ends with its error. `reader` reads these frames for the filters' style; there is at least one filter.
+    /// themselves those that cannot be written; a run of one picture ends with its error. `reader` reads these frames for
+    /// the filters' style; there is at least one filter.
     ///
     /// # Errors
     /// The problem that kept a frame from being written, [`Error::Failure`] of the library or the device.
