@@ -10,7 +10,7 @@ use isophote_engine::cpu::{Control, CpuExecutor};
 use isophote_engine::{Image, Rect};
 
 /// Content of a frame of a sequence, by the input of a graph; `None` for frames and inputs that do not exist.
-pub type Source<'s> = &'s dyn Fn(GraphInput, i64) -> Option<Image>;
+pub type FrameLookup<'s> = &'s dyn Fn(GraphInput, i64) -> Option<Image>;
 
 /// A graph on the frames of a sequence, on the CPU.
 #[derive(Debug)]
@@ -40,7 +40,7 @@ impl Player {
     ///
     /// # Panics
     /// When it cannot be planned or run.
-    pub fn frame(&mut self, request: Request, number: i64, source: Source<'_>) -> Image {
+    pub fn frame(&mut self, request: Request, number: i64, source: FrameLookup<'_>) -> Image {
         let exists = |n: i64| source(GraphInput::Color, number + n).is_some();
         let past = (1..=i64::from(self.around[0])).take_while(|n| exists(-n)).count() as u32;
         let future = (1..=i64::from(self.around[1])).take_while(|n| exists(*n)).count() as u32;

@@ -16,7 +16,7 @@ use std::sync::atomic::{AtomicU32, Ordering};
 /// State that the callbacks below see.
 #[derive(Default)]
 struct Watch {
-    asked: AtomicU32,
+    calls: AtomicU32,
     stop_after: u32,
     reported: Mutex<Vec<f32>>,
     batches: AtomicU32,
@@ -25,7 +25,7 @@ struct Watch {
 unsafe extern "C" fn ask(user: *mut c_void) -> u32 {
     // SAFETY: every test hands a `Watch` over that outlives the call.
     let watch = unsafe { &*user.cast::<Watch>() };
-    u32::from(watch.asked.fetch_add(1, Ordering::Relaxed) >= watch.stop_after)
+    u32::from(watch.calls.fetch_add(1, Ordering::Relaxed) >= watch.stop_after)
 }
 
 unsafe extern "C" fn tell(user: *mut c_void, done: f32) {
@@ -73,7 +73,7 @@ fn a_run_reports_progress_and_stops_when_asked() {
     let reported = patient.reported.lock().unwrap();
     assert!(reported.is_sorted() && reported.last() == Some(&1.0), "{reported:?}");
     // Stopped at any question at all, the target is as it was.
-    for stop_after in 0..patient.asked.load(Ordering::Relaxed) {
+    for stop_after in 0..patient.calls.load(Ordering::Relaxed) {
         let watch = Watch { stop_after, ..Watch::default() };
         run.control = Some(IsophoteControl { threads: 1, ..control(&watch) });
         let out = vec![-7.0_f32; data.len()];
@@ -83,7 +83,7 @@ fn a_run_reports_progress_and_stops_when_asked() {
             assert!(out.iter().all(|v| *v == -7.0), "stopped at question {stop_after}");
         } else {
             // One thread may ask less often than several.
-            assert!(watch.asked.load(Ordering::Relaxed) <= stop_after);
+            assert!(watch.calls.load(Ordering::Relaxed) <= stop_after);
         }
     }
     run.control = None;

@@ -20,7 +20,7 @@ struct Film {
     without_motion: Option<i64>,
     motion: [f32; 2],
     motion_width: u32,
-    asked: RefCell<Vec<(String, i64)>>,
+    requests: RefCell<Vec<(String, i64)>>,
     images: RefCell<Vec<Vec<f32>>>,
     released: RefCell<usize>,
 }
@@ -33,7 +33,7 @@ impl Film {
             without_motion: None,
             motion: [-STEP as f32, 0.0],
             motion_width: SIZE[0] as u32,
-            asked: RefCell::default(),
+            requests: RefCell::default(),
             images: RefCell::default(),
             released: RefCell::default(),
         }
@@ -51,7 +51,7 @@ impl Film {
     }
 
     fn count(&self, input: &str) -> usize {
-        self.asked.borrow().iter().filter(|(name, _)| name == input).count()
+        self.requests.borrow().iter().filter(|(name, _)| name == input).count()
     }
 }
 
@@ -63,7 +63,7 @@ unsafe extern "C" fn input(
 ) -> i32 {
     // SAFETY: the tests hand a film over that outlives the call; the name ends with a zero, and the image may be written.
     let (film, name) = unsafe { (&*user.cast::<Film>(), CStr::from_ptr(name).to_str().unwrap()) };
-    film.asked.borrow_mut().push((name.into(), frame));
+    film.requests.borrow_mut().push((name.into(), frame));
     if !(film.first..=film.last).contains(&frame) {
         return 0;
     }

@@ -37,7 +37,7 @@ pub struct Options {
 /// The checks that fail.
 pub fn run(options: &Options) -> Result<()> {
     if let Some(name) = &options.job {
-        let job = JOBS.iter().find(|job| job.name == name);
+        let job = OUTSIDE_TESTS.iter().find(|test| test.name == name);
         return job.map_or_else(|| Err(Failure(format!("there is no job {name}"))), |job| (job.run)());
     }
     setup::ensure(&[
@@ -120,20 +120,20 @@ fn interface() -> Result<()> {
 
 /// Tests that are no program of the workspace, each run by another process of this chore, so that what they print
 /// stays together.
-struct Job {
+struct OutsideTest {
     name: &'static str,
     run: fn() -> Result<()>,
 }
 
-const JOBS: [Job; 4] = [
-    Job { name: "web", run: || web::test(None) },
-    Job { name: "python", run: || python::test(None) },
-    Job { name: "documents", run: documents },
-    Job { name: "interface", run: interface },
+const OUTSIDE_TESTS: [OutsideTest; 4] = [
+    OutsideTest { name: "web", run: || web::test(None) },
+    OutsideTest { name: "python", run: || python::test(None) },
+    OutsideTest { name: "documents", run: documents },
+    OutsideTest { name: "interface", run: interface },
 ];
 
-impl Job {
-    /// The job as a program: the chores as the workspace is built with them, for that build may have replaced this one.
+impl OutsideTest {
+    /// The test as a program: the chores as the workspace is built with them, for that build may have replaced this one.
     fn program(&self) -> Program {
         let path = target_dir("debug").join(format!("xtask{}", std::env::consts::EXE_SUFFIX));
         let arguments = vec!["test", "--job", self.name];
@@ -305,7 +305,7 @@ const SLOWEST: usize = 20;
 
 /// Runs all programs. Returns those that fail.
 fn run_all(mut programs: Vec<Program>) -> Result<Vec<String>> {
-    programs.extend(JOBS.iter().map(Job::program));
+    programs.extend(OUTSIDE_TESTS.iter().map(OutsideTest::program));
     programs.sort_by_key(|p| LONG.iter().position(|long| *long == p.name).unwrap_or(LONG.len()));
     let (alone, together): (Vec<Program>, Vec<Program>) =
         programs.into_iter().partition(|p| ALONE.contains(&p.name.as_str()));

@@ -138,9 +138,9 @@ impl File {
             if changes[number].replace(edit).is_some() {
                 return Err(Error::Argument(format!("part {number} has two edits")));
             }
-            let (chunks, held) = edit::encode(&self.bytes, part, decoded, edit, &self.budget)?;
+            let (chunks, reservation) = edit::encode(&self.bytes, part, decoded, edit, &self.budget)?;
             data[number] = Some(chunks);
-            reserved.push(held);
+            reserved.push(reservation);
         }
         let _head = self.reserve_tables(&changes)?;
         self.write_all(&self.head(&changes), &data, out)

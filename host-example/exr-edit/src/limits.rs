@@ -84,11 +84,11 @@ mod tests {
     #[test]
     fn what_is_dropped_is_given_back() {
         let budget = Budget::new(Limits { memory: 100, ..Limits::default() });
-        let mut held = budget.reserve(60).unwrap();
+        let mut reservation = budget.reserve(60).unwrap();
         assert!(matches!(budget.reserve(41), Err(Error::Memory { needed: 41, left: 40, limit: 100 })));
-        held.join(budget.reserve(40).unwrap());
+        reservation.join(budget.reserve(40).unwrap());
         assert!(budget.reserve(1).is_err());
-        drop(held);
+        drop(reservation);
         assert!(budget.reserve(u64::MAX).is_err());
         assert!(budget.reserve_many::<u32>(25).is_ok());
     }

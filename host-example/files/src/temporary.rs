@@ -207,8 +207,8 @@ pub(crate) mod tests {
             drop(make(&format!(".isophote{name}-old"), 2));
         }
         let own = format!("{TEMPORARY}{}-", kernel());
-        let held = [format!("{TEMPORARY}-locked"), format!("{own}locked")].map(|name| make(&name, 2));
-        held.iter().for_each(|file| file.lock().unwrap());
+        let locked = [format!("{TEMPORARY}-locked"), format!("{own}locked")].map(|name| make(&name, 2));
+        locked.iter().for_each(|file| file.lock().unwrap());
         drop(make(&format!("{own}killed"), 0));
         drop(make("a.png", 9));
         sweep(folder.path());
@@ -219,7 +219,7 @@ pub(crate) mod tests {
         }
         left.sort();
         assert_eq!(names(folder.path()), left);
-        drop(held);
+        drop(locked);
         sweep(folder.path());
         assert!(!names(folder.path()).iter().any(|name| name.ends_with("locked")));
     }

@@ -206,7 +206,7 @@ fn pictures_are_what_apply_hands_over() {
         assert_eq!((frame.width, frame.height, frame.number), (61, 47, None), "{name}");
     }
     let light = is_the_same(&at("light.tif"), Some(Space::Acescg));
-    assert_eq!((light.asked.space, light.replaced), (Space::Acescg, 1));
+    assert_eq!((light.request.space, light.replaced), (Space::Acescg, 1));
     is_the_same(&at("rgb.png"), Some(Space::Linear));
 }
 

@@ -238,8 +238,8 @@ fn parts_under_other_compressions_pass_untouched() {
         let tail: usize = chunks.iter().map(|chunk| 12 + chunk.len()).sum();
         assert!(out[out.len() - tail..] == bytes[bytes.len() - tail..], "{name}");
         assert!(out != bytes, "{name}");
-        let asked = ["apply", "cartoon", "in.exr", "no.exr", "--guide", "depth=depth"];
-        fails(isophote().current_dir(folder.path()).args(asked), 2, &["in.exr", name]);
+        let arguments = ["apply", "cartoon", "in.exr", "no.exr", "--guide", "depth=depth"];
+        fails(isophote().current_dir(folder.path()).args(arguments), 2, &["in.exr", name]);
     }
 }
 

@@ -24,26 +24,26 @@ fn library() -> Library {
 }
 
 /// A look with the preset that it is.
-struct Look {
+struct ShippedPreset {
     id: &'static str,
     json: &'static str,
     preset: Preset,
 }
 
-impl Look {
+impl ShippedPreset {
     fn style(&self) -> String {
         format!("look:{}", self.id)
     }
 }
 
-fn looks() -> Vec<Look> {
+fn looks() -> Vec<ShippedPreset> {
     let preset = |look: &preset::Look| preset::of_look(look).expect("every look can be read");
-    let look = |look: preset::Look| Look { id: look.id, json: look.json, preset: preset(&look) };
+    let look = |look: preset::Look| ShippedPreset { id: look.id, json: look.json, preset: preset(&look) };
     library().looks().expect("the looks").into_iter().map(look).collect()
 }
 
 /// The value that a look has for a parameter.
-fn value<'a>(look: &'a Look, id: &str) -> Option<&'a str> {
+fn value<'a>(look: &'a ShippedPreset, id: &str) -> Option<&'a str> {
     look.preset.params.iter().find(|(name, _)| name == id).map(|(_, track)| match track {
         Track::Still(value) => value.as_str(),
         Track::Keys { .. } => panic!("{}: {id} has keyframes", look.id),
@@ -51,7 +51,7 @@ fn value<'a>(look: &'a Look, id: &str) -> Option<&'a str> {
 }
 
 /// Style that a look draws with, and the medium where that has several.
-fn medium(look: &Look) -> (&str, &str) {
+fn medium(look: &ShippedPreset) -> (&str, &str) {
     (&look.preset.style, value(look, "style").unwrap_or_default())
 }
 
@@ -145,7 +145,8 @@ fn difference(a: &[f32], b: &[f32]) -> f32 {
 fn none_is_like_another_or_like_its_style() {
     let library = library();
     let looks = looks();
-    let of = |look: &Look| drawn(&library, Style::load(&library, look.style(), &[]).expect("it loads"));
+    let of =
+        |look: &ShippedPreset| drawn(&library, Style::load(&library, look.style(), &[]).expect("it loads"));
     let pictures: Vec<Vec<f32>> = looks.iter().map(of).collect();
     for (index, (look, picture)) in looks.iter().zip(&pictures).enumerate() {
         let medium = value(look, "style").map(|medium| Setting {
@@ -214,7 +215,7 @@ fn looks_are_listed_shown_and_checked() {
 
     let shown = say(&["show", "look:copperplate"]);
     assert!(shown.starts_with("Copperplate\n") && shown.contains("\nink\n  "), "{shown}");
-    let styles: Vec<String> = looks.iter().map(Look::style).collect();
+    let styles: Vec<String> = looks.iter().map(ShippedPreset::style).collect();
     let checked = succeeds(isophote().args(["preset", "check"]).args(styles)).0;
     assert_eq!(checked.lines().count(), looks.len(), "{checked}");
     let files = fs::read_dir(support::root().join("nodes/library/looks")).expect("the folder is there");

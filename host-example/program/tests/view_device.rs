@@ -286,14 +286,14 @@ fn resident() -> u64 {
 }
 
 /// Memory and objects that the process and the device hold at a moment.
-struct Held {
+struct Usage {
     memory: u64,
     objects: Vec<(&'static str, usize)>,
     made: u64,
     uploads: u64,
 }
 
-impl Held {
+impl Usage {
     fn now(app: &App) -> Self {
         let counts = app.counts().unwrap();
         let gpu = app.gpu().unwrap();
@@ -324,7 +324,7 @@ fn repeat(
     times: usize,
     first: usize,
     mut act: impl FnMut(&mut App, usize) + 'static,
-    mut compare: impl FnMut(Held, Held) + 'static,
+    mut compare: impl FnMut(Usage, Usage) + 'static,
 ) -> Step {
     let mut done = 0;
     let mut drawn = 0;
@@ -336,10 +336,10 @@ fn repeat(
             return false;
         }
         if done == first {
-            warm = Some(Held::now(app));
+            warm = Some(Usage::now(app));
         }
         if done == times {
-            compare(warm.take().expect("there are more than the first ones"), Held::now(app));
+            compare(warm.take().expect("there are more than the first ones"), Usage::now(app));
             return true;
         }
         drawn = frames(app);

@@ -215,12 +215,12 @@ fn previews_are_made_once_and_anew_for_another_picture() {
 #[test]
 fn work_is_given_up_when_it_is_cancelled() {
     let picture = picture(900, 600);
-    let asked = AtomicU32::new(0);
-    let cancelled = || asked.fetch_add(1, Ordering::Relaxed) > 3;
+    let calls = AtomicU32::new(0);
+    let cancelled = || calls.fetch_add(1, Ordering::Relaxed) > 3;
     let mut renderer = Renderer::new(library(), 0);
     let order = Order::whole(look("oil_paint"), (900, 600), 1);
     assert!(renderer.render(&picture, &order, &cancelled).expect("no error").is_none());
-    assert!(asked.load(Ordering::Relaxed) > 3);
+    assert!(calls.load(Ordering::Relaxed) > 3);
 }
 
 #[test]

@@ -392,12 +392,12 @@ fn tiles_report_progress_and_stop() {
     executor.run_images(&plan, &[("source", &source)], whole, control).unwrap();
     let shares = shares.into_inner().unwrap();
     assert!(shares.len() >= 4 && shares.is_sorted() && shares.last() == Some(&1.0), "{shares:?}");
-    let asked = AtomicUsize::new(0);
-    let stop = || asked.fetch_add(1, Ordering::Relaxed) >= 2;
+    let calls = AtomicUsize::new(0);
+    let stop = || calls.fetch_add(1, Ordering::Relaxed) >= 2;
     let control = Control { cancelled: Some(&stop), ..Control::default() };
     let stopped = executor.run_images(&plan, &[("source", &source)], whole, control);
     assert!(matches!(stopped, Err(Error::Cancelled)));
-    assert_eq!(asked.load(Ordering::Relaxed), 3);
+    assert_eq!(calls.load(Ordering::Relaxed), 3);
 }
 
 #[test]

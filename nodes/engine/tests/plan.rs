@@ -345,12 +345,12 @@ fn nothing_is_overwritten(plan: &Plan, program: &Program, region: Rect) {
         for (image, texture) in pass.outputs.iter().zip(&dispatch.outputs) {
             assert!(!dispatch.inputs.contains(texture));
             let (texture_of, window) = (&program.textures[*texture as usize], windows[image.index()]);
-            let held = texture_of.window;
+            let stored = texture_of.window;
             match texture_of.role {
                 Role::Transient => {
-                    assert!(held.width() >= window.width() && held.height() >= window.height())
+                    assert!(stored.width() >= window.width() && stored.height() >= window.height())
                 }
-                _ => assert_eq!(held, window),
+                _ => assert_eq!(stored, window),
             }
             holds.insert(*texture, *image);
         }

@@ -10,9 +10,9 @@ pub use crate::guides::GraphInput;
 use crate::registry;
 use isophote_engine::program::Precision;
 
-/// Where an input port takes its picture from.
+/// Origin of an input port's picture.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Source {
+pub enum Upstream {
     /// A picture that enters the graph.
     Input(GraphInput),
     /// The output of the node at this position.
@@ -36,26 +36,26 @@ pub(crate) struct Node {
     pub name: String,
     pub spec: &'static NodeSpec,
     pub values: Vec<Value>,
-    pub inputs: Vec<Option<Source>>,
+    pub inputs: Vec<Option<Upstream>>,
 }
 
 impl Node {
     /// The nodes that it reads.
     pub fn sources(&self) -> impl Iterator<Item = usize> {
         self.inputs.iter().filter_map(|source| match source {
-            Some(Source::Node(node)) => Some(*node),
+            Some(Upstream::Node(node)) => Some(*node),
             _ => None,
         })
     }
 
     /// Frames before the node's own that it reads by a port to carry marks. Estimated motion does not carry them: that of
     /// so many frames costs too much.
-    pub fn mark_window(&self, port: &Port, source: Option<Source>) -> i32 {
+    pub fn mark_window(&self, port: &Port, source: Option<Upstream>) -> i32 {
         if port.id != GraphInput::Motion.id() {
             return 0;
         }
         match source {
-            Some(Source::Input(_)) => self.spec.mark_window(&self.values),
+            Some(Upstream::Input(_)) => self.spec.mark_window(&self.values),
             _ => 0,
         }
     }
@@ -108,7 +108,7 @@ impl Graph {
         let id = graph.add(node, node)?;
         for (i, port) in graph.nodes[0].spec.ports().enumerate() {
             graph.nodes[0].inputs[i] =
-                GraphInput::from_id(port.id).filter(|i| i.kind() == port.kind).map(Source::Input);
+                GraphInput::from_id(port.id).filter(|i| i.kind() == port.kind).map(Upstream::Input);
         }
         graph.set_output(id)?;
         Ok(graph)
@@ -225,7 +225,7 @@ impl Graph {
     /// a cycle; the graph is then unchanged.
     pub fn connect(&mut self, from: NodeId, to: NodeId, port: &str) -> Result<()> {
         let kind = self.get(from)?.spec.output.kind;
-        self.attach(Source::Node(from.0), kind, to, port)
+        self.attach(Upstream::Node(from.0), kind, to, port)
     }
 
     /// Connects a picture that enters the graph to a port of `to`.
@@ -233,7 +233,7 @@ impl Graph {
     /// # Errors
     /// As [`Graph::connect`].
     pub fn connect_input(&mut self, input: GraphInput, to: NodeId, port: &str) -> Result<()> {
-        self.attach(Source::Input(input), input.kind(), to, port)
+        self.attach(Upstream::Input(input), input.kind(), to, port)
     }
 
     /// Opens a port.
@@ -281,7 +281,7 @@ impl Graph {
         self.nodes.get(node.0).ok_or_else(|| Error::Unknown(format!("there is no node {}", node.0)))
     }
 
-    fn attach(&mut self, source: Source, kind: ImageKind, to: NodeId, port: &str) -> Result<()> {
+    fn attach(&mut self, source: Upstream, kind: ImageKind, to: NodeId, port: &str) -> Result<()> {
         let node = self.get(to)?;
         let (index, wanted) = find_input(node.spec, port)?;
         // A flow map is a picture, too.
@@ -311,8 +311,8 @@ impl Graph {
             let ready = (0..self.nodes.len()).find(|n| {
                 !placed[*n]
                     && self.nodes[*n].inputs.iter().flatten().all(|s| match s {
-                        Source::Node(from) => placed[*from],
-                        Source::Input(_) => true,
+                        Upstream::Node(from) => placed[*from],
+                        Upstream::Input(_) => true,
                     })
             });
             let Some(next) = ready else {

@@ -4,14 +4,14 @@
 //! uniform bytes and shaders. It runs nothing, holds no kernel's CPU function, and is one module of WebAssembly that imports
 //! nothing. `package/src/planner.js` calls it, `package/src/program.js` runs what it says.
 //!
-//! A call is a request as JSON (`ask.rs`), its answer JSON and bytes (`answer.rs`); `exports.rs` moves both.
+//! A call is a request as JSON (`ask.rs`), its response JSON and bytes (`response.rs`); `exports.rs` moves both.
 
-mod answer;
 mod ask;
 mod catalogue;
 mod exports;
 mod look;
 mod plans;
+mod response;
 
-pub use answer::Answer;
 pub use plans::Planner;
+pub use response::Response;

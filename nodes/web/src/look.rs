@@ -6,16 +6,16 @@ use serde_json::Value;
 /// The name of a look in messages.
 const PLACE: &str = "the look";
 
-/// A look at a frame.
+/// Graph of a look at a frame.
 #[derive(Debug)]
-pub struct Look {
-    /// Its graph.
+pub struct GraphAtFrame {
+    /// Nodes, with the values of the frame.
     pub graph: Graph,
     /// Lines of the pictures that its lengths are meant for; 0: lengths are pixels.
     pub reference_height: u32,
 }
 
-impl Look {
+impl GraphAtFrame {
     /// The look that a page names, or writes out.
     ///
     /// # Errors
@@ -37,23 +37,23 @@ mod tests {
     use serde_json::json;
 
     fn value(look: Value, param: &str, frame: i64) -> Result<Declared, Error> {
-        let look = Look::read(&look, frame)?;
+        let look = GraphAtFrame::read(&look, frame)?;
         look.graph.value(look.graph.node(0)?, param)
     }
 
     #[test]
     fn nodes_looks_presets_and_graphs_are_read() {
-        let look = Look::read(&json!({ "style": "ink", "lengths": "pixels" }), 0).unwrap();
+        let look = GraphAtFrame::read(&json!({ "style": "ink", "lengths": "pixels" }), 0).unwrap();
         assert_eq!((look.graph.len(), look.reference_height), (1, 0));
         let text = look.graph.to_json().unwrap();
         let graph: Value = serde_json::from_str(&text).unwrap();
-        assert_eq!(Look::read(&graph, 0).unwrap().reference_height, 1080);
+        assert_eq!(GraphAtFrame::read(&graph, 0).unwrap().reference_height, 1080);
         let preset = json!({ "style": graph, "parameters": { "ink.tone": 0.5, "style": "pencil" } });
         assert_eq!(value(preset, "tone", 0).unwrap(), Declared::Float(0.5));
-        assert_eq!(Look::read(&json!("look:linocut"), 0).unwrap().graph.len(), 1);
+        assert_eq!(GraphAtFrame::read(&json!("look:linocut"), 0).unwrap().graph.len(), 1);
         for node in registry::nodes() {
-            assert!(Look::read(&json!(node.id), 0).is_ok(), "{}", node.id);
-            assert!(Look::read(&json!({ "style": node.id }), 0).is_ok(), "{}", node.id);
+            assert!(GraphAtFrame::read(&json!(node.id), 0).is_ok(), "{}", node.id);
+            assert!(GraphAtFrame::read(&json!({ "style": node.id }), 0).is_ok(), "{}", node.id);
         }
     }
 
@@ -76,7 +76,7 @@ mod tests {
             (json!({ "style": "ink", "parameters": { "tune": 1 } }), "did you mean 'tone'?"),
             (json!({ "style": "poster.json" }), "write the graph out"),
         ] {
-            let error = Look::read(&look, 0).unwrap_err().to_string();
+            let error = GraphAtFrame::read(&look, 0).unwrap_err().to_string();
             assert!(error.contains(part), "{look}: {error}");
         }
     }

@@ -1,9 +1,9 @@
 //! The plans of a page, and the answers to its calls.
 
-use crate::answer::{self, Answer};
 use crate::ask::{Picture, Request, region};
 use crate::catalogue::catalogue;
-use crate::look::Look;
+use crate::look::GraphAtFrame;
+use crate::response::{self, Response};
 use isophote::engine::Rect;
 use isophote::planned::Change;
 use isophote::{Error, Graph, Lowered};
@@ -19,23 +19,24 @@ pub struct Planner {
 
 impl Planner {
     /// Answers a request, which is JSON. What fails is told as `{"error": …}`; nothing has changed then.
-    pub fn answer(&mut self, request: &[u8]) -> Answer {
-        let asked = serde_json::from_slice(request).map_err(|e| Error::Format(format!("not a request: {e}")));
-        let answered = asked.and_then(|request| self.answered(request));
+    pub fn answer(&mut self, request: &[u8]) -> Response {
+        let parsed =
+            serde_json::from_slice(request).map_err(|e| Error::Format(format!("not a request: {e}")));
+        let answered = parsed.and_then(|request| self.answered(request));
         answered.unwrap_or_else(|error| json!({ "error": error.to_string() }).into())
     }
 
-    fn answered(&mut self, request: Request) -> Result<Answer, Error> {
+    fn answered(&mut self, request: Request) -> Result<Response, Error> {
         match request {
             Request::Catalogue => Ok(catalogue().into()),
             Request::Graph { look, frame } => {
-                let text = Look::read(&look, frame)?.graph.to_json()?;
+                let text = GraphAtFrame::read(&look, frame)?.graph.to_json()?;
                 let graph: Value = serde_json::from_str(&text).map_err(|e| Error::Format(e.to_string()))?;
                 Ok(json!({ "graph": graph }).into())
             }
             Request::Plan { look, picture, region } => self.plan(&look, &picture, region),
             Request::Update { plan, look, picture } => {
-                let (graph, request) = asked(&look, &picture)?;
+                let (graph, request) = graph_and_request(&look, &picture)?;
                 let plan = self.get(plan)?;
                 let change = match plan.update(graph, Some(request))? {
                     Change::Uniforms => "uniforms",
@@ -56,7 +57,7 @@ impl Planner {
                         "the plan has {count} dispatches, counted from 0, and no {dispatch}"
                     ))
                 })?;
-                Ok(answer::shader(&found.shader).into())
+                Ok(response::shader(&found.shader).into())
             }
             Request::Release { plan } => {
                 self.plans.remove(&plan);
@@ -65,8 +66,8 @@ impl Planner {
         }
     }
 
-    fn plan(&mut self, look: &Value, picture: &Picture, part: Option<[i32; 4]>) -> Result<Answer, Error> {
-        let (graph, request) = asked(look, picture)?;
+    fn plan(&mut self, look: &Value, picture: &Picture, part: Option<[i32; 4]>) -> Result<Response, Error> {
+        let (graph, request) = graph_and_request(look, picture)?;
         isophote::engine::image::check_size(request.width, request.height)?;
         let part = part.map_or_else(|| Rect::of_size(request.width, request.height), region);
         let plan = Lowered::new(graph, request, part)?;
@@ -82,15 +83,15 @@ impl Planner {
 }
 
 /// The graph of a look and what is wanted of it.
-fn asked(look: &Value, picture: &Picture) -> Result<(Graph, isophote::Request), Error> {
-    let look = Look::read(look, picture.frame)?;
+fn graph_and_request(look: &Value, picture: &Picture) -> Result<(Graph, isophote::Request), Error> {
+    let look = GraphAtFrame::read(look, picture.frame)?;
     let mut graph = look.graph;
     graph.set_precision(picture.precision());
     Ok((graph, picture.request(look.reference_height)?))
 }
 
-fn program(plan: &Lowered, json: Value) -> Answer {
-    Answer::from(json).program(plan.program(), plan.operations())
+fn program(plan: &Lowered, json: Value) -> Response {
+    Response::from(json).program(plan.program(), plan.operations())
 }
 
 #[cfg(test)]
@@ -98,7 +99,7 @@ mod tests {
     use super::*;
     use isophote::registry;
 
-    fn ask(planner: &mut Planner, request: Value) -> Answer {
+    fn ask(planner: &mut Planner, request: Value) -> Response {
         planner.answer(request.to_string().as_bytes())
     }
 

@@ -92,7 +92,7 @@ pub struct Inner {
     /// The most that were lent at once.
     pub most_lent: AtomicI32,
     /// Number of times that it was asked whether to stop.
-    pub asked: AtomicU32,
+    pub abort_calls: AtomicU32,
     /// Runs of its multi-thread suite.
     pub runs: AtomicU32,
     /// Threads that were left running.
@@ -131,7 +131,7 @@ impl Inner {
             behaviour,
             lent: AtomicI32::new(0),
             most_lent: AtomicI32::new(0),
-            asked: AtomicU32::new(0),
+            abort_calls: AtomicU32::new(0),
             runs: AtomicU32::new(0),
             late: Mutex::default(),
             messages: Mutex::default(),

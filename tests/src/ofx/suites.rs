@@ -386,8 +386,8 @@ unsafe extern "C" fn clip_defined(clip: Handle, time: OfxTime, place: *mut OfxRe
 
 unsafe extern "C" fn abort(effect: Handle) -> c_int {
     let effect = thing!(effect, Effect, "abort");
-    let asked = effect.host.asked.fetch_add(1, Ordering::SeqCst) + 1;
-    c_int::from(effect.host.behaviour.abort_after.is_some_and(|after| asked > after))
+    let calls = effect.host.abort_calls.fetch_add(1, Ordering::SeqCst) + 1;
+    c_int::from(effect.host.behaviour.abort_after.is_some_and(|after| calls > after))
 }
 
 const EFFECTS: OfxImageEffectSuiteV1 = OfxImageEffectSuiteV1 {

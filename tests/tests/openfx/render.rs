@@ -437,7 +437,7 @@ pub fn a_host_that_wants_to_stop_is_heard(binary: &Binary, effect: Expected) {
         let (status, picture) = instance.try_render(layout, SIZE, &wanted);
         assert_eq!(status, kOfxStatOK);
         assert_eq!(picture.touched_outside([0; 4]), 0, "it went on");
-        assert!(host.inner.asked.load(Ordering::SeqCst) > after);
+        assert!(host.inner.abort_calls.load(Ordering::SeqCst) > after);
         assert_eq!(host.inner.lent.load(Ordering::SeqCst), 0);
         host.no_faults();
     }

@@ -64,8 +64,8 @@ pub fn half_size_looks_like_full_size_made_smaller(binary: &Binary, effect: Expe
     let wanted = halved(&result, SIDE as usize);
     let side = SIDE / 2;
     instance.connect("Source", Picture::packed_in(half_layout, side, side, &packed(&half, &layout)));
-    let asked = Wanted { scale: 0.5, ..Wanted::new([0, 0, side, side]) };
-    let (status, picture) = instance.try_render(half_layout, [side; 2], &asked);
+    let at_half = Wanted { scale: 0.5, ..Wanted::new([0, 0, side, side]) };
+    let (status, picture) = instance.try_render(half_layout, [side; 2], &at_half);
     assert_eq!(status, kOfxStatOK);
     let got = values(&picture.packed(), &layout);
     let square: f64 = got.iter().zip(&wanted).map(|(a, b)| f64::from(a - b).powi(2)).sum();

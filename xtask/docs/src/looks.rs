@@ -5,9 +5,9 @@ use crate::page::escaped;
 use isophote::{preset, registry};
 use std::fmt::Write as _;
 
-/// A look.
+/// A look as the grid shows it.
 #[derive(Debug)]
-pub struct Look {
+pub struct LookCard {
     /// The stem of its file.
     pub id: &'static str,
     name: String,
@@ -19,17 +19,17 @@ pub struct Look {
 ///
 /// # Errors
 /// A look that lacks its name or its description.
-pub fn all() -> Result<Vec<Look>> {
+pub fn all() -> Result<Vec<LookCard>> {
     let read = |look: &preset::Look| {
         let preset::Preset { title, style, .. } = look.preset().ok()?;
-        Some(Look { id: look.id, name: title.name?, about: title.about?, style })
+        Some(LookCard { id: look.id, name: title.name?, about: title.about?, style })
     };
     let looks = preset::LOOKS.iter();
     looks.map(|look| read(look).ok_or_else(|| Error::page(look.name(), "is no look with a name"))).collect()
 }
 
 /// The grid.
-pub fn contents(looks: &[Look]) -> String {
+pub fn contents(looks: &[LookCard]) -> String {
     let mut text = String::new();
     let mut style = "";
     for look in looks {

@@ -20,7 +20,7 @@ mod template;
 use book::pages;
 use clap::Parser;
 use error::{Error, Result};
-use looks::Look;
+use looks::LookCard;
 use markdown::{Rendered, place_of_copied, place_of_made, render};
 use page::Page;
 use scratch::Seed;
@@ -127,7 +127,7 @@ fn run(options: &Options) -> Result<()> {
 }
 
 /// Makes the pictures of nodes, controls and looks, all of one frame of the demo scene.
-fn photograph(options: &Options, looks: &[Look], scratch: &Path, pictures: &Path) -> Result<()> {
+fn photograph(options: &Options, looks: &[LookCard], scratch: &Path, pictures: &Path) -> Result<()> {
     let subject = scratch.join("subject.exr");
     let mut command = Command::new(&options.host);
     command.arg("render").arg(&options.scene).arg(&subject).args(["--size", &options.size]);

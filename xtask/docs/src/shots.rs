@@ -1,7 +1,7 @@
 //! Pictures of the site: of nodes, of their controls, of looks.
 
 use crate::error::Result;
-use crate::looks::Look;
+use crate::looks::LookCard;
 use crate::shot::{Shot, Style};
 use crate::{maker, reference, styles};
 use isophote::registry;
@@ -10,7 +10,7 @@ use isophote::registry;
 ///
 /// # Errors
 /// A node that cannot be shown.
-pub fn all(looks: &[Look]) -> Result<Vec<Shot>> {
+pub fn all(looks: &[LookCard]) -> Result<Vec<Shot>> {
     let mut shots = Vec::new();
     for node in registry::nodes() {
         if maker::unshown(node).is_none() {

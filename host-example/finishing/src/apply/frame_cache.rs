@@ -59,9 +59,9 @@ impl Window<'_> {
     /// Image for an input of picture `at` in a frame, if that is like the frame itself; `change` leads to the working
     /// space.
     pub fn image(&self, at: usize, input: &str, frame: i64, change: Option<&Change>) -> Option<&Pixels> {
-        let (held, picture) = self.alike(at, frame)?;
+        let (cached, picture) = self.alike(at, frame)?;
         match input {
-            "color" => held.working(at, change).map(|(pixels, _)| pixels),
+            "color" => cached.working(at, change).map(|(pixels, _)| pixels),
             _ => picture.guides.iter().find(|(name, _)| *name == input).map(|(_, pixels)| pixels),
         }
     }
@@ -73,11 +73,11 @@ impl Window<'_> {
 
     /// Picture `at` in a frame, if that is like the frame itself.
     fn alike(&self, at: usize, frame: i64) -> Option<(&CachedFrame<'_>, &Picture)> {
-        let held = self.frames.iter().find(|held| held.number.unwrap_or_default() == frame)?;
+        let cached = self.frames.iter().find(|cached| cached.number.unwrap_or_default() == frame)?;
         let (own, other): (&Picture, &Picture) =
-            (self.own.source.pictures.get(at)?, held.source.pictures.get(at)?);
+            (self.own.source.pictures.get(at)?, cached.source.pictures.get(at)?);
         let size = |picture: &Picture| (picture.pixels.width(), picture.pixels.height());
-        let is_alike = size(own) == size(other) && self.own.source.state == held.source.state;
-        is_alike.then_some((held, other))
+        let is_alike = size(own) == size(other) && self.own.source.state == cached.source.state;
+        is_alike.then_some((cached, other))
     }
 }

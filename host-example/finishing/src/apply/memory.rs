@@ -60,7 +60,7 @@ pub struct Needs {
 pub struct Budget {
     most: u64,
     filtered_at_once: usize,
-    held: Mutex<Vec<(u64, Needs)>>,
+    reserved: Mutex<Vec<(u64, Needs)>>,
     freed: Condvar,
 }
 
@@ -86,19 +86,19 @@ impl Needs {
 impl Budget {
     /// So many bytes for all frames together, of which so many are filtered at once.
     pub fn new(most: u64, filtered_at_once: usize) -> Self {
-        Self { most, filtered_at_once, held: Mutex::new(Vec::new()), freed: Condvar::new() }
+        Self { most, filtered_at_once, reserved: Mutex::new(Vec::new()), freed: Condvar::new() }
     }
 
     /// Room for a frame of which nothing is known yet. One thread takes frames.
     pub fn share(&self) -> Share<'_> {
-        let mut held = self.held();
-        let number = held.last().map_or(0, |(last, _)| last + 1);
-        held.push((number, Needs::default()));
+        let mut reserved = self.reserved();
+        let number = reserved.last().map_or(0, |(last, _)| last + 1);
+        reserved.push((number, Needs::default()));
         Share { budget: self, number }
     }
 
-    fn held(&self) -> MutexGuard<'_, Vec<(u64, Needs)>> {
-        self.held.lock().unwrap_or_else(PoisonError::into_inner)
+    fn reserved(&self) -> MutexGuard<'_, Vec<(u64, Needs)>> {
+        self.reserved.lock().unwrap_or_else(PoisonError::into_inner)
     }
 }
 
@@ -113,9 +113,10 @@ impl Share<'_> {
         if together > most {
             return Err(Bytes(most));
         }
-        let mut held = self.budget.held();
+        let mut reserved = self.budget.reserved();
         loop {
-            let others = || held.iter().filter(|(number, _)| *number != self.number).map(|(_, needs)| needs);
+            let others =
+                || reserved.iter().filter(|(number, _)| *number != self.number).map(|(_, needs)| needs);
             let frames = others().map(|needs| needs.frame).fold(needs.frame, u64::saturating_add);
             let mut filters: Vec<u64> = others().map(|needs| needs.filter).chain([needs.filter]).collect();
             filters.sort_unstable();
@@ -124,9 +125,9 @@ impl Share<'_> {
             if frames.saturating_add(filter) <= most {
                 break;
             }
-            held = self.budget.freed.wait(held).unwrap_or_else(PoisonError::into_inner);
+            reserved = self.budget.freed.wait(reserved).unwrap_or_else(PoisonError::into_inner);
         }
-        if let Some((_, own)) = held.iter_mut().find(|(number, _)| *number == self.number) {
+        if let Some((_, own)) = reserved.iter_mut().find(|(number, _)| *number == self.number) {
             *own = needs;
         }
         Ok(())
@@ -135,7 +136,7 @@ impl Share<'_> {
 
 impl Drop for Share<'_> {
     fn drop(&mut self) {
-        self.budget.held().retain(|(number, _)| *number != self.number);
+        self.budget.reserved().retain(|(number, _)| *number != self.number);
         self.budget.freed.notify_all();
     }
 }
@@ -194,6 +195,6 @@ mod tests {
             third.join().unwrap();
         });
         drop(b);
-        assert!(budget.held().is_empty());
+        assert!(budget.reserved().is_empty());
     }
 }

@@ -44,7 +44,7 @@ pub struct Reader<'a> {
     /// The first frame, where it was opened before.
     first: Option<(PathBuf, Opened)>,
     /// Frames that the last one depended on; none where a file cannot be read.
-    held: Vec<(i64, Option<Arc<CachedFrame<'a>>>)>,
+    cached: Vec<(i64, Option<Arc<CachedFrame<'a>>>)>,
 }
 
 impl<'a> Reader<'a> {
@@ -57,7 +57,7 @@ impl<'a> Reader<'a> {
     ) -> Self {
         let first = tasks.first().map(|task| task.input.clone()).zip(first);
         let tasks = tasks.iter().filter_map(|task| task.frame).collect();
-        Self { frame_source, planner, tasks, first, held: Vec::new() }
+        Self { frame_source, planner, tasks, first, cached: Vec::new() }
     }
 
     /// Forgets that the first frame was opened: it is not done.
@@ -77,7 +77,7 @@ impl<'a> Reader<'a> {
         };
         let [past, future] = self.planner.frames(task.frame)?;
         let wanted = frame - past..=frame + future;
-        self.held.retain(|(number, _)| wanted.contains(number));
+        self.cached.retain(|(number, _)| wanted.contains(number));
         let span = self.planner.span(task.frame)?;
         let own = self.frame(frame, &task.input, span)?;
         own.source.check()?;
@@ -86,7 +86,7 @@ impl<'a> Reader<'a> {
             for number in (1..=reach).map(|n| frame + towards * n) {
                 let Some(pattern) = self.frame_source.frames else { break };
                 let path = pattern.file(number);
-                let is_bad = self.held.iter().any(|(n, held)| *n == number && held.is_none());
+                let is_bad = self.cached.iter().any(|(n, cached)| *n == number && cached.is_none());
                 if is_bad || !path.is_file() {
                     break;
                 }
@@ -95,26 +95,26 @@ impl<'a> Reader<'a> {
                     Err(error @ Error::Failure { .. }) => return Err(error),
                     Err(_) => {
                         // The frame is done as if there were none; a task of this number will tell.
-                        self.held.push((number, None));
+                        self.cached.push((number, None));
                         break;
                     }
                 }
             }
         }
-        Ok(Window { own, frames: self.held.iter().filter_map(|(_, held)| held.clone()).collect() })
+        Ok(Window { own, frames: self.cached.iter().filter_map(|(_, cached)| cached.clone()).collect() })
     }
 
     /// A frame, from memory or from its file.
     fn frame(&mut self, number: i64, path: &Path, span: u64) -> Result<Arc<CachedFrame<'a>>> {
-        if let Some((_, held)) = self.held.iter().find(|(n, _)| *n == number)
-            && let Some(held) = held
+        if let Some((_, cached)) = self.cached.iter().find(|(n, _)| *n == number)
+            && let Some(cached) = cached
         {
-            return Ok(Arc::clone(held));
+            return Ok(Arc::clone(cached));
         }
-        let held = Arc::new(self.read(path, Some(number), span)?);
-        self.held.retain(|(n, _)| *n != number);
-        self.held.push((number, Some(Arc::clone(&held))));
-        Ok(held)
+        let cached = Arc::new(self.read(path, Some(number), span)?);
+        self.cached.retain(|(n, _)| *n != number);
+        self.cached.push((number, Some(Arc::clone(&cached))));
+        Ok(cached)
     }
 
     /// Reads a frame when there is room for its file, and decodes it when there is room for all that it needs; `span` frames

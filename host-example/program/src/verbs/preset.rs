@@ -257,8 +257,8 @@ fn show(library: &Library, file: &Path, frame: Option<i64>) -> Result<()> {
                 None => {
                     let keys: Vec<String> =
                         keys.iter().map(|(frame, value)| format!("{value} at {frame}")).collect();
-                    let held = if *step == Some(true) { ", held between" } else { "" };
-                    keys.join(", ") + held
+                    let suffix = if *step == Some(true) { ", held between" } else { "" };
+                    keys.join(", ") + suffix
                 }
             },
         };

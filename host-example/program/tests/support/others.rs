@@ -19,22 +19,22 @@ const PATIENCE: Duration = Duration::from_secs(60);
 /// Place on the screen where files are dropped.
 const PLACE: [u32; 2] = [60, 90];
 
-type Answer<T> = Result<T, Box<dyn std::error::Error>>;
+type X11Result<T> = Result<T, Box<dyn std::error::Error>>;
 
 /// Drops files on a window, and says whether it has taken them.
 pub fn drop_files(display: &str, window: &str, files: &[&Path]) -> bool {
-    Source::open(display, window).and_then(|source| source.drop_list(&list(files))).expect("an X server")
+    DragSource::open(display, window).and_then(|source| source.drop_list(&list(files))).expect("an X server")
 }
 
 /// The program that files are dragged out of.
-struct Source {
+struct DragSource {
     connection: RustConnection,
     own: Window,
     target: Window,
 }
 
-impl Source {
-    fn open(display: &str, window: &str) -> Answer<Self> {
+impl DragSource {
+    fn open(display: &str, window: &str) -> X11Result<Self> {
         let (connection, screen) = RustConnection::connect(Some(display))?;
         let own = connection.generate_id()?;
         let root = connection.setup().roots[screen].root;
@@ -43,11 +43,11 @@ impl Source {
         Ok(Self { connection, own, target: window.parse()? })
     }
 
-    fn atom(&self, name: &str) -> Answer<Atom> {
+    fn atom(&self, name: &str) -> X11Result<Atom> {
         Ok(self.connection.intern_atom(false, name.as_bytes())?.reply()?.atom)
     }
 
-    fn tell(&self, what: &str, words: [u32; 4]) -> Answer<()> {
+    fn tell(&self, what: &str, words: [u32; 4]) -> X11Result<()> {
         let [a, b, c, d] = words;
         let event = ClientMessageEvent::new(32, self.target, self.atom(what)?, [self.own, a, b, c, d]);
         self.connection.send_event(false, self.target, EventMask::NO_EVENT, event)?;
@@ -55,7 +55,7 @@ impl Source {
     }
 
     /// Drags over the window, hands the list over when it is asked for, and lets go.
-    fn drop_list(&self, list: &str) -> Answer<bool> {
+    fn drop_list(&self, list: &str) -> X11Result<bool> {
         let (selection, kind) = (self.atom("XdndSelection")?, self.atom("text/uri-list")?);
         let (status, finished) = (self.atom("XdndStatus")?, self.atom("XdndFinished")?);
         self.connection.set_selection_owner(self.own, selection, CURRENT_TIME)?;
@@ -89,7 +89,7 @@ impl Source {
         Err("the window does not answer".into())
     }
 
-    fn hand_over(&self, request: &SelectionRequestEvent, kind: Atom, list: &str) -> Answer<()> {
+    fn hand_over(&self, request: &SelectionRequestEvent, kind: Atom, list: &str) -> X11Result<()> {
         let SelectionRequestEvent { requestor, selection, target, property, time, .. } = *request;
         let property = if target == kind { property } else { AtomEnum::NONE.into() };
         if target == kind {
@@ -117,8 +117,8 @@ impl Source {
 
 /// Asks a window to close, as the button in its title does.
 pub fn close(display: &str, window: &str) {
-    let close = || -> Answer<()> {
-        let source = Source::open(display, window)?;
+    let close = || -> X11Result<()> {
+        let source = DragSource::open(display, window)?;
         let [protocols, delete] = [source.atom("WM_PROTOCOLS")?, source.atom("WM_DELETE_WINDOW")?];
         let event = ClientMessageEvent::new(32, source.target, protocols, [delete, CURRENT_TIME, 0, 0, 0]);
         source.connection.send_event(false, source.target, EventMask::NO_EVENT, event)?;
@@ -149,7 +149,7 @@ pub struct Cover(RustConnection);
 impl Cover {
     /// Covers everything.
     pub fn open(display: &str) -> Self {
-        let cover = || -> Answer<Self> {
+        let cover = || -> X11Result<Self> {
             let (connection, screen) = RustConnection::connect(Some(display))?;
             let root = &connection.setup().roots[screen];
             let (own, size) = (connection.generate_id()?, (root.width_in_pixels, root.height_in_pixels));

@@ -44,14 +44,14 @@ fn base64_decode(text: &[u8]) -> Option<Vec<u8>> {
     Some(out)
 }
 
-/// Reason why there are no bytes behind a URI, and advice.
-pub type Refusal = (String, &'static str);
+/// Error of a URI behind which there are no bytes: the reason, and advice.
+pub type UriError = (String, &'static str);
 
 /// The bytes behind a URI, which may name a file in these folders.
 ///
 /// # Errors
-/// [`Refusal`] when the URI is refused, or its file missing, unreadable or too large.
-pub fn read_uri(folders: &Folders, uri: &str, budget: &Budget) -> Result<Vec<u8>, Refusal> {
+/// [`UriError`] when the URI is refused, or its file missing, unreadable or too large.
+pub fn read_uri(folders: &Folders, uri: &str, budget: &Budget) -> Result<Vec<u8>, UriError> {
     if let Some(data) = uri.strip_prefix("data:") {
         budget
             .take(data.len(), 1)

@@ -26,7 +26,7 @@ struct Recipe {
     precision: Precision,
     /// Request of the pictures that the look is for; the reference of lengths is the look's own affair, and frames
     /// come later.
-    asked: IsophoteRequest,
+    request: IsophoteRequest,
 }
 
 /// A look that can be recorded.
@@ -61,7 +61,7 @@ pub struct LiveLook {
     /// The look for pictures of another scale, which are shown while something moves.
     spare: Option<Ready>,
     /// Recipe that was last asked of the worker, or refused.
-    asked: Option<Recipe>,
+    requested: Option<Recipe>,
     /// Counts of what was made for looks that are gone.
     gone: Counts,
     revision: u64,
@@ -80,8 +80,8 @@ impl LiveLook {
             (job.recipe, built)
         })?;
         let kernels = Arc::clone(kernels);
-        let (asked, gone) = (None, Counts::default());
-        Ok(Self { worker, kernels, ready: None, spare: None, asked, gone, revision: 0, shown: None })
+        let (requested, gone) = (None, Counts::default());
+        Ok(Self { worker, kernels, ready: None, spare: None, requested, gone, revision: 0, shown: None })
     }
 
     /// Follows `look` for pictures as `asked`: at once where only values change, and behind the picture otherwise.
@@ -93,41 +93,41 @@ impl LiveLook {
         library: &Library,
         look: &EditedLook,
         precision: Precision,
-        asked: IsophoteRequest,
+        request: IsophoteRequest,
     ) -> Result<()> {
         let answer = self.worker.answer();
-        let wanted = Recipe { look: look.clone(), precision, asked };
+        let wanted = Recipe { look: look.clone(), precision, request };
         if look.is_plain() {
             self.revision += u64::from(self.ready.is_some());
             self.forget();
-            (self.asked, self.shown) = (None, None);
+            (self.requested, self.shown) = (None, None);
             return Ok(());
         }
-        if let Some((recipe, built)) = answer.filter(|_| self.asked.is_some()) {
+        if let Some((recipe, built)) = answer.filter(|_| self.requested.is_some()) {
             match built {
                 Ok(ready) => self.take(ready),
                 // It is not asked for again until something else is wanted.
-                Err(error) if self.asked.as_ref() == Some(&recipe) => return Err(error),
+                Err(error) if self.requested.as_ref() == Some(&recipe) => return Err(error),
                 Err(_) => {}
             }
         }
-        if !self.is_for(asked) && self.spare.as_ref().is_some_and(|spare| spare.recipe.asked == asked) {
+        if !self.is_for(request) && self.spare.as_ref().is_some_and(|spare| spare.recipe.request == request) {
             std::mem::swap(&mut self.ready, &mut self.spare);
             self.revision += 1;
         }
         if self.ready.as_ref().is_some_and(|ready| ready.recipe == wanted) {
             // What was asked for meanwhile is wanted no more.
-            self.asked = None;
+            self.requested = None;
             return Ok(());
         }
-        if self.asked.as_ref() == Some(&wanted) {
+        if self.requested.as_ref() == Some(&wanted) {
             return Ok(());
         }
         let followed = self.ready.as_mut().map_or(Ok(false), |ready| ready.follow(&wanted));
-        self.asked = Some(wanted.clone());
+        self.requested = Some(wanted.clone());
         if followed.inspect_err(|_| self.forget())? {
             self.revision += 1;
-            self.asked = None;
+            self.requested = None;
             return Ok(());
         }
         self.worker.ask(BuildJob {
@@ -140,9 +140,9 @@ impl LiveLook {
 
     /// Records this from now on. What was recorded before is kept if it is for pictures of another scale.
     fn take(&mut self, ready: Ready) {
-        let scale = ready.recipe.asked.scale;
+        let scale = ready.recipe.request.scale;
         for old in [self.ready.replace(ready), self.spare.take()].into_iter().flatten() {
-            if self.spare.is_none() && old.recipe.asked.scale != scale {
+            if self.spare.is_none() && old.recipe.request.scale != scale {
                 self.spare = Some(old);
             } else {
                 self.gone += old.stylizer.counts();
@@ -157,8 +157,8 @@ impl LiveLook {
         (self.ready, self.spare) = (None, None);
     }
 
-    fn is_for(&self, asked: IsophoteRequest) -> bool {
-        self.ready.as_ref().is_some_and(|ready| ready.recipe.asked == asked)
+    fn is_for(&self, request: IsophoteRequest) -> bool {
+        self.ready.as_ref().is_some_and(|ready| ready.recipe.request == request)
     }
 
     /// Number of things made on the device for the look that is shown, and for all before it.
@@ -170,7 +170,7 @@ impl LiveLook {
 
     /// True while the look that is wanted is being built.
     pub fn is_busy(&self) -> bool {
-        self.worker.is_busy() && self.asked.is_some()
+        self.worker.is_busy() && self.requested.is_some()
     }
 
     /// A number that grows with every change of what it gives.
@@ -199,11 +199,11 @@ impl LiveLook {
     pub fn encode(
         &mut self,
         encoder: &mut wgpu::CommandEncoder,
-        asked: IsophoteRequest,
+        request: IsophoteRequest,
         part: Part,
         bind: impl FnOnce(&mut Stylizer) -> Result<()>,
     ) -> Result<bool> {
-        let Some(ready) = self.ready.as_mut().filter(|ready| ready.recipe.asked == asked) else {
+        let Some(ready) = self.ready.as_mut().filter(|ready| ready.recipe.request == request) else {
             return Ok(true);
         };
         let Ready { stylizer, bound, number, done, .. } = ready;
@@ -225,7 +225,7 @@ impl LiveLook {
         let is_whole = stylizer.encode_some(encoder, *done, part.passes)?;
         *done = if is_whole { usize::MAX } else { *done + part.passes };
         if is_whole {
-            self.shown = Some((stylizer.output().clone(), stylizer.kind(), asked.space));
+            self.shown = Some((stylizer.output().clone(), stylizer.kind(), request.space));
         }
         Ok(is_whole)
     }
@@ -244,7 +244,7 @@ impl Ready {
             && old.preset.lengths == new.preset.lengths
             && old.has_graph_of(new)
             && old.style_name() == new.style_name();
-        if !is_same || (self.recipe.asked, self.recipe.precision) != (wanted.asked, wanted.precision) {
+        if !is_same || (self.recipe.request, self.recipe.precision) != (wanted.request, wanted.precision) {
             return Ok(false);
         }
         let mut changed = Vec::new();
@@ -269,11 +269,11 @@ impl Ready {
 
 fn build(job: &BuildJob) -> Result<Ready> {
     let BuildJob { library, kernels, recipe } = job;
-    let Recipe { look, precision, asked } = recipe;
+    let Recipe { look, precision, request } = recipe;
     let missing = || Error::failure("the plain look has no style", "choose a style");
     let style = look.style(library)?.ok_or_else(missing)?;
     precision.apply(&style)?;
-    let request = IsophoteRequest { reference_height: style.lengths.reference_height(), ..*asked };
+    let request = IsophoteRequest { reference_height: style.lengths.reference_height(), ..*request };
     let stylizer = Stylizer::with_request(kernels, library, style, request)?;
     stylizer.compile_all()?;
     Ok(Ready {

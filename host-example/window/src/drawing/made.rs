@@ -14,7 +14,7 @@ pub struct Made {
     /// Look or picture over it.
     pub overlay: Overlay,
     /// Request to the library.
-    pub asked: IsophoteRequest,
+    pub request: IsophoteRequest,
     /// Revisions of the three looks.
     pub revisions: [u64; 3],
     /// Revision of the source.

@@ -92,7 +92,7 @@ impl PictureSource {
     }
 
     /// Request of looks on it.
-    pub fn asked(&self) -> IsophoteRequest {
+    pub fn request(&self) -> IsophoteRequest {
         self.request
     }
 

@@ -97,7 +97,7 @@ impl Copied {
             height: self.size.1,
             guides: guides.collect::<Result<_>>()?,
             color,
-            asked: PictureRequest {
+            request: PictureRequest {
                 space: Space::Linear,
                 state: ImageState::SceneReferred,
                 origin: [0.0; 2],

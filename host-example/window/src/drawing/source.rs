@@ -102,7 +102,7 @@ impl SceneSource {
     }
 
     /// Request of looks on pictures of it.
-    pub fn asked(&self) -> IsophoteRequest {
+    pub fn request(&self) -> IsophoteRequest {
         let targets = self.renderer.targets();
         IsophoteRequest {
             width: targets.width,
@@ -172,10 +172,10 @@ pub enum LookInput {
 
 impl LookInput {
     /// Request of looks on it.
-    pub fn asked(&self) -> IsophoteRequest {
+    pub fn request(&self) -> IsophoteRequest {
         match self {
-            Self::Scene(source) => source.asked(),
-            Self::Picture(source) => source.asked(),
+            Self::Scene(source) => source.request(),
+            Self::Picture(source) => source.request(),
         }
     }
 

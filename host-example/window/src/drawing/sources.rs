@@ -36,7 +36,7 @@ pub struct Sources {
     /// The picture at its other size: whole, or its small copy.
     spare: Option<LookInput>,
     /// Thing that is being uploaded, or cannot be.
-    asked: Option<Thing>,
+    requested: Option<Thing>,
     number: u64,
 }
 
@@ -48,7 +48,7 @@ impl Sources {
     pub fn new(gpu: &Gpu, wake: &Wake) -> Result<Self> {
         let own = gpu.clone();
         let worker = Worker::new("upload", Arc::clone(wake), move |job| upload(&own, job))?;
-        Ok(Self { gpu: gpu.clone(), worker, present: None, spare: None, asked: None, number: 0 })
+        Ok(Self { gpu: gpu.clone(), worker, present: None, spare: None, requested: None, number: 0 })
     }
 
     /// The present input of looks.
@@ -153,11 +153,11 @@ impl Sources {
     /// Takes what has been uploaded, and says whether there is anything.
     fn take(&mut self, session: &Session) -> Result<bool> {
         let Some((thing, uploaded)) = self.worker.answer() else { return Ok(false) };
-        if self.asked.as_ref().is_none_or(|asked| !asked.is(&thing)) {
+        if self.requested.as_ref().is_none_or(|requested| !requested.is(&thing)) {
             return Ok(false);
         }
         let source = uploaded?;
-        self.asked = None;
+        self.requested = None;
         let old = self.present.replace(source);
         let is_of_same = |frame: &Arc<Frame>| shows(old.as_ref(), frame);
         let playback = session.open.playback();
@@ -175,10 +175,10 @@ impl Sources {
     }
 
     fn ask(&mut self, thing: Thing, job: impl FnOnce() -> UploadJob) {
-        if self.asked.as_ref().is_some_and(|asked| asked.is(&thing)) {
+        if self.requested.as_ref().is_some_and(|requested| requested.is(&thing)) {
             return;
         }
-        self.asked = Some(thing);
+        self.requested = Some(thing);
         self.worker.ask(job());
     }
 }

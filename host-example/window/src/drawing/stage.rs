@@ -186,9 +186,9 @@ impl Stage {
         let overlay = overlay.transpose()?.unwrap_or_else(EditedLook::plain);
         let seen = session.looks.seen();
         let compared = session.looks.compared.clone().unwrap_or_else(EditedLook::plain);
-        let asked = source.asked();
+        let request = source.request();
         for (live, look) in self.looks.iter_mut().zip([&*seen, &compared, &overlay]) {
-            problems.extend(live.follow(&session.library, look, session.precision, asked).err());
+            problems.extend(live.follow(&session.library, look, session.precision, request).err());
             if let LookInput::Scene(source) = source
                 && live.wants_rest_positions()?
                 && source.add_rest_positions()
@@ -211,8 +211,8 @@ impl Stage {
         let waits = session.browser.comparison.is_some() && session.previews.is_busy() && !self.is_software();
         let is_wanted =
             session.is_covered() && !session.open.is_playing() && self.progress == Progress::Done && !waits;
-        let made = self.made.as_ref().filter(|made| is_wanted && made.asked.scale == 1.0);
-        let state = made.map(|made| (made.asked, made.source, made.scene));
+        let made = self.made.as_ref().filter(|made| is_wanted && made.request.scale == 1.0);
+        let state = made.map(|made| (made.request, made.source, made.scene));
         if let (Some(LookInput::Scene(source)), Some(scenery), Some(state)) =
             (self.sources.present_mut(), session.open.scenery(), state)
             && !self.snapshots.shows(&state)
@@ -263,10 +263,10 @@ impl Stage {
     fn finishes(&self, wanted: Option<&Made>) -> bool {
         matches!(self.progress, Progress::Begun(_))
             && self.made.as_ref().zip(wanted).is_some_and(|(begun, wanted)| {
-                let Made { shown, overlay, asked, source, .. } = begun;
-                asked.scale < 1.0
-                    && (shown, overlay, asked, source)
-                        == (&wanted.shown, &wanted.overlay, &wanted.asked, &wanted.source)
+                let Made { shown, overlay, request, source, .. } = begun;
+                request.scale < 1.0
+                    && (shown, overlay, request, source)
+                        == (&wanted.shown, &wanted.overlay, &wanted.request, &wanted.source)
             })
     }
 
@@ -407,7 +407,7 @@ impl Stage {
         Some(Made {
             shown: session.shown(),
             overlay: session.viewport.overlay,
-            asked: source.asked(),
+            request: source.request(),
             revisions: self.looks.each_ref().map(LiveLook::revision),
             source: self.sources.number(),
             scene: scene.map(|scenery| (scenery.view(), *scenery.light(), scenery.time().0)),
@@ -428,13 +428,13 @@ impl Stage {
         {
             source.encode(encoder, scenery);
         }
-        let asked = source.asked();
+        let request = source.request();
         let shown = session.shown();
         let part = Part { begins, passes, number: source.number() };
         let mut is_whole = true;
         for (live, which) in self.looks.iter_mut().zip([Which::Look, Which::Compared, Which::Overlay]) {
             if shown.contains(&which) {
-                is_whole &= live.encode(encoder, asked, part, |stylizer| source.bind(stylizer))?;
+                is_whole &= live.encode(encoder, request, part, |stylizer| source.bind(stylizer))?;
             }
         }
         Ok(is_whole)

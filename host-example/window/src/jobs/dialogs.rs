@@ -12,13 +12,13 @@ use crate::state::saving::Saving;
 use crate::state::session::Session;
 use isophote_files::error::{Error, Result};
 
-/// Answer to a dialog: its purpose, and what was chosen, if anything was.
-type Answer = (Dialog, Result<Option<PathBuf>>);
+/// Result of a dialog: its purpose, and what was chosen, if anything was.
+type DialogResult = (Dialog, Result<Option<PathBuf>>);
 
 /// Dialogs, of which one is open at a time.
 pub struct SystemDialogs {
-    chosen: Receiver<Answer>,
-    choose: Sender<Answer>,
+    chosen: Receiver<DialogResult>,
+    choose: Sender<DialogResult>,
     /// True while one is open.
     is_open: bool,
     wake: Wake,
@@ -31,8 +31,8 @@ impl SystemDialogs {
         Self { chosen, choose, is_open: false, wake: Arc::clone(wake) }
     }
 
-    /// Answer since the last call.
-    pub fn answer(&mut self) -> Option<Answer> {
+    /// Result since the last call.
+    pub fn answer(&mut self) -> Option<DialogResult> {
         let answer = self.chosen.try_recv().ok()?;
         self.is_open = false;
         Some(answer)
@@ -48,13 +48,13 @@ impl SystemDialogs {
         }
         let (folder, name) = proposed(dialog, session);
         let (choose, wake) = (self.choose.clone(), Arc::clone(&self.wake));
-        let asked = std::thread::Builder::new().name("dialog".into()).spawn(move || {
+        let spawned = std::thread::Builder::new().name("dialog".into()).spawn(move || {
             let path = shown(|| ask(dialog, folder, &name), otherwise(dialog));
             // The window may be closed by now.
             let _ = choose.send((dialog, path));
             wake();
         });
-        asked.map_err(|e| {
+        spawned.map_err(|e| {
             Error::failure(format!("no dialog can be opened: {e}"), "drop the file on the window")
         })?;
         self.is_open = true;

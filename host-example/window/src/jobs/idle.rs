@@ -22,14 +22,14 @@ struct IdleRequest {
     library: Library,
     look: EditedLook,
     /// Request of looks on the picture; that of scenes without.
-    asked: Option<IsophoteRequest>,
+    request: Option<IsophoteRequest>,
 }
 
 /// The search, on a thread of its own.
 pub struct IdleSearch {
     worker: Worker<IdleRequest, IdleControls>,
     /// The last look that was asked about, on what picture.
-    asked: Option<(EditedLook, Option<IsophoteRequest>)>,
+    requested: Option<(EditedLook, Option<IsophoteRequest>)>,
 }
 
 impl IdleSearch {
@@ -38,7 +38,7 @@ impl IdleSearch {
     /// # Errors
     /// As [`Worker::new`].
     pub fn new(wake: &Wake) -> Result<Self> {
-        Ok(Self { worker: Worker::new("controls", Arc::clone(wake), idle_controls)?, asked: None })
+        Ok(Self { worker: Worker::new("controls", Arc::clone(wake), idle_controls)?, requested: None })
     }
 
     /// Controls that were found since the last call.
@@ -48,35 +48,36 @@ impl IdleSearch {
 
     /// Searches the controls of the look that is shown, unless it has.
     pub fn follow(&mut self, session: &Session) {
-        let asked = session.asked();
-        let is_known = self.asked.as_ref().is_some_and(|(look, of)| look == session.look() && *of == asked);
+        let request = session.request();
+        let is_known =
+            self.requested.as_ref().is_some_and(|(look, of)| look == session.look() && *of == request);
         if is_known || !session.open.has_picture() {
             return;
         }
         let (library, look) = (session.library.clone(), session.look().clone());
-        self.asked = Some((look.clone(), asked));
-        self.worker.ask(IdleRequest { library, look, asked });
+        self.requested = Some((look.clone(), request));
+        self.worker.ask(IdleRequest { library, look, request });
     }
 }
 
 /// Tries all controls. What cannot be tried has an effect.
 fn idle_controls(request: IdleRequest) -> IdleControls {
     let idle = find(&request).unwrap_or_default();
-    IdleControls { look: request.look, asked: request.asked, idle }
+    IdleControls { look: request.look, request: request.request, idle }
 }
 
-fn find(IdleRequest { library, look, asked }: &IdleRequest) -> Result<HashSet<String>> {
+fn find(IdleRequest { library, look, request }: &IdleRequest) -> Result<HashSet<String>> {
     let mut idle = HashSet::new();
     let Some(style) = look.style(library)? else { return Ok(idle) };
     let usual = frame_request(library, &style, (SIDE, SIDE))?;
     let IsophoteRequest { width, height, scale, reference_height, canonical_height, .. } = usual;
-    let request = asked.map_or(usual, |asked| IsophoteRequest {
+    let request = request.map_or(usual, |request| IsophoteRequest {
         width,
         height,
         scale,
         reference_height,
         canonical_height,
-        ..asked
+        ..request
     });
     // One frame before shows what all show.
     let known = style.past(library, &request)?.frames.min(1);

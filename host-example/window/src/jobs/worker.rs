@@ -15,7 +15,7 @@ pub type Wake = Arc<dyn Fn() + Send + Sync>;
 pub struct Worker<J, A> {
     shared: Arc<Shared<J>>,
     answers: Receiver<(u64, A)>,
-    asked: u64,
+    requested: u64,
     answered: u64,
     thread: Option<JoinHandle<()>>,
 }
@@ -47,13 +47,13 @@ impl<J: Send + 'static, A: Send + 'static> Worker<J, A> {
             .name(name.to_owned())
             .spawn(move || serve(&own, &sender, &wake, work))
             .map_err(|e| Error::failure(format!("no thread can be started: {e}"), "close other programs"))?;
-        Ok(Self { shared, answers, asked: 0, answered: 0, thread: Some(thread) })
+        Ok(Self { shared, answers, requested: 0, answered: 0, thread: Some(thread) })
     }
 
     /// Asks for something, instead of what was asked for and not begun.
     pub fn ask(&mut self, job: J) {
-        self.asked += 1;
-        self.shared.tray.lock().unwrap_or_else(PoisonError::into_inner).next = Some((self.asked, job));
+        self.requested += 1;
+        self.shared.tray.lock().unwrap_or_else(PoisonError::into_inner).next = Some((self.requested, job));
         self.shared.changed.notify_one();
     }
 }
@@ -68,7 +68,7 @@ impl<J, A> Worker<J, A> {
 
     /// True while something that was asked for has not been answered.
     pub fn is_busy(&self) -> bool {
-        self.answered < self.asked
+        self.answered < self.requested
     }
 }
 

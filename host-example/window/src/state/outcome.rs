@@ -82,7 +82,7 @@ pub struct IdleControls {
     /// The look.
     pub look: EditedLook,
     /// Request that it was found for.
-    pub asked: Option<IsophoteRequest>,
+    pub request: Option<IsophoteRequest>,
     /// Names of the parameters without effect.
     pub idle: HashSet<String>,
 }

@@ -30,11 +30,11 @@ pub fn show(ui: &mut Ui, session: &mut Session) {
             ui.label(RichText::new(text).color(theme::FAINT));
             return;
         }
-        let mut asked = None;
+        let mut clicked = None;
         for index in 0..count {
-            ui.push_id(index, |ui| row(ui, session, index, count, &mut asked));
+            ui.push_id(index, |ui| row(ui, session, index, count, &mut clicked));
         }
-        if let Some((index, act)) = asked {
+        if let Some((index, act)) = clicked {
             perform(session, index, act);
         }
         add(ui, session);
@@ -42,7 +42,7 @@ pub fn show(ui: &mut Ui, session: &mut Session) {
     });
 }
 
-fn row(ui: &mut Ui, session: &Session, index: usize, count: usize, asked: &mut Option<(usize, Act)>) {
+fn row(ui: &mut Ui, session: &Session, index: usize, count: usize, clicked: &mut Option<(usize, Act)>) {
     let Some(link) = session.looks.chain().and_then(|chain| chain.links.get(index)) else { return };
     let is_alone = session.looks.watched() == Some(&Watched::Alone(link.name.clone()));
     let is_after = session.looks.watched() == Some(&Watched::After(link.name.clone()));
@@ -87,7 +87,7 @@ fn row(ui: &mut Ui, session: &Session, index: usize, count: usize, asked: &mut O
         if button(ui, "✖", "Remove", "Remove this node", false, count > 1) {
             act = Some(Act::Remove);
         }
-        *asked = asked.take().or(act.map(|act| (index, act)));
+        *clicked = clicked.take().or(act.map(|act| (index, act)));
     });
 }
 

@@ -11,9 +11,9 @@ const WIDTH: f32 = 420.0;
 /// Most looks that are named.
 const MOST: usize = 4;
 
-/// Answer to the question.
+/// Choices that the question offers.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-enum Answer {
+enum Choice {
     Save,
     Wait,
     Close,
@@ -33,13 +33,13 @@ pub fn show(context: &Context, session: &mut Session) {
         ui.add_space(8.0);
         reasons(ui, session);
         ui.add_space(12.0);
-        ui.horizontal_wrapped(|ui| answers(ui, session)).inner
+        ui.horizontal_wrapped(|ui| choices(ui, session)).inner
     });
     match shown.inner {
-        Some(Answer::Save) => session.save_and_leave(),
-        Some(Answer::Wait) => session.dialogs.leaving = Leaving::Waits,
-        Some(Answer::Close) => session.dialogs.leaving = Leaving::Closes,
-        Some(Answer::Cancel) => session.dialogs.leaving = Leaving::Stays,
+        Some(Choice::Save) => session.save_and_leave(),
+        Some(Choice::Wait) => session.dialogs.leaving = Leaving::Waits,
+        Some(Choice::Close) => session.dialogs.leaving = Leaving::Closes,
+        Some(Choice::Cancel) => session.dialogs.leaving = Leaving::Stays,
         None => return,
     }
     context.request_repaint();
@@ -80,7 +80,7 @@ fn reasons(ui: &mut Ui, session: &Session) {
 }
 
 /// The buttons. Return presses the first, which loses nothing, unless Tab has gone to another; Escape cancels.
-fn answers(ui: &mut Ui, session: &Session) -> Option<Answer> {
+fn choices(ui: &mut Ui, session: &Session) -> Option<Choice> {
     let unsaved = session.looks.unsaved().len();
     let is_exporting = session.work.exported.is_some();
     let close = match (unsaved > 0, is_exporting) {
@@ -88,26 +88,26 @@ fn answers(ui: &mut Ui, session: &Session) -> Option<Answer> {
         (false, true) => "End the export and close",
         (false, false) => "Close",
     };
-    let offered: &[(Answer, &str)] = match session.dialogs.leaving {
+    let offered: &[(Choice, &str)] = match session.dialogs.leaving {
         Leaving::Closes => &[],
-        Leaving::Waits => &[(Answer::Cancel, "Cancel"), (Answer::Close, close)],
+        Leaving::Waits => &[(Choice::Cancel, "Cancel"), (Choice::Close, close)],
         _ if unsaved > 0 => {
-            &[(Answer::Save, "Save the look…"), (Answer::Close, close), (Answer::Cancel, "Cancel")]
+            &[(Choice::Save, "Save the look…"), (Choice::Close, close), (Choice::Cancel, "Cancel")]
         }
         _ if is_exporting => {
-            &[(Answer::Wait, "Close when it is done"), (Answer::Close, close), (Answer::Cancel, "Cancel")]
+            &[(Choice::Wait, "Close when it is done"), (Choice::Close, close), (Choice::Cancel, "Cancel")]
         }
-        _ => &[(Answer::Close, close), (Answer::Cancel, "Cancel")],
+        _ => &[(Choice::Close, close), (Choice::Cancel, "Cancel")],
     };
-    let mut answer = None;
+    let mut choice = None;
     let mut buttons = Vec::new();
     for (index, (means, text)) in offered.iter().enumerate() {
-        let loses = *means == Answer::Close && (unsaved > 0 || is_exporting);
+        let loses = *means == Choice::Close && (unsaved > 0 || is_exporting);
         let text = RichText::new(*text);
         let button = Button::new(if loses { text.color(theme::BAD) } else { text });
         let button = ui.add(if index == 0 { button.fill(theme::CHOSEN) } else { button });
         if button.clicked() {
-            answer = Some(*means);
+            choice = Some(*means);
         }
         buttons.push(button);
     }
@@ -116,5 +116,5 @@ fn answers(ui: &mut Ui, session: &Session) -> Option<Answer> {
     {
         first.request_focus();
     }
-    answer
+    choice
 }

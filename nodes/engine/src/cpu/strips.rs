@@ -57,7 +57,7 @@ impl Schedule {
 
     fn strips(plan: &Plan, region: Rect, windows: &[Rect], rows: i32) -> Self {
         let mut schedule = Self { frontiers: Vec::new(), kept: Vec::new(), capacity: vec![0; windows.len()] };
-        let mut held: Vec<i32> = windows.iter().map(|w| w.y0).collect();
+        let mut kept_from: Vec<i32> = windows.iter().map(|w| w.y0).collect();
         let mut y = region.y0;
         while y < region.y1 {
             // A short strip at the end joins the one before it.
@@ -70,11 +70,11 @@ impl Schedule {
                 .collect();
             for image in written(plan) {
                 let most = &mut schedule.capacity[image];
-                *most = (*most).max(frontier[image] - held[image]);
+                *most = (*most).max(frontier[image] - kept_from[image]);
             }
-            held = kept(plan, windows, &frontier);
+            kept_from = kept(plan, windows, &frontier);
             schedule.frontiers.push(frontier);
-            schedule.kept.push(held.clone());
+            schedule.kept.push(kept_from.clone());
         }
         // With room for another strip, rows are moved to the front every other time only.
         for image in written(plan) {

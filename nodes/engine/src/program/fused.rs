@@ -165,8 +165,8 @@ impl Fused {
 
     /// Kernel of this place among the others, with its textures at these slots.
     fn place<'s>(&self, number: usize, slots: &'s [Option<usize>]) -> Place<'s> {
-        let held = self.lead == Lead::ProducerAndPair && self.is_held;
-        Place { number, slots, is_held: held && number == 0, reading: self.reading }
+        let is_held = self.lead == Lead::ProducerAndPair && self.is_held;
+        Place { number, slots, is_held: is_held && number == 0, reading: self.reading }
     }
 
     /// Adds the text of a first kernel; returns what begins the function of those that follow.

@@ -345,8 +345,9 @@ impl<'p> Lowering<'p> {
             if self.places[output.index()].is_some() {
                 continue;
             }
-            let held = self.windows[output.index()];
-            let wanted = self.texture(*output, Role::Transient, Rect::of_size(held.width(), held.height()));
+            let window = self.windows[output.index()];
+            let wanted =
+                self.texture(*output, Role::Transient, Rect::of_size(window.width(), window.height()));
             let fits = |free: &u32| {
                 let texture = &self.textures[*free as usize];
                 (texture.format, texture.class) == (wanted.format, wanted.class)

@@ -18,7 +18,7 @@
 use crate::declare::spec::{NodeSpec, Param};
 use crate::declare::value::Value;
 use crate::error::{Error, Result};
-use crate::graph::{Graph, GraphInput, Source};
+use crate::graph::{Graph, GraphInput, Upstream};
 use serde::{Deserialize, Serialize};
 use serde_json::{Map, Value as Json};
 
@@ -130,8 +130,8 @@ impl Graph {
             .zip(&node.inputs)
             .filter_map(|(port, source)| {
                 let name = match source.as_ref()? {
-                    Source::Input(input) => format!("@{}", input.id()),
-                    Source::Node(from) => self.node_at(*from).name.clone(),
+                    Upstream::Input(input) => format!("@{}", input.id()),
+                    Upstream::Node(from) => self.node_at(*from).name.clone(),
                 };
                 Some((port.id.to_owned(), Json::String(name)))
             })

@@ -1,7 +1,7 @@
 //! Number of frames around its own that a frame of a graph depends on.
 
 use crate::frames::{Frames, MOST_FRAMES};
-use crate::graph::{Graph, GraphInput, Source};
+use crate::graph::{Graph, GraphInput, Upstream};
 
 impl Graph {
     /// Frames before and after its own that a frame of the graph's output depends on, where all are known; [0, 0] for
@@ -25,7 +25,7 @@ impl Graph {
             let Some([first, last]) = *need else { continue };
             let window = node.spec.window(&node.values);
             for (port, source) in node.spec.ports().zip(&node.inputs) {
-                if *source == Some(Source::Input(input)) {
+                if *source == Some(Upstream::Input(input)) {
                     let past = window.max(node.mark_window(port, *source)) - first;
                     most = [most[0].max(past), most[1].max(window + last)];
                 }

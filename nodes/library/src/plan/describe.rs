@@ -4,7 +4,7 @@ use crate::declare::spec::{Around, ImageKind, MASK, MIX, Scope};
 use crate::error::Result;
 use crate::frames::Frames;
 use crate::graph::neighbours::needs_of;
-use crate::graph::{Graph, GraphInput, Node, Source};
+use crate::graph::{Graph, GraphInput, Node, Upstream};
 use crate::kernels::colour::{add_light, colour_export, colour_import, emission, mix, mix_by_mask};
 use crate::plan::request::Request;
 use isophote_engine::{ImageId, PlanBuilder};
@@ -99,16 +99,16 @@ impl Describing<'_> {
     }
 
     /// Image that the node `reader` reads at a frame.
-    fn source(&mut self, source: Source, frame: i32, reader: usize) -> Option<ImageId> {
+    fn source(&mut self, source: Upstream, frame: i32, reader: usize) -> Option<ImageId> {
         let is_besides = |input| is_read_besides(input) || self.scratch.besides[reader];
         match source {
-            Source::Node(n) => self.scratch.results[self.place(frame, n)],
+            Upstream::Node(n) => self.scratch.results[self.place(frame, n)],
             // What is handed in was made from the rest.
-            Source::Input(input) if self.request.frames.is_handed(frame) && !is_besides(input) => None,
-            Source::Input(input) if self.request.guides.has(input) => {
+            Upstream::Input(input) if self.request.frames.is_handed(frame) && !is_besides(input) => None,
+            Upstream::Input(input) if self.request.guides.has(input) => {
                 Some(graph_input(self.builder, input, self.request))
             }
-            Source::Input(_) => None,
+            Upstream::Input(_) => None,
         }
     }
 
@@ -211,18 +211,18 @@ fn picture(node: &Node) -> Option<usize> {
 /// The light beyond coverage of what a port is connected to.
 fn light_of(
     builder: &mut PlanBuilder,
-    source: Option<Source>,
+    source: Option<Upstream>,
     lights: &[Option<ImageId>],
     request: &Request,
 ) -> Option<ImageId> {
     match source? {
-        Source::Node(node) => lights[node],
-        Source::Input(GraphInput::Color) if request.emission && request.premultiplied => {
+        Upstream::Node(node) => lights[node],
+        Upstream::Input(GraphInput::Color) if request.emission && request.premultiplied => {
             let kind = GraphInput::Color.kind();
             let image = builder.input(GraphInput::Color.id(), kind.channels(), kind.class());
             Some(emission::pass(builder, image))
         }
-        Source::Input(_) => None,
+        Upstream::Input(_) => None,
     }
 }
 

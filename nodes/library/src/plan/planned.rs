@@ -1,7 +1,7 @@
 //! From a graph to a plan for one size, and from an edited graph to an edited plan.
 
 use crate::error::{Error, Result};
-use crate::graph::{Graph, Source};
+use crate::graph::{Graph, Upstream};
 use crate::plan::describe::{Scratch, describe};
 use crate::plan::request::Request;
 use isophote_engine::{Plan, PlanBuilder};
@@ -111,8 +111,8 @@ fn check(graph: &Graph, request: &Request) -> Result<()> {
         for (port, source) in node.spec.ports().zip(&node.inputs) {
             let connected = match source {
                 None => false,
-                Some(Source::Node(_)) => true,
-                Some(Source::Input(input)) => request.guides.has(*input),
+                Some(Upstream::Node(_)) => true,
+                Some(Upstream::Input(input)) => request.guides.has(*input),
             };
             if !connected && !port.optional {
                 return Err(Error::Connection(format!(

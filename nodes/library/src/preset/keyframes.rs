@@ -92,8 +92,8 @@ mod tests {
         let values = [900, 1001, 1013, 1050, 2000].map(|frame| ramp.at(frame).parse::<f32>().unwrap());
         assert_eq!([values[0], values[1], values[3], values[4]], [2.0, 2.0, 6.0, 6.0]);
         assert!((values[2] - (2.0 + 4.0 * 12.0 / 49.0)).abs() < 1e-6);
-        let held = track(float, &[(1, "2"), (10, "6")], Some(true)).unwrap();
-        assert_eq!([held.at(9), held.at(10)], ["2", "6"]);
+        let stepped = track(float, &[(1, "2"), (10, "6")], Some(true)).unwrap();
+        assert_eq!([stepped.at(9), stepped.at(10)], ["2", "6"]);
         let whole = Param::int("x", "X", 0, [0, 10]);
         assert_eq!(track(whole, &[(0, "0"), (10, "5")], None).unwrap().at(5), "3");
         let colour = Param::color("x", "X", [0.0; 4]);

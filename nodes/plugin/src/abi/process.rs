@@ -85,9 +85,10 @@ pub(super) unsafe extern "C" fn process(
         };
         let threads = CallThreads::new(&control)?;
         let mut warm = object.warm(&request)?;
-        let job = Job { object, request, region, inputs: &inputs, threads: &threads, control: &control };
+        let call =
+            ProcessCall { object, request, region, inputs: &inputs, threads: &threads, control: &control };
         // SAFETY: the host promised that the images' memory may be read.
-        let computed = unsafe { job.run(&mut warm, device.as_deref()) };
+        let computed = unsafe { call.run(&mut warm, device.as_deref()) };
         let computed = computed.and_then(|(result, replaced)| {
             // SAFETY: the host promised that the target's memory may be written; all inputs were copied,
             // so that it does not matter whether it is theirs.
@@ -136,8 +137,8 @@ unsafe fn sources(inputs: *const IsophoteInput, count: u32) -> Outcome<Vec<(Grap
     Ok(sources)
 }
 
-/// One computation.
-struct Job<'a> {
+/// One call of `process`, with all that it was given.
+struct ProcessCall<'a> {
     object: &'a GraphObject,
     request: Request,
     region: Rect,
@@ -146,7 +147,7 @@ struct Job<'a> {
     control: &'a IsophoteControl,
 }
 
-impl Job<'_> {
+impl ProcessCall<'_> {
     /// Reads the inputs and computes the result.
     ///
     /// # Safety

@@ -140,7 +140,7 @@ unsafe extern "C" fn process(
         };
         let threads = CallThreads::new(&control)?;
         let mut state = lock(&object.state);
-        let mut job = Job {
+        let mut call = FrameCall {
             graph: &graph,
             request: Request { max_motion: object.max_motion, ..request },
             region,
@@ -149,13 +149,14 @@ unsafe extern "C" fn process(
             pulled: Pulled { frames, frame: request.frame, images: Vec::new(), replaced: 0 },
         };
         // SAFETY: the host promised functions of these types, and that the images that they give may be read.
-        let result = unsafe { job.run(&mut state, device.as_deref())? };
+        let result = unsafe { call.run(&mut state, device.as_deref())? };
         // SAFETY: the host promised that the target's memory may be written; all inputs were copied.
         unsafe { target.write(&result)? };
         if let (Some(cpu), None) = (&mut state.cpu, &device) {
             cpu.recycle(result);
         }
-        let done = IsophoteReport { replaced: job.pulled.replaced, seconds: started.elapsed().as_secs_f64() };
+        let done =
+            IsophoteReport { replaced: call.pulled.replaced, seconds: started.elapsed().as_secs_f64() };
         // SAFETY: the host promised that the report may be written, or is null.
         unsafe { args::put_if_wanted(report, done) };
         Ok(())
@@ -231,8 +232,8 @@ impl Pulled {
     }
 }
 
-/// One frame.
-struct Job<'a> {
+/// One call for a frame, with all that it was given.
+struct FrameCall<'a> {
     graph: &'a Graph,
     request: Request,
     region: Rect,
@@ -241,7 +242,7 @@ struct Job<'a> {
     pulled: Pulled,
 }
 
-impl Job<'_> {
+impl FrameCall<'_> {
     /// # Safety
     /// The host's functions must be what it promised.
     unsafe fn run(&mut self, state: &mut State, device: Option<&DeviceObject>) -> Outcome<Image> {

@@ -122,11 +122,11 @@ impl HostThreads {
     }
 }
 
-type Job<'a> = dyn Fn(usize) + Sync + 'a;
+type IndexedTask<'a> = dyn Fn(usize) + Sync + 'a;
 
 /// A batch of jobs in the hands of the host.
 struct Batch {
-    job: *const Job<'static>,
+    job: *const IndexedTask<'static>,
     state: Mutex<BatchState>,
     idle: Condvar,
 }
@@ -188,10 +188,10 @@ impl Threads for HostThreads {
         self.count
     }
 
-    fn run(&self, jobs: usize, job: &Job<'_>) {
+    fn run(&self, jobs: usize, job: &IndexedTask<'_>) {
         // SAFETY: only the lifetime changes. The closure is called by `Batch::work` alone, while the
         // batch is open, and below this function closes it and waits before it returns.
-        let job = unsafe { std::mem::transmute::<*const Job<'_>, *const Job<'static>>(job) };
+        let job = unsafe { std::mem::transmute::<*const IndexedTask<'_>, *const IndexedTask<'static>>(job) };
         let batch = Arc::new(Batch {
             job,
             state: Mutex::new(BatchState {

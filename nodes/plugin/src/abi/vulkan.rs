@@ -48,12 +48,12 @@ pub static API: IsophoteVulkanApi = IsophoteVulkanApi {
 const MOST_SEMAPHORES: u32 = 64;
 
 /// Effect behind a handle; nothing once its device's object was destroyed.
-type Held = Mutex<Option<Effect>>;
+type EffectSlot = Mutex<Option<Effect>>;
 
 /// A Vulkan device of a host's.
 pub struct VulkanObject {
     context: Arc<Context>,
-    effects: Mutex<Vec<Weak<Held>>>,
+    effects: Mutex<Vec<Weak<EffectSlot>>>,
     message: Mutex<String>,
 }
 
@@ -62,7 +62,7 @@ object!(VulkanObject, IsophoteVulkan, 5, "Vulkan object");
 /// An effect of a host's.
 pub struct EffectObject {
     context: Arc<Context>,
-    held: Arc<Held>,
+    slot: Arc<EffectSlot>,
     message: Mutex<String>,
 }
 
@@ -72,8 +72,8 @@ impl EffectObject {
     /// Does something with the effect, while its device's object cannot be destroyed.
     fn with<T>(&self, body: impl FnOnce(&mut Effect) -> Outcome<T>) -> Outcome<T> {
         let _alive = self.context.enter()?;
-        let mut held = lock(&self.held);
-        let Some(effect) = held.as_mut() else {
+        let mut slot = lock(&self.slot);
+        let Some(effect) = slot.as_mut() else {
             return Err(Failure::new(ISOPHOTE_ERROR_INVALID_HANDLE, "the Vulkan effect was destroyed"));
         };
         body(effect)
@@ -113,8 +113,8 @@ unsafe extern "C" fn destroy(vulkan: IsophoteVulkan) -> IsophoteStatus {
         || {
             let object = VulkanObject::slots().remove(vulkan.id)?;
             object.context.end(|| {
-                for held in lock(&object.effects).iter().filter_map(Weak::upgrade) {
-                    let effect = lock(&held).take();
+                for slot in lock(&object.effects).iter().filter_map(Weak::upgrade) {
+                    let effect = lock(&slot).take();
                     drop(effect);
                 }
             });
@@ -138,13 +138,13 @@ unsafe extern "C" fn effect_create(
         let request = request::request(&unsafe { args::get(host_request, "the request")? })?;
         let context = Arc::clone(&object.context);
         let alive = context.enter()?;
-        let held = Arc::new(Mutex::new(Some(Effect::new(&context, graph, request)?)));
+        let slot = Arc::new(Mutex::new(Some(Effect::new(&context, graph, request)?)));
         let mut effects = lock(&object.effects);
-        effects.retain(|held| held.strong_count() > 0);
-        effects.push(Arc::downgrade(&held));
+        effects.retain(|slot| slot.strong_count() > 0);
+        effects.push(Arc::downgrade(&slot));
         drop(effects);
         drop(alive);
-        Ok(EffectObject { context, held, message: Mutex::default() })
+        Ok(EffectObject { context, slot, message: Mutex::default() })
     };
     // SAFETY: the host promised that both places may be written.
     unsafe { guard::create(effect, error, make) }
@@ -156,7 +156,7 @@ unsafe extern "C" fn effect_destroy(effect: IsophoteVulkanEffect) -> IsophoteSta
             let object = EffectObject::slots().remove(effect.id)?;
             // One whose device's object is gone holds nothing any more.
             if let Ok(_alive) = object.context.enter() {
-                let effect = lock(&object.held).take();
+                let effect = lock(&object.slot).take();
                 if let Some(effect) = effect {
                     effect.retire();
                 }

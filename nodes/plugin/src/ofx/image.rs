@@ -202,15 +202,15 @@ impl<'h> Fetched<'h> {
         let checked = self.checked(frame)?;
         let channels = input.kind().channels();
         let mut image = Image::with_window(window, channels).map_err(|_| kOfxStatErrMemory)?;
-        let held = window.intersection(&checked.window);
+        let inside = window.intersection(&checked.window);
         // Normals are read as colours: integers hold them as shares of -1..=1.
         let as_input = if input == GraphInput::Normal { GraphInput::Color } else { input };
-        if held.is_empty() && beyond == Beyond::Zero {
+        if inside.is_empty() && beyond == Beyond::Zero {
             return Ok(image);
         }
-        let held = if held.is_empty() { nearest(&window, &checked.window) } else { held };
+        let inside = if inside.is_empty() { nearest(&window, &checked.window) } else { inside };
         // SAFETY: the host gave the image, so that its memory may be read until it is released.
-        let (mut part, _) = unsafe { checked.read(held, as_input) }.map_err(|_| kOfxStatErrMemory)?;
+        let (mut part, _) = unsafe { checked.read(inside, as_input) }.map_err(|_| kOfxStatErrMemory)?;
         if self.blue_first && channels == 4 {
             part.data_mut().chunks_exact_mut(4).for_each(|p| p.swap(0, 2));
         }
@@ -219,20 +219,20 @@ impl<'h> Fetched<'h> {
                 p[..3].iter_mut().for_each(|v| *v = *v * 2.0 - 1.0);
             });
         }
-        if held == window {
+        if inside == window {
             return Ok(part);
         }
         let c = channels as usize;
         for y in window.y0..window.y1 {
-            if beyond == Beyond::Zero && !(held.y0..held.y1).contains(&y) {
+            if beyond == Beyond::Zero && !(inside.y0..inside.y1).contains(&y) {
                 continue;
             }
-            let from = part.row(y.clamp(held.y0, held.y1 - 1));
+            let from = part.row(y.clamp(inside.y0, inside.y1 - 1));
             for (x, pixel) in (window.x0..window.x1).zip(image.row_mut(y).chunks_exact_mut(c)) {
-                if beyond == Beyond::Zero && !(held.x0..held.x1).contains(&x) {
+                if beyond == Beyond::Zero && !(inside.x0..inside.x1).contains(&x) {
                     continue;
                 }
-                let at = (x.clamp(held.x0, held.x1 - 1) - held.x0) as usize * c;
+                let at = (x.clamp(inside.x0, inside.x1 - 1) - inside.x0) as usize * c;
                 pixel.copy_from_slice(&from[at..at + c]);
             }
         }
@@ -250,16 +250,16 @@ impl<'h> Fetched<'h> {
         }
         let mut image = Image::with_window(window, 2).map_err(|_| kOfxStatErrMemory)?;
         image.data_mut().fill(f32::NAN);
-        let held = window.intersection(&checked.window);
-        if held.is_empty() {
+        let inside = window.intersection(&checked.window);
+        if inside.is_empty() {
             return Ok(image);
         }
         let channels = if self.blue_first { channels.map(|c| [2, 1, 0, 3][c]) } else { channels };
-        for y in held.y0..held.y1 {
-            let row = Rect { y0: y, y1: y + 1, ..held };
+        for y in inside.y0..inside.y1 {
+            let row = Rect { y0: y, y1: y + 1, ..inside };
             // SAFETY: the host gave the image, so that its memory may be read until it is released.
             let pairs = unsafe { checked.read_pairs(row, channels) }.map_err(|_| kOfxStatErrMemory)?;
-            let at = (held.x0 - window.x0) as usize * 2;
+            let at = (inside.x0 - window.x0) as usize * 2;
             image.row_mut(y)[at..at + pairs.len()].copy_from_slice(&pairs);
         }
         Ok(image)
@@ -303,12 +303,12 @@ impl<'h> Fetched<'h> {
     /// Memory; image format, when no image can have its shape.
     pub fn write(&self, frame: &Frame, mut image: Image) -> Outcome<()> {
         let checked = self.checked(frame)?;
-        let held = image.window().intersection(&checked.window);
-        if held.is_empty() {
+        let inside = image.window().intersection(&checked.window);
+        if inside.is_empty() {
             return Ok(());
         }
-        if held != image.window() {
-            image = image.crop(held).map_err(|_| kOfxStatErrMemory)?;
+        if inside != image.window() {
+            image = image.crop(inside).map_err(|_| kOfxStatErrMemory)?;
         }
         if self.blue_first && image.channels() == 4 {
             image.data_mut().chunks_exact_mut(4).for_each(|p| p.swap(0, 2));
@@ -328,8 +328,8 @@ pub enum Beyond {
 }
 
 /// The one pixel of `held` nearest to a window beside it.
-fn nearest(window: &Rect, held: &Rect) -> Rect {
-    let x = window.x0.clamp(held.x0, held.x1 - 1);
-    let y = window.y0.clamp(held.y0, held.y1 - 1);
+fn nearest(window: &Rect, bounds: &Rect) -> Rect {
+    let x = window.x0.clamp(bounds.x0, bounds.x1 - 1);
+    let y = window.y0.clamp(bounds.y0, bounds.y1 - 1);
     Rect { x0: x, y0: y, x1: x + 1, y1: y + 1 }
 }

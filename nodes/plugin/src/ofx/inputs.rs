@@ -228,8 +228,9 @@ impl<'h> Inputs<'h> {
 
     /// Values outside the image of another frame, by its region: nothing, where it does not cover this one's.
     fn beyond(&self, defined: Option<OfxRectD>) -> Beyond {
-        let ([x0, y0, x1, y1], held) = (self.frame.picture, defined.and_then(|r| self.frame.pixels(&r)));
-        match held {
+        let ([x0, y0, x1, y1], defined_pixels) =
+            (self.frame.picture, defined.and_then(|r| self.frame.pixels(&r)));
+        match defined_pixels {
             Some(h) if h[0] > x0 + 1 || h[1] > y0 + 1 || h[2] < x1 - 1 || h[3] < y1 - 1 => Beyond::Zero,
             _ => Beyond::Edge,
         }

@@ -214,8 +214,8 @@ fn resampled(
         return Err(Error::Input(format!("an image of {} channels is no picture", image.channels())));
     }
     if !x.is_same() {
-        let held = image.window();
-        let columns = Rect { x0: window.x0, x1: window.x1, ..held };
+        let image_window = image.window();
+        let columns = Rect { x0: window.x0, x1: window.x1, ..image_window };
         // The same for every row.
         let taps: Vec<Vec<Tap>> = (window.x0..window.x1).map(|column| x.taps(column).collect()).collect();
         image = by_rows(columns, image.channels(), threads, |row, target| {
@@ -223,23 +223,23 @@ fn resampled(
             match image.channels() {
                 _ if by == By::Middle => {
                     for (column, target) in (window.x0..window.x1).zip(target.chunks_exact_mut(channels)) {
-                        let at = (x.middle(column) - held.x0) as usize * channels;
+                        let at = (x.middle(column) - image_window.x0) as usize * channels;
                         target.copy_from_slice(&row[at..at + channels]);
                     }
                 }
                 1 if by == By::Surface => {
                     for (column, target) in (window.x0..window.x1).zip(target) {
-                        *target = surface(&x, column, |x| row[(x - held.x0) as usize]);
+                        *target = surface(&x, column, |x| row[(x - image_window.x0) as usize]);
                     }
                 }
-                1 => along_row::<1>(&taps, row, held.x0, target),
-                _ => along_row::<4>(&taps, row, held.x0, target),
+                1 => along_row::<1>(&taps, row, image_window.x0, target),
+                _ => along_row::<4>(&taps, row, image_window.x0, target),
             }
         })?;
     }
     if !y.is_same() {
-        let held = image.window();
-        let rows = Rect { y0: window.y0, y1: window.y1, ..held };
+        let image_window = image.window();
+        let rows = Rect { y0: window.y0, y1: window.y1, ..image_window };
         image = by_rows(rows, image.channels(), threads, |row, target| {
             across_rows(&y, &image, row, by, target);
         })?;
@@ -283,8 +283,8 @@ fn along_row<const N: usize>(taps: &[Vec<Tap>], row: &[f32], x0: i32, target: &m
 
 /// One row of new pixels from the old ones of its columns.
 fn across_rows(axis: &Axis, image: &Image, y: i32, by: By, target: &mut [f32]) {
-    let held = image.window();
-    let row = |y: i32| image.row(y.clamp(held.y0, held.y1 - 1));
+    let image_window = image.window();
+    let row = |y: i32| image.row(y.clamp(image_window.y0, image_window.y1 - 1));
     if by == By::Middle {
         target.copy_from_slice(row(axis.middle(y)));
         return;

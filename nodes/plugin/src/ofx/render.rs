@@ -24,7 +24,7 @@ use isophote_abi::openfx::*;
 use std::sync::Mutex;
 
 /// Everything that one render action was given.
-struct Job<'h> {
+struct RenderAction<'h> {
     inputs: Inputs<'h>,
     settings: Settings,
     output: Fetched<'h>,
@@ -76,8 +76,8 @@ pub fn render(effect: &Effect, host: &Host, instance: Handle, in_args: Handle) -
         convention: settings.convention,
         identity: settings.is_identity(frame.scale),
     };
-    let job = Job { inputs, settings, output, mask };
-    let done = faults::failure(effect).map_or_else(|| job.run(window), |error| Err(Stop::Error(error)));
+    let action = RenderAction { inputs, settings, output, mask };
+    let done = faults::failure(effect).map_or_else(|| action.run(window), |error| Err(Stop::Error(error)));
     report(host, instance, done)
 }
 
@@ -129,7 +129,7 @@ fn clear(host: &Host, output: &Fetched<'_>, window: Bounds) -> Outcome<()> {
     output.write(&frame, black)
 }
 
-impl Job<'_> {
+impl RenderAction<'_> {
     fn run(&self, window: Bounds) -> Result<(), Stop> {
         let Inputs { host, instance, frame, .. } = &self.inputs;
         let inside = frame.inside(window);
@@ -243,28 +243,33 @@ struct Plans {
 }
 
 impl Plans {
-    fn new(job: &Job<'_>) -> Result<Self, Stop> {
-        let (inputs, settings) = (&job.inputs, &job.settings);
+    fn new(action: &RenderAction<'_>) -> Result<Self, Stop> {
+        let (inputs, settings) = (&action.inputs, &action.settings);
         let has = inputs.available();
         let mut known = Known::of(&settings.graph, settings.motion_from, has, inputs.host.temporal)?;
         known.limit_to_source(inputs.host, inputs.instance, inputs.time);
-        let prepared = Self::prepared(&known, job)?;
+        let prepared = Self::prepared(&known, action)?;
         Ok(Self { known, prepared, emissive: None })
     }
 
-    fn prepared(known: &Known, job: &Job<'_>) -> isophote::Result<Prepared> {
-        let Job { inputs, settings, .. } = job;
+    fn prepared(known: &Known, action: &RenderAction<'_>) -> isophote::Result<Prepared> {
+        let RenderAction { inputs, settings, .. } = action;
         Prepared::new(known, settings.space, &inputs.frame, !inputs.is_straight())
     }
 
     /// Images that a band is computed from. Frames are known up to the first that lacks an image.
-    fn gather(&mut self, job: &Job<'_>, band: Rect, threads: &dyn Threads) -> Result<Named, Stop> {
+    fn gather(
+        &mut self,
+        action: &RenderAction<'_>,
+        band: Rect,
+        threads: &dyn Threads,
+    ) -> Result<Named, Stop> {
         loop {
-            match job.inputs.gather(&self.prepared, band, threads)? {
+            match action.inputs.gather(&self.prepared, band, threads)? {
                 Gathered::All(images) => return Ok(images),
                 Gathered::Without(missing) => {
                     self.known.forget_from(missing);
-                    self.prepared = Self::prepared(&self.known, job)?;
+                    self.prepared = Self::prepared(&self.known, action)?;
                     self.emissive = None;
                 }
             }

@@ -17,7 +17,7 @@ export async function apply(isophote, look, picture, sources, { memory: most = M
   const { json: first } = planner.ask({ ask: "plan", look, picture });
   const { plan } = first;
   const program = new Program(kernels);
-  const held = [];
+  const owned = [];
   try {
     const shader = (dispatch) => planner.ask({ ask: "shader", plan, dispatch }).json;
     const image = new ImageData(picture.width, picture.height);
@@ -28,15 +28,15 @@ export async function apply(isophote, look, picture, sources, { memory: most = M
       const compiled = await kernels.prepare(json.dispatches, shader);
       await isophote.checked(() => {
         program.build(json, bytes, compiled);
-        held.splice(0).forEach((texture) => texture.destroy());
-        program.bind(inputs(device, json, sources, held));
+        owned.splice(0).forEach((texture) => texture.destroy());
+        program.bind(inputs(device, json, sources, owned));
       });
       await put(isophote, program, region, image);
       onProgress?.((index + 1) / tiles.length);
     }
     return image;
   } finally {
-    held.forEach((texture) => texture.destroy());
+    owned.forEach((texture) => texture.destroy());
     program.destroy();
     planner.ask({ ask: "release", plan });
   }
@@ -84,7 +84,7 @@ function tile(width, height, columns, rows, column, row) {
 }
 
 /** The windows of the inputs as textures. */
-function inputs(device, program, sources, held) {
+function inputs(device, program, sources, owned) {
   const found = {};
   for (const texture of program.textures.filter(({ role }) => role === "input")) {
     const source = sources[texture.name];
@@ -95,7 +95,7 @@ function inputs(device, program, sources, held) {
       format: source instanceof GPUTexture ? source.format : "rgba8unorm",
       usage: GPUTextureUsage.TEXTURE_BINDING | GPUTextureUsage.COPY_DST | GPUTextureUsage.RENDER_ATTACHMENT,
     });
-    held.push(made);
+    owned.push(made);
     if (source instanceof GPUTexture) {
       const encoder = device.createCommandEncoder();
       encoder.copyTextureToTexture({ texture: source, origin: [x, y] }, { texture: made }, size(texture));

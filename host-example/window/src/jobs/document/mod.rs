@@ -6,7 +6,7 @@
 
 pub mod loading;
 mod player;
-mod source;
+mod reader;
 mod store;
 
 use std::path::{Path, PathBuf};
@@ -14,7 +14,7 @@ use std::sync::Arc;
 
 use self::loading::Loading;
 use self::player::Player;
-use self::source::{Reading, Source};
+use self::reader::{FrameReader, Reading};
 use self::store::Store;
 use crate::state::document::frame::Frame;
 use crate::state::document::kind::Kind;
@@ -94,7 +94,7 @@ impl Document {
             Kind::Picture => {
                 let opened = read::open(&path, &reading.selection)?;
                 let offers = opened.offers();
-                let frame = source::decoded(&path, None, opened, reading.space)?;
+                let frame = reader::decoded(&path, None, opened, reading.space)?;
                 (offers, Content::Still(Arc::new(frame)))
             }
             Kind::Sequence => sequence(&path, reading, options.cache)?,
@@ -183,7 +183,7 @@ fn sequence(path: &Path, reading: Reading, cache: u64) -> Result<(Offers, Conten
     let first = offers.next().unwrap_or_else(|| Ok(Offers::default()));
     // One bad frame is no bad sequence.
     let offers = first.or_else(|error| offers.find_map(Result::ok).ok_or(error))?;
-    let player = Player::start(Source::Files(pattern, reading), Store::new(cache, numbers.into()))?;
+    let player = Player::start(FrameReader::Files(pattern, reading), Store::new(cache, numbers.into()))?;
     Ok((offers, Content::Moving { player, rate: RATE }))
 }
 
@@ -195,7 +195,7 @@ fn video(path: &Path, reading: Reading, cache: u64) -> Result<(Offers, Content)>
     let clip = Clip::open(path)?;
     let (rate, last) = (clip.stream().frames_per_second(), clip.last());
     let store = Store::new(cache, (1..=last).collect());
-    let source = Source::Video(path.to_owned(), Box::new(clip), reading);
+    let source = FrameReader::Video(path.to_owned(), Box::new(clip), reading);
     let player = Player::start(source, store)?;
     Ok((Offers::default(), Content::Moving { player, rate }))
 }

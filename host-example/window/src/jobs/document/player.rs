@@ -5,7 +5,7 @@ use std::panic::{AssertUnwindSafe, catch_unwind};
 use std::sync::{Arc, Condvar, Mutex, MutexGuard, PoisonError};
 use std::thread::Builder;
 
-use super::source::{Sink, Source};
+use super::reader::{FrameReader, Sink};
 use super::store::Store;
 use crate::state::document::frame::Frame;
 use isophote_files::error::{Error, Result};
@@ -42,7 +42,7 @@ impl Player {
     ///
     /// # Errors
     /// [`Error::Failure`] when the system gives no thread.
-    pub fn start(source: Source, store: Store) -> Result<Self> {
+    pub fn start(source: FrameReader, store: Store) -> Result<Self> {
         let state = Mutex::new(State { store, is_over: false });
         let shared = Arc::new(Shared { state, work: Condvar::new(), news: Condvar::new() });
         let player = Self { shared: Arc::clone(&shared) };
@@ -109,7 +109,7 @@ impl Drop for Player {
 }
 
 /// Reads until the player is gone.
-fn work(mut source: Source, shared: &Shared) {
+fn work(mut source: FrameReader, shared: &Shared) {
     loop {
         let mut state = shared.state();
         let (number, direction) = loop {

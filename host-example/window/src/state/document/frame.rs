@@ -31,7 +31,7 @@ pub struct Frame {
     /// is apart from it where it is display-referred: multiplied and divided again it would not be the same.
     pub color: Vec<[f32; 4]>,
     /// Properties of the picture that the request names.
-    pub asked: PictureRequest,
+    pub request: PictureRequest,
     /// True where colour has light where alpha is 0 or little, which is filtered by itself.
     pub has_light: bool,
     /// Guides that the file holds beside colour.
@@ -77,7 +77,7 @@ impl Frame {
             width: pixels.width(),
             height: pixels.height(),
             has_light: source.state == ImageState::SceneReferred && color.iter().any(is_beyond_coverage),
-            asked: PictureRequest::of(picture, source.state, working.space, number),
+            request: PictureRequest::of(picture, source.state, working.space, number),
             guides: named.collect(),
             replaced: replaced + bad,
             color,
@@ -86,12 +86,12 @@ impl Frame {
 
     /// True where colour is multiplied by alpha.
     pub fn is_premultiplied(&self) -> bool {
-        self.asked.state == ImageState::SceneReferred
+        self.request.state == ImageState::SceneReferred
     }
 
     /// Request of `apply` to the library for this frame, of its size and with the guides that are wanted.
     pub fn request(&self, usual: IsophoteRequest) -> IsophoteRequest {
-        let request = self.asked.request(usual);
+        let request = self.request.request(usual);
         let alpha = if self.has_light { ISOPHOTE_ALPHA_EMISSIVE } else { request.alpha };
         IsophoteRequest { alpha, ..request }
     }

@@ -51,7 +51,7 @@ impl Picture {
     /// The frame's own numbers.
     pub fn meaning(&self) -> Meaning {
         let is_premultiplied = self.frame.is_premultiplied();
-        let space = match self.frame.asked.space {
+        let space = match self.frame.request.space {
             Space::Srgb => Space::Srgb,
             Space::Acescg => Space::Acescg,
             _ => Space::Linear,

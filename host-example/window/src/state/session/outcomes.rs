@@ -31,8 +31,8 @@ impl Session {
             Outcome::Preview(done) => self.previews.take(done),
             Outcome::Samples(small) => self.previews.samples.take(small),
             Outcome::Reread(source, read) => self.reload(&source, read),
-            Outcome::Idle(IdleControls { look, asked, idle }) => {
-                if look == *self.look() && asked == self.asked() {
+            Outcome::Idle(IdleControls { look, request, idle }) => {
+                if look == *self.look() && request == self.request() {
                     self.looks.set_idle(idle);
                 }
             }
@@ -54,7 +54,7 @@ impl Session {
     }
 
     /// Request of looks on the picture that is open.
-    pub fn asked(&self) -> Option<IsophoteRequest> {
+    pub fn request(&self) -> Option<IsophoteRequest> {
         let (frame, _) = self.open.playback()?.frame(false)?;
         self.library.request((1, 1)).ok().map(|usual| frame.request_of_all(1.0, usual))
     }

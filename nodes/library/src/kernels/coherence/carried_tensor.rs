@@ -145,8 +145,8 @@ impl Strip {
         }
         let len = self.colors.stride();
         let earlier = &pass.inputs[1];
-        let held = earlier.window();
-        let row = earlier.offset(held.x0, y);
+        let window = earlier.window();
+        let row = earlier.offset(window.x0, y);
         let row = &earlier.data()[row..row + earlier.stride()];
         for i in (0..(x1 - x0) as usize).step_by(8) {
             let [e, f, g] = self.tensor(simd, params, opaque, y, i);
@@ -156,8 +156,8 @@ impl Strip {
             let mut tensor = [e, f, g];
             if !valid.all_true() {
                 let x = x0 + i as i32;
-                let [e, f, g, _] = if x >= held.x0 && x + 8 <= held.x1 {
-                    read(simd, &row[4 * (x - held.x0) as usize..][..32])
+                let [e, f, g, _] = if x >= window.x0 && x + 8 <= window.x1 {
+                    read(simd, &row[4 * (x - window.x0) as usize..][..32])
                 } else {
                     read(simd, earlier.padded_row(y, x, (x + 8).min(x1), &mut self.scratch))
                 };

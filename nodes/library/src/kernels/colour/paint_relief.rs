@@ -45,8 +45,8 @@ fn relief<S: Simd>(simd: S, pass: &CpuPass<'_>, params: &Params, band: &mut Band
         [STRIP, 1],
         std::convert::identity,
         #[inline(always)]
-        |Row { held, columns: [x0, x1], y }, target| {
-            let (above, centre, below) = (held.row(y - 1, 0), held.row(y, 0), held.row(y + 1, 0));
+        |Row { buffer, columns: [x0, x1], y }, target| {
+            let (above, centre, below) = (buffer.row(y - 1, 0), buffer.row(y, 0), buffer.row(y + 1, 0));
             for (i, target) in target.chunks_mut(4 * BLOCK).enumerate() {
                 let at = BLOCK * i + 1;
                 let dx = (eight(simd, centre, at + 1) - eight(simd, centre, at - 1)) * 0.5;

@@ -67,10 +67,10 @@ fn candidates<S: Simd>(simd: S, pass: &CpuPass<'_>, params: &Params, band: &mut 
         [STRIP, 1],
         std::convert::identity,
         #[inline(always)]
-        |Row { held, y, .. }, target| {
-            let heights = [held.row(y - 1, 2), held.row(y, 2), held.row(y + 1, 2)];
-            let laplacians = [held.row(y - 1, 3), held.row(y, 3), held.row(y + 1, 3)];
-            let (gx, gy) = (held.row(y, 0), held.row(y, 1));
+        |Row { buffer, y, .. }, target| {
+            let heights = [buffer.row(y - 1, 2), buffer.row(y, 2), buffer.row(y + 1, 2)];
+            let laplacians = [buffer.row(y - 1, 3), buffer.row(y, 3), buffer.row(y + 1, 3)];
+            let (gx, gy) = (buffer.row(y, 0), buffer.row(y, 1));
             for (i, pixels) in target.chunks_mut(BLOCK).enumerate() {
                 let at = BLOCK * i;
                 let (zero, one) = (f32x8::splat(simd, 0.0), f32x8::splat(simd, 1.0));

@@ -45,9 +45,9 @@ fn derivatives<S: Simd>(simd: S, pass: &CpuPass<'_>, params: &Params, band: &mut
         [STRIP, 1],
         weighted,
         #[inline(always)]
-        |Row { held, y, .. }, target| {
-            let light = [held.row(y - 1, 0), held.row(y, 0), held.row(y + 1, 0)];
-            let cover = [held.row(y - 1, 3), held.row(y, 3), held.row(y + 1, 3)];
+        |Row { buffer, y, .. }, target| {
+            let light = [buffer.row(y - 1, 0), buffer.row(y, 0), buffer.row(y + 1, 0)];
+            let cover = [buffer.row(y - 1, 3), buffer.row(y, 3), buffer.row(y + 1, 3)];
             for (i, pixels) in target.chunks_mut(4 * BLOCK).enumerate() {
                 let at = BLOCK * i;
                 let zero = f32x8::splat(simd, 0.0);

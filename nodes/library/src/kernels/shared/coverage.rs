@@ -14,9 +14,9 @@ pub struct Covered(Option<Image>);
 impl Covered {
     /// Prepares the rows that `band` reads of `view` when it reaches `support` pixels far.
     pub fn new(view: &View<'_>, band: &Band<'_>, support: i32) -> Self {
-        let held = view.window();
-        let rows = Rect { y0: band.window.y0 - support, y1: band.window.y1 + support, ..held };
-        let rows = rows.intersection(&held);
+        let window = view.window();
+        let rows = Rect { y0: band.window.y0 - support, y1: band.window.y1 + support, ..window };
+        let rows = rows.intersection(&window);
         let at = view.offset(rows.x0, rows.y0);
         let source = &view.data()[at..at + view.stride() * rows.height() as usize];
         if is_opaque(source) {

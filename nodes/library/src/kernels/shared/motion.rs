@@ -93,7 +93,7 @@ pub fn sample_linear_near4<S: Simd>(simd: S, view: &View<'_>, x: f32x8<S>, y: f3
 /// the edge), colours multiplied by their alpha, one vector per channel.
 #[inline(always)]
 pub fn sample_sharp_covered4<S: Simd>(simd: S, view: &View<'_>, x: f32x8<S>, y: f32x8<S>) -> [f32x8<S>; 4] {
-    let ([w, h], held, data) = (view.full(), view.window(), view.data());
+    let ([w, h], window, data) = (view.full(), view.window(), view.data());
     let (columns, fx) = floor_and_share(x, w);
     let (rows, fy) = floor_and_share(y, h);
     let (wx, wy) = (catmull_rom(fx), catmull_rom(fy));
@@ -123,7 +123,7 @@ pub fn sample_sharp_covered4<S: Simd>(simd: S, view: &View<'_>, x: f32x8<S>, y: 
             pixels[pair] = sum;
         }
     } else {
-        let at = ((rows - (held.y0 + 1)) * stride as i32 + (columns - (held.x0 + 1)) * 4).to_array();
+        let at = ((rows - (window.y0 + 1)) * stride as i32 + (columns - (window.x0 + 1)) * 4).to_array();
         // One by one: what maps arrays stays a call in code for wide vectors.
         let spread_x = [spread(wx[0]), spread(wx[1]), spread(wx[2]), spread(wx[3])];
         let spread_y = [spread(wy[0]), spread(wy[1]), spread(wy[2]), spread(wy[3])];
@@ -154,7 +154,7 @@ pub fn sample_sharp_covered4<S: Simd>(simd: S, view: &View<'_>, x: f32x8<S>, y: 
 /// Samples of a two-channel image at eight positions with a sharp interpolation; see [`sample_sharp_covered4`].
 #[inline(always)]
 pub fn sample_sharp2<S: Simd>(simd: S, view: &View<'_>, x: f32x8<S>, y: f32x8<S>) -> [f32x8<S>; 2] {
-    let ([w, h], held, data) = (view.full(), view.window(), view.data());
+    let ([w, h], window, data) = (view.full(), view.window(), view.data());
     let (columns, fx) = floor_and_share(x, w);
     let (rows, fy) = floor_and_share(y, h);
     let (wx, wy) = (catmull_rom(fx), catmull_rom(fy));
@@ -179,7 +179,7 @@ pub fn sample_sharp2<S: Simd>(simd: S, view: &View<'_>, x: f32x8<S>, y: f32x8<S>
         let (first, second) = halves[0].deinterleave(halves[1]);
         return [first, second];
     }
-    let at = ((rows - (held.y0 + 1)) * stride as i32 + (columns - (held.x0 + 1)) * 2).to_array();
+    let at = ((rows - (window.y0 + 1)) * stride as i32 + (columns - (window.x0 + 1)) * 2).to_array();
     let wx = [wx[0].to_array(), wx[1].to_array(), wx[2].to_array(), wx[3].to_array()];
     let wy = [wy[0].to_array(), wy[1].to_array(), wy[2].to_array(), wy[3].to_array()];
     let (mut first, mut second) = ([0.0; 8], [0.0; 8]);
@@ -246,15 +246,15 @@ impl Run {
         y: f32x8<S>,
         [before, after]: [i32; 2],
     ) -> Option<Self> {
-        let ([w, h], held) = (view.full(), view.window());
+        let ([w, h], window) = (view.full(), view.window());
         let (columns, fx) = floor_and_share(x, w);
         let (rows, fy) = floor_and_share(y, h);
         let (column, row, fx_first, fy_first) = (columns[0], rows[0], fx[0], fy[0]);
         let apart = (fx - fx_first).abs().at_least((fy - fy_first).abs());
         let is_run = are_neighbours(simd, columns, rows) && apart.simd_le(0.0).all_true();
         let is_inside = before <= column && column + 7 + after < w && before <= row && row + after < h;
-        let at = (row - before - held.y0) * view.stride() as i32
-            + (column - before - held.x0) * view.channels() as i32;
+        let at = (row - before - window.y0) * view.stride() as i32
+            + (column - before - window.x0) * view.channels() as i32;
         (is_run && is_inside).then_some(Self { at: at as u32 as usize, fx: fx_first, fy: fy_first })
     }
 }
@@ -372,8 +372,8 @@ fn corners2<S: Simd>(simd: S, view: &View<'_>, left: i32x8<S>, top: i32x8<S>) ->
 /// The motions beside those of a block.
 #[inline(always)]
 pub fn beside<S: Simd>(simd: S, view: &View<'_>, block: Block, [dx, dy]: [i32; 2]) -> [f32x8<S>; 2] {
-    let (held, x, y) = (view.window(), block.x + dx, block.y + dy);
-    if held.x0 <= x && x + 8 <= held.x1 {
+    let (window, x, y) = (view.window(), block.x + dx, block.y + dy);
+    if window.x0 <= x && x + 8 <= window.x1 {
         return Block { x, y, len: 8 }.read(simd, view);
     }
     fetch2(simd, view, block.columns(simd) + dx, i32x8::splat(simd, y))

@@ -13,7 +13,7 @@ use isophote_engine::math::{spread, transposed};
 /// Each lane takes four 128-bit loads; hardware gathers would take sixteen times as many.
 #[inline(always)]
 pub fn sample_linear4<S: Simd>(simd: S, view: &View<'_>, x: f32x8<S>, y: f32x8<S>) -> [f32x8<S>; 4] {
-    let ([w, h], held, data) = (view.full(), view.window(), view.data());
+    let ([w, h], window, data) = (view.full(), view.window(), view.data());
     let (columns, fx) = floor_and_share(x, w);
     let (rows, fy) = floor_and_share(y, h);
     let inside = columns.simd_ge(0) & columns.simd_lt(w - 1) & rows.simd_ge(0) & rows.simd_lt(h - 1);
@@ -22,7 +22,7 @@ pub fn sample_linear4<S: Simd>(simd: S, view: &View<'_>, x: f32x8<S>, y: f32x8<S
     if inside.all_true() {
         // Away from the edges the right neighbour is the next pixel: a fourth of the places to look up.
         let stride = view.stride() as u32 as usize;
-        let at = ((rows - held.y0) * stride as i32 + (columns - held.x0) * 4).to_array();
+        let at = ((rows - window.y0) * stride as i32 + (columns - window.x0) * 4).to_array();
         for i in 0..4 {
             let (low, high) = (at[i] as u32 as usize, at[i + 4] as u32 as usize);
             let (low, high) = (&data[low..low + stride + 8], &data[high..high + stride + 8]);
@@ -48,10 +48,10 @@ pub fn sample_linear4<S: Simd>(simd: S, view: &View<'_>, x: f32x8<S>, y: f32x8<S
 /// The pixels of a four-channel image at eight places, clamped to the picture, one vector per channel.
 #[inline(always)]
 pub fn fetch4<S: Simd>(simd: S, view: &View<'_>, x: i32x8<S>, y: i32x8<S>) -> [f32x8<S>; 4] {
-    let ([w, h], held) = (view.full(), view.window());
+    let ([w, h], window) = (view.full(), view.window());
     let zero = i32x8::splat(simd, 0);
-    let x = x.within(zero, i32x8::splat(simd, w - 1)) - held.x0;
-    let y = y.within(zero, i32x8::splat(simd, h - 1)) - held.y0;
+    let x = x.within(zero, i32x8::splat(simd, w - 1)) - window.x0;
+    let y = y.within(zero, i32x8::splat(simd, h - 1)) - window.y0;
     let at = (y * view.stride() as i32 + x * 4).to_array();
     let data = view.data();
     let mut pixels = [f32x8::splat(simd, 0.0); 4];

@@ -120,7 +120,7 @@ pub fn pixels<S: Simd>(simd: S, channels: &[&[f32]; 4], at: usize) -> [f32x8<S>;
 #[derive(Clone, Copy, Debug)]
 pub struct Row<'a> {
     /// The rows around it.
-    pub held: &'a LineBuffer,
+    pub buffer: &'a LineBuffer,
     /// Columns of the strip, the second one exclusive.
     pub columns: [i32; 2],
     /// The row.
@@ -139,17 +139,17 @@ pub fn for_rows<S: Simd, const N: usize>(
     mut f: impl FnMut(Row<'_>, &mut [f32]),
 ) {
     let window = band.window;
-    let mut held = LineBuffer::default();
+    let mut buffer = LineBuffer::default();
     for (x0, x1) in strips_of(width, window.x0, window.x1) {
-        held.start(x0, x1, radius, 4);
+        buffer.start(x0, x1, radius, 4);
         for y in window.y0 - radius..window.y0 + radius {
-            held.load_mapped(simd, view, y, map);
+            buffer.load_mapped(simd, view, y, map);
         }
         for y in window.y0..window.y1 {
-            held.load_mapped(simd, view, y + radius, map);
+            buffer.load_mapped(simd, view, y + radius, map);
             let start = N * (x0 - window.x0) as usize;
             let target = &mut band.row_mut(0, y)[start..start + N * (x1 - x0) as usize];
-            f(Row { held: &held, columns: [x0, x1], y }, target);
+            f(Row { buffer: &buffer, columns: [x0, x1], y }, target);
         }
     }
 }

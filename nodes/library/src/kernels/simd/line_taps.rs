@@ -179,13 +179,13 @@ impl LineTaps {
     #[inline(always)]
     pub fn load<S: Simd>(&mut self, simd: S, view: &View<'_>, strip: Rect, radius: i32, weighted: bool) {
         let rows = self.start(strip, radius);
-        let (held, one) = (view.window(), f32x8::splat(simd, 1.0));
+        let (window, one) = (view.window(), f32x8::splat(simd, 1.0));
         let (r, rest) = self.data.split_at_mut(self.len);
         let (g, rest) = rest.split_at_mut(self.len);
         let (b, a) = rest.split_at_mut(self.len);
         let mut opaque = true;
         for row in 0..rows {
-            let y = (self.y0 + row as i32).clamp(held.y0, held.y1 - 1);
+            let y = (self.y0 + row as i32).clamp(window.y0, window.y1 - 1);
             let source = view.padded_row(y, self.x0, self.x0 + self.width as i32, &mut self.scratch);
             let target = row * self.width..(row + 1) * self.width;
             let (r, g) = (&mut r[target.clone()], &mut g[target.clone()]);
@@ -213,11 +213,11 @@ impl LineTaps {
     #[inline(always)]
     pub fn load2<S: Simd>(&mut self, simd: S, view: &View<'_>, strip: Rect, radius: i32) {
         let rows = self.start(strip, radius);
-        let (held, one) = (view.window(), f32x8::splat(simd, 1.0));
+        let (window, one) = (view.window(), f32x8::splat(simd, 1.0));
         let (values, coverage) = self.data.split_at_mut(self.len);
         let mut opaque = true;
         for row in 0..rows {
-            let y = (self.y0 + row as i32).clamp(held.y0, held.y1 - 1);
+            let y = (self.y0 + row as i32).clamp(window.y0, window.y1 - 1);
             let source = view.padded_row(y, self.x0, self.x0 + self.width as i32, &mut self.scratch);
             let target = row * self.width..(row + 1) * self.width;
             let (values, coverage) = (&mut values[target.clone()], &mut coverage[target]);

@@ -55,7 +55,7 @@ pub fn each<S: Simd>(
             for (i, pixels) in target.chunks_mut(4 * BLOCK).enumerate() {
                 let at = BLOCK * i;
                 let block = Block::until(row.columns[1], row.columns[0] + at as i32, row.y);
-                write(f(Neighbours { simd, block, rows: row.held, at: 1 + at }), pixels);
+                write(f(Neighbours { simd, block, rows: row.buffer, at: 1 + at }), pixels);
             }
         },
     );

@@ -106,8 +106,8 @@ fn channels<S: Simd, const N: usize>(simd: S, values: &[f32]) -> [f32x8<S>; N] {
 /// The pixels of a four-channel image that lie (dx, dy) from those of a block, clamped to the picture.
 #[inline(always)]
 pub fn pixels_beside<S: Simd>(simd: S, view: &View<'_>, block: Block, [dx, dy]: [i32; 2]) -> [f32x8<S>; 4] {
-    let (held, x, y) = (view.window(), block.x + dx, block.y + dy);
-    if held.x0 <= x && x + BLOCK as i32 <= held.x1 {
+    let (window, x, y) = (view.window(), block.x + dx, block.y + dy);
+    if window.x0 <= x && x + BLOCK as i32 <= window.x1 {
         return Block { x, y, len: BLOCK }.read(simd, view);
     }
     fetch4(simd, view, offsets(view, block.columns(simd) + dx, i32x8::splat(simd, y)))

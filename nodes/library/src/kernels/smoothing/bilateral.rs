@@ -85,11 +85,11 @@ fn run(pass: &CpuPass<'_>, band: &mut Band<'_>) {
 /// True when all alphas that the band reads are 1; multiplying by them changes nothing then.
 fn is_opaque(pass: &CpuPass<'_>, band: &Band<'_>, reach: i32) -> bool {
     let view = &pass.inputs[0];
-    let held = view.window();
+    let window = view.window();
     let (first, last) =
-        ((band.window.y0 - reach).max(held.y0), (band.window.y1 - 1 + reach).min(held.y1 - 1));
-    let start = view.offset(held.x0, first);
-    let end = view.offset(held.x0, last) + view.stride();
+        ((band.window.y0 - reach).max(window.y0), (band.window.y1 - 1 + reach).min(window.y1 - 1));
+    let start = view.offset(window.x0, first);
+    let end = view.offset(window.x0, last) + view.stride();
     coverage::is_opaque(&view.data()[start..end])
 }
 

@@ -76,8 +76,8 @@ fn diffused<S: Simd, const EXPONENTIAL: bool>(
         [WIDE_STRIP, 1],
         std::convert::identity,
         #[inline(always)]
-        |Row { held, y, .. }, target| {
-            let (above, centre, below) = (held.channels(y - 1), held.channels(y), held.channels(y + 1));
+        |Row { buffer, y, .. }, target| {
+            let (above, centre, below) = (buffer.channels(y - 1), buffer.channels(y), buffer.channels(y + 1));
             for (i, target) in target.chunks_mut(4 * BLOCK).enumerate() {
                 let at = BLOCK * i + 1;
                 let origin = pixels(simd, &centre, at);

@@ -134,11 +134,11 @@ fn rows<S: Simd>(simd: S, pass: &CpuPass<'_>, params: &Params, band: &mut Band<'
         [STRIP, radius],
         std::convert::identity,
         #[inline(always)]
-        |Row { held, y, .. }, target| {
+        |Row { buffer, y, .. }, target| {
             for (block, pixels) in target.chunks_mut(4 * BLOCK).enumerate() {
                 let centre = radius as usize + BLOCK * block;
-                let [plain, strong] = sums(simd, held, params, &spans, y, centre);
-                let own = line_buffer::pixels(simd, &held.channels(y), centre);
+                let [plain, strong] = sums(simd, buffer, params, &spans, y, centre);
+                let own = line_buffer::pixels(simd, &buffer.channels(y), centre);
                 write(turned(simd, params, own, plain, strong, inverse), pixels);
             }
         },
@@ -149,7 +149,7 @@ fn rows<S: Simd>(simd: S, pass: &CpuPass<'_>, params: &Params, band: &mut Band<'
 #[inline(always)]
 fn sums<S: Simd>(
     simd: S,
-    held: &LineBuffer,
+    buffer: &LineBuffer,
     params: &Params,
     spans: &[Span],
     y: i32,
@@ -160,10 +160,10 @@ fn sums<S: Simd>(
     for &Span { dy, half, weight } in spans {
         let len = 2 * half as usize + 8;
         let first = centre - half as usize;
-        let e = &held.row(y + dy, 0)[first..first + len];
-        let f = &held.row(y + dy, 1)[first..first + len];
-        let g = &held.row(y + dy, 2)[first..first + len];
-        let m = &held.row(y + dy, 3)[first..first + len];
+        let e = &buffer.row(y + dy, 0)[first..first + len];
+        let f = &buffer.row(y + dy, 1)[first..first + len];
+        let g = &buffer.row(y + dy, 2)[first..first + len];
+        let m = &buffer.row(y + dy, 3)[first..first + len];
         for i in 0..=2 * half as usize {
             let w = f32x8::splat(simd, weight * params.weight((i as i32 - half).abs()));
             let by_magnitude = eight(simd, m, i) * w;

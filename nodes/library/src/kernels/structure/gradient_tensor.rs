@@ -188,13 +188,13 @@ fn tensors<S: Simd>(simd: S, pass: &CpuPass<'_>, params: &Params, radius: i32, b
         [WIDE_STRIP, radius],
         premultiply,
         #[inline(always)]
-        |Row { held, y, .. }, target| {
-            let len = held.stride();
+        |Row { buffer, y, .. }, target| {
+            let len = buffer.stride();
             columns.resize(8 * len, 0.0);
             for (channel, sums) in columns.chunks_exact_mut(2 * len).enumerate() {
-                sum_columns(simd, held, &weights, r, y, channel, sums);
+                sum_columns(simd, buffer, &weights, r, y, channel, sums);
             }
-            let centres = held.channels(y);
+            let centres = buffer.channels(y);
             let sums: [[&[f32]; 2]; 4] = std::array::from_fn(|c| {
                 let (smoothed, derived) = columns[2 * c * len..][..2 * len].split_at(len);
                 [smoothed, derived]

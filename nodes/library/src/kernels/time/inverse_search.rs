@@ -115,7 +115,7 @@ impl<S: Simd> Patch<S> {
     #[inline(always)]
     fn new(simd: S, view: &View<'_>, corner: [i32; 2]) -> Self {
         let mut copy = [0.0; COPY];
-        let (pixels, stride) = held(view, [corner[0] - 1, corner[1] - 1], 10, &mut copy);
+        let (pixels, stride) = patch(view, [corner[0] - 1, corner[1] - 1], 10, &mut copy);
         let zero = f32x8::splat(simd, 0.0);
         let (mut rows, mut gradients) = ([zero; SIDE], [[zero; 2]; SIDE]);
         let (mut sums, mut squares) = ([zero; 2], [zero; 3]);
@@ -145,7 +145,7 @@ impl<S: Simd> Patch<S> {
         let fx = f32x8::splat(simd, motion[0] - whole[0]);
         let fy = f32x8::splat(simd, motion[1] - whole[1]);
         let mut copy = [0.0; COPY];
-        let (pixels, stride) = held(view, corner, 9, &mut copy);
+        let (pixels, stride) = patch(view, corner, 9, &mut copy);
         let zero = f32x8::splat(simd, 0.0);
         let (mut difference, mut square, mut slope) = (zero, zero, [zero; 2]);
         let mut above = zero;
@@ -252,7 +252,12 @@ impl<S: Simd> Search<'_, S> {
 /// `side` rows of as many pixels from `corner` on, clamped to the picture: where they begin in the image, or in a copy,
 /// and what lies between rows.
 #[inline(always)]
-fn held<'a>(view: &View<'a>, corner: [i32; 2], side: usize, copy: &'a mut [f32; COPY]) -> (&'a [f32], usize) {
+fn patch<'a>(
+    view: &View<'a>,
+    corner: [i32; 2],
+    side: usize,
+    copy: &'a mut [f32; COPY],
+) -> (&'a [f32], usize) {
     let ([x, y], window, far) = (corner, view.window(), side as i32);
     if x >= window.x0 && y >= window.y0 && x + far <= window.x1 && y + far <= window.y1 {
         return (&view.data()[view.offset(x, y)..], view.stride());

@@ -36,7 +36,7 @@ pub struct Frame {
     /// The tile, absolute.
     pub tile: Rect,
     /// Columns and rows that are held, absolute.
-    pub held: Rect,
+    pub window: Rect,
 }
 
 impl Frame {
@@ -53,21 +53,22 @@ impl Frame {
         (window.y0..window.y1).step_by(height as usize).flat_map(move |y0| {
             (window.x0..window.x1).step_by(width as usize).map(move |x0| {
                 let tile = Rect { x0, y0, x1: (x0 + width).min(window.x1), y1: (y0 + height).min(window.y1) };
-                let held = Rect { x0: x0 - reach, y0: y0 - reach, x1: tile.x1 + reach, y1: tile.y1 + reach };
-                debug_assert!(held.area() <= MOST as u64);
-                Self { tile, held }
+                let window =
+                    Rect { x0: x0 - reach, y0: y0 - reach, x1: tile.x1 + reach, y1: tile.y1 + reach };
+                debug_assert!(window.area() <= MOST as u64);
+                Self { tile, window }
             })
         })
     }
 
     /// True when some of what is held lies outside a picture of `full` pixels.
     pub fn meets_edges(&self, full: [i32; 2]) -> bool {
-        !Rect { x0: 0, y0: 0, x1: full[0], y1: full[1] }.contains(&self.held)
+        !Rect { x0: 0, y0: 0, x1: full[0], y1: full[1] }.contains(&self.window)
     }
 
     #[inline(always)]
     fn stride(&self) -> i32 {
-        self.held.x1 - self.held.x0
+        self.window.x1 - self.window.x0
     }
 }
 
@@ -90,7 +91,7 @@ impl<S: Simd> Place<S> {
         let (x, y) = (x - 0.5, y - 0.5);
         let (left, top) = (x.floor(), y.floor());
         // Whole numbers below 2^24, exact in floating point: sides are at most 2^16 and strides 2^8 - 1.
-        let first = frame.held.y0 * frame.stride() + frame.held.x0;
+        let first = frame.window.y0 * frame.stride() + frame.window.x0;
         let at = top.mul_add(frame.stride() as f32, left - first as f32);
         Self { at: at.to_int(), right: x - left, below: y - top }
     }
@@ -118,7 +119,7 @@ impl<const VALUES: usize> TileCopy<VALUES> {
     /// Copies what `frame` holds of `view`.
     pub fn load(&mut self, view: &View<'_>, frame: &Frame) {
         self.stride = frame.stride() as u8;
-        let Rect { x0, y0, x1, y1 } = frame.held;
+        let Rect { x0, y0, x1, y1 } = frame.window;
         let len = Self::CHANNELS * frame.stride() as usize;
         for (y, target) in (y0..y1).zip(self.data.chunks_exact_mut(len)) {
             target.copy_from_slice(view.padded_row(y, x0, x1, &mut self.scratch));
@@ -131,10 +132,10 @@ impl<const VALUES: usize> TileCopy<VALUES> {
         if Self::CHANNELS != 4 {
             return;
         }
-        let held = &mut self.data[..4 * frame.held.area() as usize];
+        let pixels = &mut self.data[..4 * frame.window.area() as usize];
         // The product with 1 is exact: whether it is left out never shows.
-        if !is_opaque(held) {
-            for [r, g, b, alpha] in held.as_chunks_mut::<4>().0 {
+        if !is_opaque(pixels) {
+            for [r, g, b, alpha] in pixels.as_chunks_mut::<4>().0 {
                 (*r, *g, *b) = (*r * *alpha, *g * *alpha, *b * *alpha);
             }
         }
@@ -223,7 +224,7 @@ mod tests {
             assert!(Frame::suits(reach));
             let frames: Vec<_> = Frame::tiles(all, reach).collect();
             assert_eq!(frames.iter().map(|f| f.tile.area()).sum::<u64>(), all.area());
-            assert!(frames.iter().all(|f| f.held.width() <= 255 && f.held.area() <= 1 << 16));
+            assert!(frames.iter().all(|f| f.window.width() <= 255 && f.window.area() <= 1 << 16));
         }
         assert!(!Frame::suits(124));
     }

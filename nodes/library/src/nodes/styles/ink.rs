@@ -2,7 +2,7 @@
 
 mod preset;
 
-use self::preset::{GRAIN, Look, Preset, Style, TONE};
+use self::preset::{Controls, GRAIN, Preset, Style, TONE};
 use crate::declare::ports;
 use crate::declare::spec::{HOLD, NodeSpec, Param, RENEWAL, STEADINESS, Scope, WINDOW};
 use crate::kernels::colour::composite_lines::{self, Params as Composite};
@@ -184,7 +184,7 @@ fn sheet(scope: &Scope<'_>, drawing: &Preset) -> Sheet {
 fn build(scope: &mut Scope<'_>) -> ImageId {
     let scale = scope.scale();
     let own = scope.option::<Style>("style").preset();
-    let drawing = own.trimmed(scope).with_look(Look {
+    let drawing = own.trimmed(scope).with_controls(Controls {
         width: scope.float("line_width") / scale,
         amount: scope.float("line_amount"),
         suppress: scope.float("suppress_small"),

@@ -205,8 +205,8 @@ unsafe fn functions(host: &IsophoteVulkanHost) -> Outcome<(ash::Instance, ash::D
         let load = |name: &CStr| {
             let is_extension =
                 host.api_version < vk::API_VERSION_1_2 && name == c"vkGetSemaphoreCounterValue";
-            let asked = if is_extension { c"vkGetSemaphoreCounterValueKHR" } else { name };
-            found(get(device, asked.as_ptr()), name, &mut missing)
+            let symbol = if is_extension { c"vkGetSemaphoreCounterValueKHR" } else { name };
+            found(get(device, symbol.as_ptr()), name, &mut missing)
         };
         ash::Device::load_with(load, device)
     };

@@ -142,12 +142,12 @@ impl LumaTaps {
         start: usize,
         mut value: impl FnMut([f32x8<S>; 4]) -> f32x8<S>,
     ) {
-        let (held, width) = (view.window(), self.width);
+        let (window, width) = (view.window(), self.width);
         let (rows, pairs) = self.data[start..start + self.coverage].split_at_mut(width * (self.rows + 1));
         // Plain loops: adapters of iterators stay calls in code for wide vectors.
         for i in 0..=self.rows {
             let row = &mut rows[i * width..(i + 1) * width];
-            let y = (self.y0 + i as i32).clamp(held.y0, held.y1 - 1);
+            let y = (self.y0 + i as i32).clamp(window.y0, window.y1 - 1);
             let source = view.padded_row(y, self.x0, self.x0 + width as i32, &mut self.scratch);
             let source = &source[..4 * width];
             for x in (0..width).step_by(8) {

@@ -195,7 +195,7 @@ const PASTEL: Preset = Preset {
 
 /// The controls of artists, which scale or shift a preset; neutral at their defaults.
 #[derive(Clone, Copy, Debug)]
-pub struct Look {
+pub struct Controls {
     /// Pixels of the full-size picture.
     pub width: f32,
     /// 0..=1.
@@ -210,18 +210,18 @@ pub struct Look {
 
 impl Preset {
     /// The preset after the controls of artists; every mapping is monotone.
-    pub fn with_look(self, look: Look) -> Self {
+    pub fn with_controls(self, controls: Controls) -> Self {
         const NEUTRAL: f32 = lines::LINE_AMOUNT.default_float();
-        let share = look.amount / NEUTRAL;
-        let amount = if look.amount <= NEUTRAL { share } else { 4f32.powf(share - 1.0) };
-        let grain = look.grain / GRAIN.default_float();
+        let share = controls.amount / NEUTRAL;
+        let amount = if controls.amount <= NEUTRAL { share } else { 4f32.powf(share - 1.0) };
+        let grain = controls.grain / GRAIN.default_float();
         Self {
-            rho: self.rho * length_factor(look.width),
-            sigma_e: self.sigma_e * width_factor(look.width),
-            sigma_m: self.sigma_m * length_factor(look.width) * (1.0 + 0.8 * look.suppress),
-            p: self.p * amount * (1.0 - 0.5 * look.suppress),
-            epsilon: self.epsilon + 60.0 * (look.tone - TONE.default_float()),
-            tones: toned(self.tones, look.tone),
+            rho: self.rho * length_factor(controls.width),
+            sigma_e: self.sigma_e * width_factor(controls.width),
+            sigma_m: self.sigma_m * length_factor(controls.width) * (1.0 + 0.8 * controls.suppress),
+            p: self.p * amount * (1.0 - 0.5 * controls.suppress),
+            epsilon: self.epsilon + 60.0 * (controls.tone - TONE.default_float()),
+            tones: toned(self.tones, controls.tone),
             grain: self.grain * grain,
             dryness: (self.dryness * grain * grain).min(1.0),
             texture: self.texture * grain,
@@ -265,7 +265,7 @@ mod tests {
     use super::*;
     use crate::declare::choice::Numbered;
 
-    const NEUTRAL: Look = Look {
+    const NEUTRAL: Controls = Controls {
         width: lines::LINE_WIDTH.default_float(),
         amount: lines::LINE_AMOUNT.default_float(),
         suppress: lines::SUPPRESS_SMALL.default_float(),
@@ -276,7 +276,7 @@ mod tests {
     #[test]
     fn neutral_controls_change_nothing() {
         for preset in Style::ALL.iter().map(|style| style.preset()) {
-            assert_eq!(preset.with_look(NEUTRAL), preset);
+            assert_eq!(preset.with_controls(NEUTRAL), preset);
         }
     }
 
@@ -285,11 +285,16 @@ mod tests {
         for preset in Style::ALL.iter().map(|style| style.preset()) {
             for i in 0..100 {
                 let (a, b) = (i as f32 / 100.0, (i + 1) as f32 / 100.0);
-                let at = |look: Look| preset.with_look(look);
-                assert!(at(Look { amount: a, ..NEUTRAL }).p < at(Look { amount: b, ..NEUTRAL }).p);
-                assert!(at(Look { suppress: a, ..NEUTRAL }).p > at(Look { suppress: b, ..NEUTRAL }).p);
-                assert!(at(Look { tone: a, ..NEUTRAL }).epsilon < at(Look { tone: b, ..NEUTRAL }).epsilon);
-                let (low, high) = (at(Look { grain: a, ..NEUTRAL }), at(Look { grain: b, ..NEUTRAL }));
+                let at = |controls: Controls| preset.with_controls(controls);
+                assert!(at(Controls { amount: a, ..NEUTRAL }).p < at(Controls { amount: b, ..NEUTRAL }).p);
+                assert!(
+                    at(Controls { suppress: a, ..NEUTRAL }).p > at(Controls { suppress: b, ..NEUTRAL }).p
+                );
+                assert!(
+                    at(Controls { tone: a, ..NEUTRAL }).epsilon < at(Controls { tone: b, ..NEUTRAL }).epsilon
+                );
+                let (low, high) =
+                    (at(Controls { grain: a, ..NEUTRAL }), at(Controls { grain: b, ..NEUTRAL }));
                 assert!(low.grain <= high.grain);
             }
         }

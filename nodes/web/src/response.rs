@@ -4,22 +4,22 @@ use isophote::engine::Class;
 use isophote::engine::program::{Dispatch, Program, Role, Shader, Texture};
 use serde_json::{Value, json};
 
-/// An answer.
+/// A response.
 #[derive(Debug, Default)]
-pub struct Answer {
+pub struct Response {
     /// Text that is told.
     pub json: Value,
     /// Uniform blocks; `json` says where each begins and how long it is.
     pub bytes: Vec<u8>,
 }
 
-impl From<Value> for Answer {
+impl From<Value> for Response {
     fn from(json: Value) -> Self {
         Self { json, bytes: Vec::new() }
     }
 }
 
-impl Answer {
+impl Response {
     /// The length of the JSON in four bytes, the lowest first, the JSON, and the bytes.
     pub fn into_bytes(self) -> Vec<u8> {
         let json = self.json.to_string();

@@ -1,4 +1,4 @@
-//! Sources of a document's frames: numbered files, or a video.
+//! Readers of a document's frames: numbered files, or a video.
 
 use std::ops::RangeInclusive;
 use std::path::{Path, PathBuf};
@@ -9,7 +9,7 @@ use isophote_files::frames::Pattern;
 use isophote_files::limits;
 use isophote_finishing::video::Clip;
 use isophote_pictures::exr::{Picture, Selection};
-use isophote_pictures::read::{self, ImageState, Opened, Source as Read};
+use isophote_pictures::read::{self, ImageState, Opened, Source};
 use isophote_pictures::space::Space;
 
 /// Frames before the one that is wanted that are decoded with it where a video plays backward.
@@ -24,9 +24,9 @@ pub struct Reading {
     pub space: Option<Space>,
 }
 
-/// Frames by number.
+/// Reader of frames by their numbers.
 #[derive(Debug)]
-pub enum Source {
+pub enum FrameReader {
     /// A file for each.
     Files(Pattern, Reading),
     /// All in one file.
@@ -43,7 +43,7 @@ pub trait Sink {
     fn is_elsewhere(&self, frames: RangeInclusive<i64>) -> bool;
 }
 
-impl Source {
+impl FrameReader {
     /// Reads a frame, and those of a video that lie on the way.
     pub fn read(&mut self, number: i64, direction: i64, sink: &impl Sink) {
         match self {
@@ -99,7 +99,7 @@ fn decode(
     while let Some((at, pixels)) = clip.take()? {
         if sink.wants(at) {
             let state = ImageState::DisplayReferred;
-            let source = Read { pictures: vec![Picture::alone(pixels)], state, profile: None, exr: None };
+            let source = Source { pictures: vec![Picture::alone(pixels)], state, profile: None, exr: None };
             sink.put(at, Frame::of(&name, source, Some(at), reading.space));
         }
         if at >= number || sink.is_elsewhere(at + 1..=number) {
