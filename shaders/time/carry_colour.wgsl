@@ -6,15 +6,7 @@
 #output target_image rgba32float
 
 fn main(@builtin(global_invocation_id) id: vec3u) {
-    if outside(id) {
-        return;
-    }
-    let own = fetch(average, 0u, pixel(id));
-    let share = fetch(shares, 2u, pixel(id)).x;
-    if share <= 0.0 {
-        textureStore(target_image, vec2i(id.xy), own);
-        return;
-    }
+#insert gpu/carry_begin
     // Shares are those of known motions.
     let place = centre(id) + fetch(motion, 1u, pixel(id)).xy;
     let sum = sample_sharp_covered(theirs, 3u, place);

@@ -15,15 +15,7 @@ fn derivative(before: vec2f, at: vec2f, after: vec2f) -> vec2f {
 }
 
 fn main(@builtin(global_invocation_id) id: vec3u) {
-    if outside(id) {
-        return;
-    }
-    let own = fetch(average, 0u, pixel(id));
-    let share = fetch(shares, 2u, pixel(id)).x;
-    if share <= 0.0 {
-        textureStore(target_image, vec2i(id.xy), own);
-        return;
-    }
+#insert gpu/carry_begin
     let p = pixel(id);
     let at = fetch(motion, 1u, p).xy;
     let dx = derivative(fetch(motion, 1u, p - vec2i(1, 0)).xy, at, fetch(motion, 1u, p + vec2i(1, 0)).xy);

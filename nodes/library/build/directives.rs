@@ -8,6 +8,8 @@ const FORMATS: [&str; 3] = ["r32float", "rg32float", "rgba32float"];
 pub enum Directive<'t> {
     /// `#import folder/name`: the text of the file `folder/name.wgsl`.
     Import(&'t str),
+    /// `#insert folder/name`: statements of a function that several kernels have, in the place of the line.
+    Insert(&'t str),
     /// `#params`: the variable `params`, the uniform block of the type `Params`.
     Params,
     /// `#input name, name`: textures that are read.
@@ -31,15 +33,17 @@ impl<'t> Directive<'t> {
         let words: Vec<&str> = text.split_whitespace().collect();
         let form = match words[..] {
             ["import", name] if name.contains('/') => return Ok(Some(Self::Import(name))),
+            ["insert", name] if name.contains('/') => return Ok(Some(Self::Insert(name))),
             ["params"] => return Ok(Some(Self::Params)),
             ["output", name, format] if is_name(name) && FORMATS.contains(&format) => {
                 return Ok(Some(Self::Output(name, format)));
             }
             ["import", ..] => "#import folder/name".to_owned(),
+            ["insert", ..] => "#insert folder/name".to_owned(),
             ["params", ..] => "#params".to_owned(),
             ["input", ..] => "#input name, name, ...".to_owned(),
             ["output", ..] => format!("#output name format, with a format of {}", FORMATS.join(", ")),
-            _ => return Err(format!("`{line}` is none of #import, #params, #input, #output")),
+            _ => return Err(format!("`{line}` is none of #import, #insert, #params, #input, #output")),
         };
         Err(format!("`{line}` is not of the form {form}"))
     }
@@ -66,14 +70,14 @@ pub struct Bindings {
 }
 
 impl Bindings {
-    /// The declarations that a directive stands for; an import declares nothing.
+    /// The declarations that a directive stands for; other text declares nothing.
     ///
     /// # Errors
     /// What it should stand before.
     pub fn declare(&mut self, directive: Directive<'_>) -> Result<String, String> {
         let next = 2 + self.inputs + self.outputs;
         match directive {
-            Directive::Import(_) => Ok(String::new()),
+            Directive::Import(_) | Directive::Insert(_) => Ok(String::new()),
             Directive::Params if self.has_params => Err("#params stands in a shader once".into()),
             Directive::Params if next > 2 => Err("#params stands before #input and #output".into()),
             Directive::Params => {

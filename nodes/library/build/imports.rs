@@ -40,8 +40,8 @@ pub struct Text {
 
 impl Text {
     /// Reads the shader at `path`, with what its directives stand for: `#import folder/name` for the file
-    /// `folder/name.wgsl` of the folder `shaders`, the others for what is bound. The function `main` becomes the entry
-    /// point where it has no attribute of its own.
+    /// `folder/name.wgsl` of the folder `shaders`, `#insert` for the statements of one, the others for what is bound. The
+    /// function `main` becomes the entry point where it has no attribute of its own.
     ///
     /// # Errors
     /// Which file cannot be read, and on which line a directive is malformed or out of order.
@@ -52,6 +52,9 @@ impl Text {
             let at_line = |fault| format!("line {number}: {fault}");
             match Directive::read(line).map_err(at_line)? {
                 Some(Directive::Import(name)) => text.import(shaders, name)?,
+                Some(Directive::Insert(name)) => {
+                    text.own.push_str(&inserted(shaders, name).map_err(at_line)?)
+                }
                 Some(directive) => text.own.push_str(&bindings.declare(directive).map_err(at_line)?),
                 None => {
                     let has_attribute = || text.own.lines().last().is_some_and(|line| line.starts_with('@'));
@@ -96,6 +99,17 @@ pub fn imported(shaders: &Path, name: &str) -> Result<String, String> {
         }
     }
     Ok(text)
+}
+
+/// The statements that `#insert` stands for: the text of a file after its head, which an empty line ends.
+///
+/// # Errors
+/// When it cannot be read, or has no head.
+fn inserted(shaders: &Path, name: &str) -> Result<String, String> {
+    let text = read(&shaders.join(format!("{name}.wgsl")))?;
+    let (_, statements) =
+        text.split_once("\n\n").ok_or_else(|| format!("shaders/{name}.wgsl has no head"))?;
+    Ok(statements.to_owned())
 }
 
 /// Import in the place of another where windows hold 16-bit floats: the file of its name with `_half` behind it; none where

@@ -32,6 +32,13 @@ fn bindings_are_numbered_by_their_order() {
 }
 
 #[test]
+fn statements_are_inserted_by_the_name_of_their_file() {
+    let read = Directive::read("#insert gpu/carry_begin");
+    assert_eq!(read, Ok(Some(Directive::Insert("gpu/carry_begin"))));
+    assert_eq!(declared("#insert gpu/carry_begin").unwrap(), "");
+}
+
+#[test]
 fn textures_count_from_two_without_parameters() {
     let expected = "@group(0) @binding(2) var source: texture_2d<f32>;\n";
     assert_eq!(declared("#input source").unwrap(), expected);
@@ -42,6 +49,7 @@ fn malformed_directives_are_refused() {
     for (shader, expected) in [
         ("#import", "`#import` is not of the form #import folder/name"),
         ("#import grid", "`#import grid` is not of the form #import folder/name"),
+        ("#insert grid", "`#insert grid` is not of the form #insert folder/name"),
         ("#params Params", "`#params Params` is not of the form #params"),
         ("#input", "`#input` is not of the form #input name, name, ..."),
         ("#input source,", "`#input source,` is not of the form #input name, name, ..."),
@@ -55,7 +63,7 @@ fn malformed_directives_are_refused() {
             "#output target_image rgba8unorm",
             "`#output target_image rgba8unorm` is not of the form #output name format, with a format of r32float, rg32float, rgba32float",
         ),
-        ("#inputs source", "`#inputs source` is none of #import, #params, #input, #output"),
+        ("#inputs source", "`#inputs source` is none of #import, #insert, #params, #input, #output"),
     ] {
         assert_eq!(declared(shader).unwrap_err(), expected);
     }
