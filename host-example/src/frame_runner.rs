@@ -9,7 +9,7 @@ use std::sync::Arc;
 
 use crate::history::Past;
 use crate::kernels::Kernels;
-use crate::plan_runner::{Counts, PlanRunner};
+use crate::plan_runner::PlanRunner;
 use isophote_files::error::{AtPlace, Result};
 use isophote_loader::abi::{IsophoteHistory, IsophoteRequest};
 use isophote_loader::plan::{Change, Role};
@@ -230,10 +230,5 @@ impl FrameRunner {
     /// The passes with their textures.
     pub fn plan(&self) -> &Plan {
         &self.plan
-    }
-
-    /// Number of things made on the device so far.
-    pub fn counts(&self) -> Counts {
-        self.runner.counts()
     }
 }

@@ -104,7 +104,7 @@ impl Rings {
         Some((0..self.turns).map(at).collect())
     }
 
-    /// Makes textures for a name, unless it has them in this format and size; returns how many were made.
+    /// Makes textures for a name, unless it has them in this format and size.
     ///
     /// # Errors
     /// The errors of `make`.
@@ -115,14 +115,14 @@ impl Rings {
         size: [u32; 2],
         host: Option<wgpu::Texture>,
         make: impl Fn() -> Result<wgpu::TextureView>,
-    ) -> Result<u64> {
+    ) -> Result<()> {
         let is_like = |ring: &Ring| {
             let texture = ring.views[0].texture();
             ring.name == name && texture.format() == format && [texture.width(), texture.height()] == size
         };
         if let Some(ring) = self.rings.iter_mut().find(|ring| is_like(ring)) {
             ring.host = host;
-            return Ok(0);
+            return Ok(());
         }
         self.rings.retain(|ring| ring.name != name);
         let count = self.past.textures(name, self.turns);
@@ -132,7 +132,7 @@ impl Rings {
             return Err(Error::failure(problem, "this is a mistake in the program; please report it"));
         }
         self.rings.push(Ring { name: name.to_owned(), views, host });
-        Ok(count as u64)
+        Ok(())
     }
 
     /// Forgets names that are not among these.

@@ -2,6 +2,7 @@
 
 use std::collections::HashMap;
 use std::num::NonZeroU64;
+use std::sync::atomic::{AtomicU64, Ordering};
 use std::sync::{Arc, Mutex, PoisonError};
 
 use isophote_files::error::{AtPlace, Error, Result};
@@ -10,6 +11,15 @@ use isophote_loader::plan::{Format, Pass, Texture};
 
 /// WGSL rounds the size of a uniform block up to its alignment, which is at most this.
 const BLOCK_ALIGNMENT: u64 = 16;
+
+/// Numbers of what was made and uploaded on a device so far. A warm frame makes nothing.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Counts {
+    /// Textures, buffers, bind groups and pipelines made.
+    pub objects: u64,
+    /// Uploads of uniform bytes.
+    pub uploads: u64,
+}
 
 /// The kernels that were compiled for a device; all runners of the device share them.
 #[derive(Debug)]
@@ -21,6 +31,8 @@ pub struct Kernels {
     sampler: wgpu::Sampler,
     /// By name, and by which of the textures that are read have half precision: samplers read no others.
     compiled: Mutex<HashMap<(String, Vec<bool>), Kernel>>,
+    objects: AtomicU64,
+    uploads: AtomicU64,
 }
 
 /// A compiled kernel, and what it binds.
@@ -45,7 +57,8 @@ impl Kernels {
             min_filter: wgpu::FilterMode::Linear,
             ..Default::default()
         });
-        Arc::new(Self { device, queue, shared_windows, sampler, compiled: Mutex::default() })
+        let (compiled, objects, uploads) = Default::default();
+        Arc::new(Self { device, queue, shared_windows, sampler, compiled, objects, uploads })
     }
 
     /// The device that they are for.
@@ -58,9 +71,25 @@ impl Kernels {
         &self.sampler
     }
 
-    /// The queue of the device.
-    pub fn queue(&self) -> &wgpu::Queue {
-        &self.queue
+    /// Makes an object on the device.
+    ///
+    /// # Errors
+    /// As `make`, or [`Error::Failure`] when the device refuses or has no memory.
+    pub fn make<T>(&self, make: impl FnOnce() -> Result<T>) -> Result<T> {
+        self.objects.fetch_add(1, Ordering::Relaxed);
+        checked(&self.device, make)
+    }
+
+    /// Uploads the bytes of a buffer.
+    pub fn upload(&self, buffer: &wgpu::Buffer, bytes: &[u8]) {
+        self.uploads.fetch_add(1, Ordering::Relaxed);
+        self.queue.write_buffer(buffer, 0, bytes);
+    }
+
+    /// Objects made and uploads so far.
+    pub fn counts(&self) -> Counts {
+        let [objects, uploads] = [&self.objects, &self.uploads].map(|count| count.load(Ordering::Relaxed));
+        Counts { objects, uploads }
     }
 
     /// Compiles all that a plan needs.
@@ -72,23 +101,17 @@ impl Kernels {
         Ok(())
     }
 
-    /// The kernel of pass `index`, and whether it had to be compiled.
-    pub fn get(
-        &self,
-        plan: &Plan,
-        index: u32,
-        pass: &Pass<'_>,
-        textures: &[Texture<'_>],
-    ) -> Result<(Kernel, bool)> {
+    /// The kernel of pass `index`.
+    pub fn get(&self, plan: &Plan, index: u32, pass: &Pass<'_>, textures: &[Texture<'_>]) -> Result<Kernel> {
         let mut compiled = self.compiled.lock().unwrap_or_else(PoisonError::into_inner);
         let half = |at: &u32| textures.get(*at as usize).is_some_and(|t| t.format == Format::Rgba16Float);
         let key = (pass.kernel.to_owned(), pass.inputs.iter().map(half).collect());
         if let Some(kernel) = compiled.get(&key) {
-            return Ok((kernel.clone(), false));
+            return Ok(kernel.clone());
         }
         let shader = plan.wgsl(index).map_err(refused)?;
         let label = Some(pass.kernel);
-        let kernel = checked(&self.device, || {
+        let kernel = self.make(|| {
             let module = self.device.create_shader_module(wgpu::ShaderModuleDescriptor {
                 label,
                 source: wgpu::ShaderSource::Wgsl(shader.source.into()),
@@ -120,7 +143,7 @@ impl Kernels {
             Ok(Kernel { pipeline, layout, sampler: shader.sampler })
         })?;
         compiled.insert(key, kernel.clone());
-        Ok((kernel, true))
+        Ok(kernel)
     }
 }
 

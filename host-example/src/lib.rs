@@ -7,12 +7,10 @@
 //! | [`passes`], [`textures`], [`uniforms`] | what is bound for each pass |
 //! | [`history`] | textures of past frames |
 //! | [`frame_runner`] | frames in order, of which each may depend on those before it |
-//! | [`desktop`] | error of desktops that give no window |
 //! | [`guides`] | the renderer's targets as a plan names them |
 
 #![forbid(unsafe_code)]
 
-pub mod desktop;
 pub mod frame_runner;
 pub mod guides;
 pub mod history;

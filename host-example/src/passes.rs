@@ -1,6 +1,6 @@
 //! One pass of a plan: the kernel, and what it binds.
 
-use crate::kernels::{Kernel, Kernels, checked, mistaken};
+use crate::kernels::{Kernel, Kernels, mistaken};
 use crate::textures::Slot;
 use crate::uniforms::{Block, Layout, Uniforms};
 use isophote_files::error::{Error, Result};
@@ -34,18 +34,17 @@ impl ReadyPass {
         }
     }
 
-    /// Makes the bind groups and returns how many: one, or as many as textures of the pass take turns.
+    /// Makes the bind groups: one, or as many as textures of the pass take turns.
     ///
     /// # Errors
     /// [`Error::Failure`] when a texture is missing or the device refuses.
-    pub fn bind(&mut self, kernels: &Kernels, uniforms: &Uniforms, textures: &[Slot]) -> Result<u64> {
+    pub fn bind(&mut self, kernels: &Kernels, uniforms: &Uniforms, textures: &[Slot]) -> Result<()> {
         let slots = self.textures.iter().filter_map(|index| textures.get(*index as usize));
         let turns = slots.map(|slot| slot.views.len()).max().unwrap_or(1);
         for turn in 0..turns {
-            let group = checked(kernels.device(), || self.group(kernels, uniforms, textures, turn))?;
-            self.groups.push(group);
+            self.groups.push(kernels.make(|| self.group(kernels, uniforms, textures, turn))?);
         }
-        Ok(turns as u64)
+        Ok(())
     }
 
     fn group(

@@ -18,7 +18,6 @@
 //! so a sampler, in plans that are fast rather than exact. wgpu puts the
 //! barriers between passes; `tests/c/vulkan.c` does the same work by hand.
 
-use std::ops::AddAssign;
 use std::sync::Arc;
 
 use crate::history::{self, Past, Rings};
@@ -29,22 +28,6 @@ use crate::uniforms::{Layout, Uniforms};
 use isophote_files::error::Result;
 use isophote_loader::Plan;
 use isophote_loader::plan::Role;
-
-/// Numbers of what a runner has done so far. A warm frame changes neither.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
-pub struct Counts {
-    /// Textures, buffers, bind groups and pipelines made.
-    pub objects: u64,
-    /// Uploads of uniform bytes.
-    pub uploads: u64,
-}
-
-impl AddAssign for Counts {
-    fn add_assign(&mut self, more: Self) {
-        self.objects += more.objects;
-        self.uploads += more.uploads;
-    }
-}
 
 /// A plan, ready to be recorded again and again.
 ///
@@ -57,7 +40,6 @@ pub struct PlanRunner {
     past: Past,
     rings: Rings,
     uniforms: Uniforms,
-    counts: Counts,
 }
 
 impl PlanRunner {
@@ -68,7 +50,7 @@ impl PlanRunner {
     /// [`Error::Failure`](isophote_files::error::Error::Failure) when the device refuses or has no memory.
     pub fn new(kernels: &Arc<Kernels>, plan: &Plan, past: Past) -> Result<Self> {
         let rings = Rings::new(&past);
-        Self::build(kernels, plan, past, (Vec::new(), rings), Counts::default())
+        Self::build(kernels, plan, past, (Vec::new(), rings))
     }
 
     /// Takes over a plan whose structure has changed; textures of unchanged size are used again. The inputs must
@@ -79,7 +61,7 @@ impl PlanRunner {
     pub fn rebuild(&mut self, plan: &Plan, past: Past) -> Result<()> {
         let rings = if past == self.past { std::mem::take(&mut self.rings) } else { Rings::new(&past) };
         let old = (std::mem::take(&mut self.textures), rings);
-        *self = Self::build(&self.kernels, plan, past, old, self.counts)?;
+        *self = Self::build(&self.kernels, plan, past, old)?;
         Ok(())
     }
 
@@ -88,26 +70,20 @@ impl PlanRunner {
         plan: &Plan,
         past: Past,
         (old, mut rings): (Vec<Slot>, Rings),
-        mut counts: Counts,
     ) -> Result<Self> {
-        let device = kernels.device();
         let wanted = plan.textures().map_err(refused)?;
-        let (textures, made) = textures::slots(device, &wanted, &past, old, &mut rings)?;
-        counts.objects += made;
-        let mut layout = Layout::new(device);
+        let textures = textures::slots(kernels, &wanted, &past, old, &mut rings)?;
+        let mut layout = Layout::new(kernels.device());
         let mut passes = Vec::new();
         for (index, pass) in (0..).zip(plan.passes().map_err(refused)?) {
             if pass.inputs.iter().chain(pass.outputs).any(|at| *at as usize >= wanted.len()) {
                 return Err(mistaken(format!("kernel '{}' names an unknown texture", pass.kernel)));
             }
-            let (kernel, is_new) = kernels.get(plan, index, &pass, &wanted)?;
-            counts.objects += u64::from(is_new);
-            passes.push(ReadyPass::new(kernel, &pass, &mut layout));
+            passes.push(ReadyPass::new(kernels.get(plan, index, &pass, &wanted)?, &pass, &mut layout));
         }
-        let uniforms = Uniforms::new(device, &layout)?;
-        counts.objects += 1;
+        let uniforms = Uniforms::new(kernels, &layout)?;
         let kernels = Arc::clone(kernels);
-        let mut runner = Self { kernels, textures, passes, past, rings, uniforms, counts };
+        let mut runner = Self { kernels, textures, passes, past, rings, uniforms };
         runner.repack(plan)?;
         Ok(runner)
     }
@@ -124,8 +100,7 @@ impl PlanRunner {
             is_changed |= ready.params.is_some_and(|params| self.uniforms.put(params, pass.params));
         }
         if is_changed {
-            self.uniforms.upload(self.kernels.queue());
-            self.counts.uploads += 1;
+            self.uniforms.upload(&self.kernels);
         }
         Ok(())
     }
@@ -146,8 +121,8 @@ impl PlanRunner {
         for name in self.past.inputs() {
             let texture = given(name)?.texture();
             let (format, size) = (texture.format(), [texture.width(), texture.height()]);
-            let make = || textures::create(self.kernels.device(), format, size, COPIED);
-            self.counts.objects += self.rings.hold(name, format, size, Some(texture.clone()), make)?;
+            let make = || textures::create(&self.kernels, format, size, COPIED);
+            self.rings.hold(name, format, size, Some(texture.clone()), make)?;
         }
         for (index, slot) in (0..).zip(&mut self.textures).filter(|(_, slot)| slot.role == Role::Input) {
             let views = match history::split(&slot.name) {
@@ -174,10 +149,8 @@ impl PlanRunner {
 
     /// Makes the bind groups of passes whose textures are others now.
     fn bind_passes(&mut self) -> Result<()> {
-        for pass in self.passes.iter_mut().filter(|p| p.groups.is_empty()) {
-            self.counts.objects += pass.bind(&self.kernels, &self.uniforms, &self.textures)?;
-        }
-        Ok(())
+        let mut passes = self.passes.iter_mut().filter(|p| p.groups.is_empty());
+        passes.try_for_each(|pass| pass.bind(&self.kernels, &self.uniforms, &self.textures))
     }
 
     /// Texture that the plan computes, until [`PlanRunner::rebuild`]; it can be sampled and copied from.
@@ -234,10 +207,5 @@ impl PlanRunner {
     /// The kernels of its device.
     pub fn kernels(&self) -> &Kernels {
         &self.kernels
-    }
-
-    /// Objects made and uploads so far.
-    pub fn counts(&self) -> Counts {
-        self.counts
     }
 }

@@ -1,7 +1,7 @@
 //! Textures of a plan: those that passes write, and places for those of the host.
 
 use crate::history::{self, Past, Rings};
-use crate::kernels::{checked, texture_format};
+use crate::kernels::{Kernels, texture_format};
 use isophote_files::error::Result;
 use isophote_loader::plan::{Format, Role, Texture};
 
@@ -39,41 +39,38 @@ impl Slot {
     }
 }
 
-/// The textures that a plan wants, `old` ones where they fit and new ones elsewhere, with the number of new ones. `rings`
-/// holds those of stages for later frames.
+/// The textures that a plan wants, `old` ones where they fit and new ones elsewhere. `rings` holds those of stages for
+/// later frames.
 ///
 /// # Errors
 /// [`Error::Failure`](isophote_files::error::Error::Failure) when the device refuses or has no memory.
 pub fn slots(
-    device: &wgpu::Device,
+    kernels: &Kernels,
     wanted: &[Texture<'_>],
     past: &Past,
     mut old: Vec<Slot>,
     rings: &mut Rings,
-) -> Result<(Vec<Slot>, u64)> {
+) -> Result<Vec<Slot>> {
     old.retain(|slot| slot.is_own() && wanted.iter().any(|t| slot.is_like(t)));
     let is_written = |name: &str| wanted.iter().any(|t| t.name == name && t.role == Role::Output);
     rings.retain(|name| is_written(name) || past.inputs().any(|input| input == name));
-    let (mut slots, mut made) = (Vec::with_capacity(wanted.len()), 0);
+    let mut slots = Vec::with_capacity(wanted.len());
     for texture in wanted {
         let Texture { name, role, format, size } = *texture;
-        let make = || create(device, texture_format(format), size, WRITTEN);
+        let make = || create(kernels, texture_format(format), size, WRITTEN);
         let found = old.iter().position(|slot| slot.is_like(texture));
         let views = match (role, found) {
             (Role::Input, _) => Vec::new(),
             (Role::Output, _) if history::is_stage(name) => {
-                made += rings.hold(name, texture_format(format), size, None, make)?;
+                rings.hold(name, texture_format(format), size, None, make)?;
                 rings.views(name, 0).unwrap_or_default()
             }
             (_, Some(at)) => old.swap_remove(at).views,
-            (_, None) => {
-                made += 1;
-                vec![make()?]
-            }
+            (_, None) => vec![make()?],
         };
         slots.push(Slot { name: name.to_owned(), role, format, size, views });
     }
-    Ok((slots, made))
+    Ok(slots)
 }
 
 /// A texture without contents.
@@ -81,13 +78,13 @@ pub fn slots(
 /// # Errors
 /// As [`slots`].
 pub fn create(
-    device: &wgpu::Device,
+    kernels: &Kernels,
     format: wgpu::TextureFormat,
     [width, height]: [u32; 2],
     usage: wgpu::TextureUsages,
 ) -> Result<wgpu::TextureView> {
-    checked(device, || {
-        let texture = device.create_texture(&wgpu::TextureDescriptor {
+    kernels.make(|| {
+        let texture = kernels.device().create_texture(&wgpu::TextureDescriptor {
             label: Some("texture of a plan"),
             size: wgpu::Extent3d { width, height, depth_or_array_layers: 1 },
             mip_level_count: 1,

@@ -2,7 +2,7 @@
 
 use std::num::NonZeroU64;
 
-use crate::kernels::{block_size, checked};
+use crate::kernels::{Kernels, block_size};
 use isophote_files::error::Result;
 
 /// Place of a pass's block in the buffer.
@@ -46,9 +46,9 @@ impl Uniforms {
     ///
     /// # Errors
     /// [`Error::Failure`](isophote_files::error::Error::Failure) when the device refuses or has no memory.
-    pub fn new(device: &wgpu::Device, layout: &Layout) -> Result<Self> {
-        let buffer = checked(device, || {
-            Ok(device.create_buffer(&wgpu::BufferDescriptor {
+    pub fn new(kernels: &Kernels, layout: &Layout) -> Result<Self> {
+        let buffer = kernels.make(|| {
+            Ok(kernels.device().create_buffer(&wgpu::BufferDescriptor {
                 label: Some("uniforms of a plan"),
                 size: layout.end,
                 usage: wgpu::BufferUsages::UNIFORM | wgpu::BufferUsages::COPY_DST,
@@ -67,8 +67,8 @@ impl Uniforms {
     }
 
     /// Uploads all blocks.
-    pub fn upload(&self, queue: &wgpu::Queue) {
-        queue.write_buffer(&self.buffer, 0, &self.bytes);
+    pub fn upload(&self, kernels: &Kernels) {
+        kernels.upload(&self.buffer, &self.bytes);
     }
 
     /// A block as a bind group names it.

@@ -3,7 +3,7 @@
 use std::sync::Arc;
 use std::time::Instant;
 
-use isophote_example::desktop;
+use isophote_files::desktop;
 use isophote_files::error::{Error, Result};
 use isophote_render::gpu::Gpu;
 use isophote_scene::Scene;

@@ -2,7 +2,7 @@
 
 use std::fmt::Display;
 
-use isophote_files::error::Error;
+use crate::error::Error;
 
 /// The error of a system that gives no window, from what winit says of it. Its text begins with a line of winit's source,
 /// which nobody needs.

@@ -2,6 +2,7 @@
 //!
 //! | module | content |
 //! |---|---|
+//! | [`desktop`] | error of desktops that give no window |
 //! | [`error`] | error of the host, with the exit code of the program |
 //! | [`files`] | files that are written whole or not at all |
 //! | [`frames`] | patterns of file names and lists of frame numbers |
@@ -14,6 +15,7 @@
 
 #![forbid(unsafe_code)]
 
+pub mod desktop;
 pub mod error;
 pub mod files;
 pub mod frames;

@@ -5,8 +5,7 @@ mod support;
 use std::path::Path;
 use std::sync::Arc;
 
-use isophote_example::kernels::Kernels;
-use isophote_example::plan_runner::Counts;
+use isophote_example::kernels::{Counts, Kernels};
 use isophote_finishing::stylize::Stylizer;
 use isophote_finishing::stylize::preset::Lengths;
 use isophote_finishing::stylize::style::{Setting, Style};
@@ -91,20 +90,20 @@ fn a_warm_frame_makes_nothing_and_is_one_submission() {
     for style in ["cartoon", "blueprint"] {
         let mut stylizer = stage.stylizer(&kernels, style);
         stage.frame(&mut stylizer, 0.0);
-        let before = stylizer.counts();
+        let before = kernels.counts();
         for frame in 1..5 {
             stylizer.update().expect("nothing is to be updated");
             stylizer.bind(stage.renderer.targets()).expect("the targets are the same");
             stage.frame(&mut stylizer, frame as f32 * 0.1);
         }
         // The submission is the host's own, with the scene in it; the library adds none.
-        assert_eq!(stylizer.counts(), before, "{style}");
+        assert_eq!(kernels.counts(), before, "{style}");
         stage.gpu.wait().expect("the device works");
         // Moving a slider writes uniforms and nothing else.
         let picture = stage.read(stylizer.output());
         let slider = "tau=0.6";
         assert!(!set(&mut stylizer, slider), "{slider} changes the passes of {style}");
-        assert_eq!(stylizer.counts(), Counts { uploads: before.uploads + 1, ..before });
+        assert_eq!(kernels.counts(), Counts { uploads: before.uploads + 1, ..before });
         stage.frame(&mut stylizer, 0.4);
         assert_ne!(stage.read(stylizer.output()), picture, "{slider} changes nothing");
     }

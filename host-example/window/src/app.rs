@@ -27,7 +27,7 @@ use crate::state::record::Hold;
 use crate::state::session::Session;
 use crate::state::work::Request;
 use crate::widgets;
-use isophote_example::plan_runner::Counts;
+use isophote_example::kernels::Counts;
 use isophote_files::error::{Error, Result};
 use isophote_render::gpu::Gpu;
 
@@ -140,7 +140,7 @@ impl App {
         self.devices
     }
 
-    /// Number of things made on the device for the look.
+    /// Numbers of things made and uploaded on the device for looks.
     pub fn counts(&self) -> Option<Counts> {
         self.stage.as_ref().map(Stage::counts)
     }

@@ -27,7 +27,7 @@ use winit::event_loop::EventLoop;
 use self::app::{App, Event, FIX};
 use self::jobs::document::Document;
 use self::state::session::Session;
-use isophote_example::desktop;
+use isophote_files::desktop;
 use isophote_files::error::Result;
 
 /// Keys and the mouse and what they do, for the help of the program.

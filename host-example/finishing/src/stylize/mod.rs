@@ -18,7 +18,6 @@ use isophote_example::frame_runner::{FrameRunner, Named};
 use isophote_example::guides;
 use isophote_example::history::Past;
 use isophote_example::kernels::Kernels;
-use isophote_example::plan_runner::Counts;
 use isophote_files::error::{AtPlace, Result};
 use isophote_loader::abi::IsophoteRequest;
 use isophote_loader::catalogue::Kind;
@@ -213,11 +212,6 @@ impl Stylizer {
     /// The passes with their textures.
     pub fn plan(&self) -> &Plan {
         self.frames.plan()
-    }
-
-    /// Number of things made on the device for this style so far.
-    pub fn counts(&self) -> Counts {
-        self.frames.counts()
     }
 }
 

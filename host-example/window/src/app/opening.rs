@@ -11,7 +11,7 @@ use winit::window::Window;
 use super::{App, FIX};
 use crate::drawing::stage::Stage;
 use crate::widgets;
-use isophote_example::desktop;
+use isophote_files::desktop;
 use isophote_files::error::Result;
 
 /// Number of times that a device is opened anew, in vain, before what is open is put away, and then before the window

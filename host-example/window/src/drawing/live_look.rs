@@ -5,7 +5,6 @@ use std::sync::Arc;
 use crate::jobs::worker::{Wake, Worker};
 use crate::state::look::{EditedLook, Parameter};
 use isophote_example::kernels::Kernels;
-use isophote_example::plan_runner::Counts;
 use isophote_files::error::{Error, Result};
 use isophote_finishing::stylize::Stylizer;
 use isophote_finishing::stylize::precision::Precision;
@@ -62,8 +61,6 @@ pub struct LiveLook {
     spare: Option<Ready>,
     /// Recipe that was last asked of the worker, or refused.
     requested: Option<Recipe>,
-    /// Counts of what was made for looks that are gone.
-    gone: Counts,
     revision: u64,
     /// The last picture that was whole, its kind, and what its colours are.
     shown: Option<(wgpu::TextureView, Kind, IsophoteSpace)>,
@@ -80,11 +77,10 @@ impl LiveLook {
             (job.recipe, built)
         })?;
         let kernels = Arc::clone(kernels);
-        let (requested, gone) = (None, Counts::default());
-        Ok(Self { worker, kernels, ready: None, spare: None, requested, gone, revision: 0, shown: None })
+        Ok(Self { worker, kernels, ready: None, spare: None, requested: None, revision: 0, shown: None })
     }
 
-    /// Follows `look` for pictures as `asked`: at once where only values change, and behind the picture otherwise.
+    /// Follows `look` for pictures of this `request`: at once where only values change, and behind the picture otherwise.
     ///
     /// # Errors
     /// Errors of the library or the device about the look; the look before stays.
@@ -144,8 +140,6 @@ impl LiveLook {
         for old in [self.ready.replace(ready), self.spare.take()].into_iter().flatten() {
             if self.spare.is_none() && old.recipe.request.scale != scale {
                 self.spare = Some(old);
-            } else {
-                self.gone += old.stylizer.counts();
             }
         }
         self.revision += 1;
@@ -153,19 +147,11 @@ impl LiveLook {
 
     /// Lets go of what was built.
     fn forget(&mut self) {
-        self.gone = self.counts();
         (self.ready, self.spare) = (None, None);
     }
 
     fn is_for(&self, request: IsophoteRequest) -> bool {
         self.ready.as_ref().is_some_and(|ready| ready.recipe.request == request)
-    }
-
-    /// Number of things made on the device for the look that is shown, and for all before it.
-    pub fn counts(&self) -> Counts {
-        let mut counts = self.gone;
-        self.ready.iter().chain(&self.spare).for_each(|ready| counts += ready.stylizer.counts());
-        counts
     }
 
     /// True while the look that is wanted is being built.
@@ -183,7 +169,7 @@ impl LiveLook {
         self.shown.as_ref().map(|(view, kind, space)| (view, *kind, *space))
     }
 
-    /// True where the look must see rest positions of pictures as `asked`.
+    /// True where the look must see rest positions of pictures of this `request`.
     ///
     /// # Errors
     /// As [`Stylizer::wants_rest_positions`].
@@ -191,7 +177,7 @@ impl LiveLook {
         self.ready.as_ref().map_or(Ok(false), |ready| ready.stylizer.wants_rest_positions())
     }
 
-    /// Records a part of the look on a picture as `asked`, if it is for such; `bind` says what it reads. Says whether the
+    /// Records a part of the look on a picture of this `request`, if it is for such; `bind` says what it reads. Says whether the
     /// picture is whole.
     ///
     /// # Errors

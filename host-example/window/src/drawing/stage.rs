@@ -22,8 +22,7 @@ use crate::jobs::worker::{Wake, Worker};
 use crate::state::document::frame::Frame;
 use crate::state::look::EditedLook;
 use crate::state::session::{Session, Which};
-use isophote_example::kernels::Kernels;
-use isophote_example::plan_runner::Counts;
+use isophote_example::kernels::{Counts, Kernels};
 use isophote_files::error::{Error, Result};
 use isophote_render::gpu::Gpu;
 use isophote_render::layouts;
@@ -51,6 +50,7 @@ pub struct Stage {
     pub panel_time: Option<Duration>,
     screen: Screen,
     gpu: Gpu,
+    kernels: Arc<Kernels>,
     made: Option<Made>,
     /// Progress of the picture.
     progress: Progress,
@@ -143,6 +143,7 @@ impl Stage {
             panel_time: None,
             screen,
             gpu,
+            kernels,
             made: None,
             progress: Progress::Done,
             passes: 4,
@@ -479,9 +480,9 @@ impl Stage {
         &self.gpu
     }
 
-    /// Number of things made on the device for the look.
+    /// Numbers of things made and uploaded on the device for looks.
     pub fn counts(&self) -> Counts {
-        self.looks[0].counts()
+        self.kernels.counts()
     }
 
     /// Most texels of a texture across.
