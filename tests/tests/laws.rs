@@ -370,3 +370,55 @@ fn unsafe_code_stays_in_its_rooms_and_each_block_has_a_reason() {
     }
     assert!(wrong.is_empty(), "\n{}", wrong.join("\n"));
 }
+
+/// Formats of files, names in Rust of what reads each, and the one place of the product that may name it. The pictures that
+/// artists bring are read by `pictures`, with every depth and colour space that they have; textures of scenes become eight
+/// bits within the scene's budget; pictures that lie in the program itself need no care.
+const READERS: [(&str, &[&str], &[&str]); 11] = [
+    ("OpenEXR", &["exr::prelude", "exr::meta", "exr::block", "exr::error"], &["host-example/exr-edit/src/"]),
+    ("PNG", &["PngDecoder"], &["host-example/pictures/src/"]),
+    ("JPEG", &["JpegDecoder"], &["host-example/pictures/src/"]),
+    ("WebP", &["WebPDecoder"], &["host-example/pictures/src/"]),
+    ("TIFF", &["TiffDecoder", "tiff::decoder"], &["host-example/pictures/src/"]),
+    ("HDR", &["HdrDecoder"], &["host-example/pictures/src/"]),
+    (
+        "a picture of eight bits",
+        &["ImageReader", "image::open", "load_from_memory"],
+        &["host-example/scene/src/decode.rs", "host-example/window/src/state/samples.rs"],
+    ),
+    ("DDS", &["dds::Dec"], &["host-example/scene/src/decode.rs"]),
+    ("glTF", &["gltf::"], &["host-example/scene/src/gltf_file"]),
+    ("OBJ", &["tobj::"], &["host-example/scene/src/obj_file"]),
+    ("a preset", &["\"between\""], &["nodes/library/src/preset"]),
+];
+
+#[test]
+fn no_format_has_two_readers() {
+    let mut wrong = Vec::new();
+    let mut found = BTreeSet::new();
+    for path in sources(&[".rs"]) {
+        let shown = path.strip_prefix(root()).unwrap().to_string_lossy().replace('\\', "/");
+        let is_product = shown.starts_with("nodes/") || shown.starts_with("host-example/");
+        if !is_product || shown.contains("/tests/") || shown.ends_with("/tests.rs") {
+            continue;
+        }
+        let text = std::fs::read_to_string(&path).unwrap();
+        let code = text.split("#[cfg(test)]").next().unwrap_or("");
+        for (number, line) in (1..).zip(code.lines()) {
+            let line = line.split("//").next().unwrap_or("");
+            for (format, names, places) in READERS {
+                if names.iter().any(|name| line.contains(name)) {
+                    found.insert(format);
+                    if !places.iter().any(|place| shown.starts_with(place)) {
+                        wrong.push(format!(
+                            "{shown}:{number} reads {format}, which {} does",
+                            places.join(", ")
+                        ));
+                    }
+                }
+            }
+        }
+    }
+    assert_eq!(found.len(), READERS.len(), "{found:?}");
+    assert!(wrong.is_empty(), "\n{}", wrong.join("\n"));
+}
