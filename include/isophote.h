@@ -234,28 +234,30 @@ extern "C" {
 // filtered apart and added to the result, which costs as much again. `process` finds out by itself.
 #define ISOPHOTE_ALPHA_EMISSIVE 2
 
-// Bit of `IsophoteRequest::guides`: the host has view-space normals.
+// Bit of `IsophoteRequest::guides` for `normal`: view-space normals, x right, y up, z towards the camera.
 #define ISOPHOTE_GUIDE_NORMAL 1
 
-// Bit of `IsophoteRequest::guides`: the host has distances from the camera.
+// Bit of `IsophoteRequest::guides` for `depth`: distance from the camera, 0 or less where there is nothing.
 #define ISOPHOTE_GUIDE_DEPTH 2
 
-// Bit of `IsophoteRequest::guides`: the host has object numbers.
+// Bit of `IsophoteRequest::guides` for `object_id`: a number per object, 0 where there is nothing.
 #define ISOPHOTE_GUIDE_OBJECT_ID 4
 
-// Bit of `IsophoteRequest::guides`: the host has a mask, which says how much of the result is used.
+// Bit of `IsophoteRequest::guides` for `mask`: share of the result that is used, 0 to 1.
 #define ISOPHOTE_GUIDE_MASK 8
 
-// Bit of `IsophoteRequest::guides`: the host has a flow map, an orientation that an artist painted.
+// Bit of `IsophoteRequest::guides` for `flow`: a painted flow map: x and y in red and green, 0.5 for none, and its
+// strength in alpha.
 #define ISOPHOTE_GUIDE_FLOW 16
 
-// Bit of `IsophoteRequest::guides`: the host has the motion from the frame before.
+// Bit of `IsophoteRequest::guides` for `motion`: pixels from where points are to where they were in the frame before.
 #define ISOPHOTE_GUIDE_MOTION 32
 
-// Bit of `IsophoteRequest::guides`: the host has the motion to the next frame.
+// Bit of `IsophoteRequest::guides` for `motion_forward`: pixels from where points are to where they will be in the
+// next frame.
 #define ISOPHOTE_GUIDE_MOTION_FORWARD 64
 
-// Bit of `IsophoteRequest::guides`: the host has the points of the undeformed objects.
+// Bit of `IsophoteRequest::guides` for `rest_position`: points of the undeformed objects.
 #define ISOPHOTE_GUIDE_REST_POSITION 128
 
 // The host binds its own texture, which shows the window of the picture that the plan names.

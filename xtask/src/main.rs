@@ -11,6 +11,7 @@ mod error;
 mod experiments;
 mod gallery;
 mod gpu_cost;
+mod guides;
 mod header;
 mod looks;
 mod packing;
@@ -63,6 +64,8 @@ enum Chore {
     Bundle(bundle::Options),
     /// Packs all that users install: the library, the plugin, the program, the wheel, the Blender extension
     Dist(dist::Options),
+    /// Writes the list of guides where it must stand as text
+    Guides(guides::Options),
     /// Writes include/isophote.h from the Rust declarations
     Header(header::Options),
     /// Makes the wheel for Python
@@ -102,6 +105,7 @@ fn main() -> ExitCode {
         Chore::Stubs(options) => python::stubs(&options),
         Chore::Crates(options) => crates::run(&options),
         Chore::Readme(options) => readme::run(&options),
+        Chore::Guides(options) => guides::run(&options),
         Chore::Header(options) => header::run(&options),
         Chore::Web(options) => web::run(&options),
         Chore::Scene(options) => scene::run(&options),

@@ -83,6 +83,7 @@ fn check_sources() -> Result<()> {
     heading("lints");
     cargo(&["clippy", "--workspace", "--all-targets", "--", "-D", "warnings"])?;
     heading("generated files");
+    crate::guides::run(&crate::guides::Options { check: true })?;
     crate::header::run(&crate::header::Options { check: true })?;
     crate::readme::run(&crate::readme::Options { check: true })?;
     crate::crates::run(&crate::crates::Options { check: true })?;

@@ -1,13 +1,15 @@
 //! The pictures that may enter a graph: the colour, and the guides that a host knows beside it.
 //!
-//! This is the one list of guides. The C face, OpenFX, the program, Python, Blender and the page walk it, or match it so that
-//! the compiler asks for what is new.
+//! This is the one list of guides. The C face, OpenFX and the page walk it. Text that must be there before a library is loaded
+//! (constants of the C header, the program's names of guides, arguments in Python, types for TypeScript) is written from it by
+//! `cargo xtask guides`.
 
 use crate::declare::spec::ImageKind;
 
-/// Declares the guides: document, variant, id, label, and the kind of picture that each is.
+/// Declares the guides: document, variant, id, label, the kind of picture that each is, the number of its bit in requests of
+/// the C face, and the place of its OpenFX clip.
 macro_rules! guides {
-    ($($(#[doc = $doc:literal])+ $guide:ident $id:ident ($label:literal, $kind:ident),)+) => {
+    ($($(#[doc = $doc:literal])+ $guide:ident $id:ident ($label:literal, $kind:ident, $bit:literal, $clip:expr),)+) => {
         /// A picture that enters a graph.
         #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
         pub enum GraphInput {
@@ -54,6 +56,25 @@ macro_rules! guides {
                     $(Self::$guide => ImageKind::$kind,)+
                 }
             }
+
+            /// Bit in the guides of a request in C; 0 for the colour, which is always there. Bits are for ever: a new guide
+            /// takes the next.
+            pub const fn bit(self) -> u32 {
+                match self {
+                    Self::Color => 0,
+                    $(Self::$guide => 1 << $bit,)+
+                }
+            }
+
+            /// Place of its clip among those of guides in OpenFX; none for what is no such clip: the picture, and the mask,
+            /// which the effects apply themselves. Hosts store inputs by their numbers, so that places are for ever: a new
+            /// guide takes the next.
+            pub const fn clip(self) -> Option<u32> {
+                match self {
+                    Self::Color => None,
+                    $(Self::$guide => $clip,)+
+                }
+            }
         }
 
         /// The guides that a host can supply beside the colour.
@@ -84,21 +105,21 @@ macro_rules! guides {
 
 guides! {
     /// View-space normals, x right, y up, z towards the camera.
-    Normal normal ("Normal", Normal),
+    Normal normal ("Normal", Normal, 0, Some(0)),
     /// Distance from the camera, 0 or less where there is nothing.
-    Depth depth ("Depth", Depth),
+    Depth depth ("Depth", Depth, 1, Some(1)),
     /// A number per object, 0 where there is nothing.
-    ObjectId object_id ("Object id", ObjectId),
+    ObjectId object_id ("Object id", ObjectId, 2, Some(5)),
     /// Share of the result that is used, 0 to 1.
-    Mask mask ("Mask", Scalar),
+    Mask mask ("Mask", Scalar, 3, None),
     /// A painted flow map: x and y in red and green, 0.5 for none, and its strength in alpha.
-    Flow flow ("Flow", Flow),
+    Flow flow ("Flow", Flow, 4, Some(6)),
     /// Pixels from where points are to where they were in the frame before.
-    Motion motion ("Motion", Motion),
+    Motion motion ("Motion", Motion, 5, Some(2)),
     /// Pixels from where points are to where they will be in the next frame.
-    MotionForward motion_forward ("Motion forward", Motion),
+    MotionForward motion_forward ("Motion forward", Motion, 6, Some(3)),
     /// Points of the undeformed objects.
-    RestPosition rest_position ("Rest position", Position),
+    RestPosition rest_position ("Rest position", Position, 7, Some(4)),
 }
 
 impl GraphInput {

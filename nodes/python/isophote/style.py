@@ -232,13 +232,16 @@ def apply(
     RGB, RGBA, or grey with or without alpha. They are read, and `out` is written, where they lie in memory if pixels of a
     row follow each other there, whatever the order of rows; other layouts are copied. Guides are what a renderer knows:
 
-    - `normal`: view-space normals, 3 or 4 channels of floats, x right, y up, z towards the camera.
+    - `normal`: view-space normals, x right, y up, z towards the camera.
     - `depth`: distance from the camera, 0 or less where there is nothing.
     - `object_id`: a number per object, 0 where there is nothing.
-    - `mask`: how much of the result is used.
-    - `flow`: a painted flow map.
-    - `motion`, `motion_forward`: to the frame before and the next, in pixels, x right and y down.
-    - `rest_position`: points of the undeformed objects, 32 bits a channel.
+    - `mask`: share of the result that is used, 0 to 1.
+    - `flow`: a painted flow map: x and y in red and green, 0.5 for none, and its strength in alpha.
+    - `motion`: pixels from where points are to where they were in the frame before.
+    - `motion_forward`: pixels from where points are to where they will be in the next frame.
+    - `rest_position`: points of the undeformed objects.
+
+    Normals have 3 or 4 channels of floats, rest positions 32 bits a channel, and motion goes x right and y down.
 
     `color_space` is `srgb` (gamma-encoded), `linear` (Rec. 709) or `acescg`, and the result has the same. `alpha_mode` is
     `straight`; `premultiplied`, as renderers write it; or `emissive`, premultiplied with light where alpha is 0. `lengths`

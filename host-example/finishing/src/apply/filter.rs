@@ -460,16 +460,9 @@ pub fn usable_guides(library: &Library, style: &Style) -> Result<Vec<Guide>> {
     for node in 0..style.graph.count() {
         let spec = style.graph.spec(node).map_err(refused)?;
         for port in spec.inputs {
-            match port.kind {
-                Kind::Normal => guides.push(Guide::Normal),
-                Kind::Depth => guides.push(Guide::Depth),
-                Kind::ObjectId => guides.push(Guide::ObjectId),
-                Kind::Position => guides.push(Guide::RestPosition),
-                Kind::Flow => guides.push(Guide::Flow),
-                Kind::Motion if is_steady && port.id == "motion" => guides.push(Guide::Motion),
-                Kind::Motion if is_steady => guides.push(Guide::MotionForward),
-                _ => {}
-            }
+            let is_read = |guide: &Guide| (guide.id(), guide.kind()) == (port.id, port.kind);
+            let guide = Guide::ALL.into_iter().find(is_read);
+            guides.extend(guide.filter(|guide| is_steady || !guide.is_motion()));
         }
     }
     Ok(guides)

@@ -7,7 +7,8 @@ use isophote_motion::{Convention, Way};
 
 use super::cryptomatte::MatteChoice;
 use super::fault::Fault;
-use super::guides::{self, Guide, GuideChoice, GuideSource, Meaning, is_guide, is_named, positions};
+use super::guide_list::Guide;
+use super::guides::{self, GuideChoice, GuideSource, Meaning, is_guide, is_named, positions};
 use super::mask::{ChosenMask, MaskSource, OnUnknown};
 use super::mattes::{Matte, Ranks, mattes, pick};
 use super::motion;

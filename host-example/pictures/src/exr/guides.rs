@@ -6,8 +6,10 @@
 use std::str::FromStr;
 
 use isophote_exr_edit::File;
+use isophote_loader::catalogue::Kind;
 use isophote_motion::Rule;
 
+use super::guide_list::Guide;
 use super::names::{Group, REST, is_matte, key};
 
 /// Layers of normals: those of shading first, which show what a picture does, then those of the geometry.
@@ -71,66 +73,33 @@ const POSITIONS: [&str; 6] = ["p", "pworld", "position", "worldposition", "cgeom
 /// True where a layer or a channel by this key holds a guide.
 pub fn is_guide(key: &str) -> bool {
     let normal = NORMALS.iter().any(|words| words.contains(&key));
-    normal || DEPTHS.contains(&key) || IDS.contains(&key) || POSITIONS.contains(&key)
+    let is_other = Guide::ALL.into_iter().any(|guide| is_by_id(guide, key));
+    normal || DEPTHS.contains(&key) || IDS.contains(&key) || POSITIONS.contains(&key) || is_other
 }
 
-/// Guides that a renderer gives beside colour.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Guide {
-    /// Normals.
-    Normal,
-    /// Distances.
-    Depth,
-    /// Numbers of objects.
-    ObjectId,
-    /// Places of things in the frame before.
-    Motion,
-    /// Places of things in the frame after.
-    MotionForward,
-    /// Positions of surfaces before anything moves.
-    RestPosition,
-    /// A painted flow map.
-    Flow,
-}
+/// Guides whose layers have names of their own in renderers, which are listed here and in [`super::motion`]. All others are found
+/// by their ids.
+const NAMED: [Guide; 7] = [
+    Guide::Normal,
+    Guide::Depth,
+    Guide::ObjectId,
+    Guide::Motion,
+    Guide::MotionForward,
+    Guide::RestPosition,
+    Guide::Flow,
+];
 
-impl Guide {
-    /// All of them.
-    pub const ALL: [Self; 7] = [
-        Self::Normal,
-        Self::Depth,
-        Self::ObjectId,
-        Self::Motion,
-        Self::MotionForward,
-        Self::RestPosition,
-        Self::Flow,
-    ];
-
-    /// The name of the graph's input.
-    pub fn id(self) -> &'static str {
-        match self {
-            Self::Normal => "normal",
-            Self::Depth => "depth",
-            Self::ObjectId => "object_id",
-            Self::Motion => "motion",
-            Self::MotionForward => "motion_forward",
-            Self::RestPosition => "rest_position",
-            Self::Flow => "flow",
-        }
-    }
-
-    /// True for motion.
-    pub fn is_motion(self) -> bool {
-        matches!(self, Self::Motion | Self::MotionForward)
-    }
-
-    /// True where it has three components, of which all are 0 where there is no surface.
-    pub fn is_of_surfaces(self) -> bool {
-        matches!(self, Self::Normal | Self::RestPosition)
-    }
+/// True where a layer is called as a guide that has no other names.
+fn is_by_id(guide: Guide, word: &str) -> bool {
+    !NAMED.contains(&guide) && word == key(guide.id())
 }
 
 /// Forms in which a guide is written.
-const FIX: &str = "write normal=LAYER, depth=LAYER, object_id=LAYER, motion=LAYER, motion_forward=LAYER, rest_position=LAYER or flow=LAYER";
+fn forms() -> String {
+    let forms = Guide::ALL.map(|guide| format!("{}=LAYER", guide.id()));
+    let [most @ .., last] = &forms;
+    format!("write {} or {last}", most.join(", "))
+}
 
 /// One `--guide`.
 #[derive(Clone, Debug, PartialEq, Eq)]
@@ -145,9 +114,9 @@ impl FromStr for GuideChoice {
     type Err = String;
 
     fn from_str(text: &str) -> Result<Self, String> {
-        let (name, layer) = text.split_once('=').ok_or(FIX)?;
+        let (name, layer) = text.split_once('=').ok_or_else(forms)?;
         let name = if name == "id" { "object_id" } else { name };
-        let guide = Guide::ALL.into_iter().find(|guide| guide.id() == name).ok_or(FIX)?;
+        let guide = Guide::ALL.into_iter().find(|guide| guide.id() == name).ok_or_else(forms)?;
         Ok(Self { guide, layer: (layer != "none").then(|| layer.to_owned()) })
     }
 }
@@ -213,11 +182,11 @@ pub fn positions(group: &Group) -> Option<Vec<usize>> {
 /// the part `near` are taken first.
 pub fn listed(exr: &File, near: usize, guide: Guide, names: &str) -> Option<(usize, Vec<usize>)> {
     let names: Vec<&str> = names.split(',').map(str::trim).collect();
-    let count = match guide {
-        Guide::Normal | Guide::RestPosition => 3,
-        Guide::Motion | Guide::MotionForward => 2,
-        Guide::Flow => 4,
-        Guide::Depth | Guide::ObjectId => 1,
+    let count = match guide.kind() {
+        Kind::Normal | Kind::Position => 3,
+        Kind::Motion => 2,
+        Kind::Color | Kind::Flow => 4,
+        _ => 1,
     };
     if names.len() != count || count == 1 {
         return None;
@@ -257,6 +226,9 @@ fn unnamed(group: &Group, guide: Guide, tier: usize) -> Option<Vec<usize>> {
     }
     let word = group.key();
     let is_of = |words: &[&str]| words.contains(&word.as_str());
+    if is_by_id(guide, &word) {
+        return of_kind(group, guide.kind());
+    }
     match guide {
         Guide::Normal => {
             let flat = |word: &&str| flat(group, word);
@@ -283,7 +255,21 @@ fn unnamed(group: &Group, guide: Guide, tier: usize) -> Option<Vec<usize>> {
         Guide::RestPosition if REST.contains(&word.as_str()) => xyz(group),
         // "flow" alone may be optical flow.
         Guide::Flow if is_of(&["flowmap"]) => rgba(group),
-        Guide::Depth | Guide::RestPosition | Guide::Flow | Guide::Motion | Guide::MotionForward => None,
+        _ => None,
+    }
+}
+
+/// The channels of a group that is a guide of this kind.
+fn of_kind(group: &Group, kind: Kind) -> Option<Vec<usize>> {
+    match kind {
+        Kind::Normal | Kind::Position => xyz(group),
+        Kind::Depth => single(group, &["Z", "depth", "Y", "V", "R"]).map(|channel| vec![channel]),
+        Kind::ObjectId | Kind::Scalar => {
+            single(group, &["id", "object_id", "Y", "R"]).map(|channel| vec![channel])
+        }
+        Kind::Color | Kind::Flow => rgba(group),
+        // Vectors have conventions.
+        _ => None,
     }
 }
 
@@ -292,7 +278,7 @@ pub fn named(exr: &File, group: &Group, guide: Guide, name: &str) -> Option<Guid
     let part = &exr.parts()[group.part];
     let found = |channels| GuideSource { guide, part: group.part, channels, meaning: Meaning::Same };
     let channel = group.members.iter().find(|(_, at)| part.channels[*at].name == name).map(|m| m.1);
-    if !guide.is_of_surfaces() && guide != Guide::Flow && channel.is_some() {
+    if !guide.is_of_surfaces() && guide.kind() != Kind::Flow && channel.is_some() {
         return channel.map(|c| found(vec![c]));
     }
     if !is_named(exr, group, name) {
@@ -300,12 +286,5 @@ pub fn named(exr: &File, group: &Group, guide: Guide, name: &str) -> Option<Guid
         let is_inner = guide.is_of_surfaces() && !name.is_empty();
         return if is_inner { flat(group, &key(name)).map(found) } else { None };
     }
-    match guide {
-        Guide::Normal | Guide::RestPosition => xyz(group),
-        Guide::Depth => single(group, &["Z", "depth", "Y", "V", "R"]).map(|c| vec![c]),
-        Guide::ObjectId => single(group, &["id", "object_id", "Y", "R"]).map(|c| vec![c]),
-        Guide::Flow => rgba(group),
-        Guide::Motion | Guide::MotionForward => None,
-    }
-    .map(found)
+    of_kind(group, guide.kind()).map(found)
 }

@@ -7,6 +7,7 @@ mod choose;
 mod cryptomatte;
 mod fault;
 mod file;
+mod guide_list;
 mod guides;
 mod interop;
 mod mask;
@@ -18,7 +19,8 @@ mod picture;
 
 pub use self::choose::Selection;
 pub use self::file::{ExrFile, Opened, is_whole, mask_of, motion_of};
-pub use self::guides::{Guide, GuideChoice};
+pub use self::guide_list::Guide;
+pub use self::guides::GuideChoice;
 pub use self::mask::{MaskSource, OnUnknown, add};
 pub use self::names::components;
 pub use self::offers::{Layer, Offers};

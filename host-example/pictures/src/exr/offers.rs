@@ -3,7 +3,7 @@
 use isophote_exr_edit::File;
 
 use super::choose::{Chosen, likely};
-use super::guides::Guide;
+use super::guide_list::Guide;
 use super::mattes::mattes;
 use super::names::groups;
 

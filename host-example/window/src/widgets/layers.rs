@@ -84,11 +84,9 @@ fn name(layer: &str) -> &str {
 fn title(guide: Guide) -> &'static str {
     match guide {
         Guide::Normal => "Normals",
-        Guide::Depth => "Depth",
         Guide::ObjectId => "Objects",
-        Guide::Motion => "Motion",
-        Guide::MotionForward => "Motion forward",
         Guide::RestPosition => "Rest positions",
         Guide::Flow => "Flow map",
+        other => other.label(),
     }
 }

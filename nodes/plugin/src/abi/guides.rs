@@ -1,7 +1,6 @@
 //! The extension for guides: the library's list of the pictures that may enter a graph.
 
 use super::catalogue::{kind, lasting};
-use super::request::bit;
 use super::{args, guard};
 use isophote::graph::GraphInput;
 use isophote_abi::*;
@@ -32,7 +31,7 @@ fn all() -> &'static [IsophoteGuide] {
             doc: lasting(input.doc()),
             kind: kind(input.kind()),
             channels: input.kind().channels(),
-            bit: bit(input),
+            bit: input.bit(),
         };
         List(GraphInput::GUIDES.into_iter().map(guide).collect())
     });

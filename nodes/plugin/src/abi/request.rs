@@ -26,11 +26,11 @@ pub fn request(host: &IsophoteRequest) -> Outcome<Request> {
         ISOPHOTE_ALPHA_STRAIGHT => (false, false),
         other => return Err(Failure::argument(format!("{other} is no relation of colour to alpha"))),
     };
-    let known = GraphInput::ALL.iter().fold(0, |all, input| all | bit(*input));
+    let known = GraphInput::ALL.iter().fold(0, |all, input| all | input.bit());
     if host.guides & !known != 0 {
         return Err(Failure::argument(format!("{:#x} are no guides", host.guides)));
     }
-    let guides = Guides::of(|input| host.guides & bit(input) != 0);
+    let guides = Guides::of(|input| host.guides & input.bit() != 0);
     Ok(Request {
         space,
         premultiplied,
@@ -43,21 +43,6 @@ pub fn request(host: &IsophoteRequest) -> Outcome<Request> {
         canonical_height: host.canonical_height,
         ..Request::new(host.width, host.height)
     })
-}
-
-/// The bit of an input in a request's guides; 0 for the colour, which is always there.
-pub const fn bit(input: GraphInput) -> u32 {
-    match input {
-        GraphInput::Color => 0,
-        GraphInput::Normal => ISOPHOTE_GUIDE_NORMAL,
-        GraphInput::Depth => ISOPHOTE_GUIDE_DEPTH,
-        GraphInput::ObjectId => ISOPHOTE_GUIDE_OBJECT_ID,
-        GraphInput::Mask => ISOPHOTE_GUIDE_MASK,
-        GraphInput::Flow => ISOPHOTE_GUIDE_FLOW,
-        GraphInput::Motion => ISOPHOTE_GUIDE_MOTION,
-        GraphInput::MotionForward => ISOPHOTE_GUIDE_MOTION_FORWARD,
-        GraphInput::RestPosition => ISOPHOTE_GUIDE_REST_POSITION,
-    }
 }
 
 /// The host's region, or the whole picture.

@@ -18,21 +18,6 @@ pub const MOTION: &CStr = c"Motion";
 /// Vectors to the frame after.
 pub const MOTION_FORWARD: &CStr = c"MotionForward";
 
-/// Place of a guide's clip among those of guides; none for what is no such clip: the picture, and the mask, which the
-/// effects apply themselves. Hosts store inputs by their numbers, so that places are for ever: a new guide takes the next.
-const fn place(guide: GraphInput) -> Option<usize> {
-    match guide {
-        GraphInput::Color | GraphInput::Mask => None,
-        GraphInput::Normal => Some(0),
-        GraphInput::Depth => Some(1),
-        GraphInput::Motion => Some(2),
-        GraphInput::MotionForward => Some(3),
-        GraphInput::RestPosition => Some(4),
-        GraphInput::ObjectId => Some(5),
-        GraphInput::Flow => Some(6),
-    }
-}
-
 /// A guide that may be a clip.
 struct Named {
     guide: GraphInput,
@@ -43,8 +28,8 @@ struct Named {
 /// The guides that may be clips, in the order of inputs.
 static CLIPS: LazyLock<Vec<Named>> = LazyLock::new(|| {
     let mut guides: Vec<GraphInput> =
-        GraphInput::GUIDES.into_iter().filter(|g| place(*g).is_some()).collect();
-    guides.sort_by_key(|guide| place(*guide));
+        GraphInput::GUIDES.into_iter().filter(|guide| guide.clip().is_some()).collect();
+    guides.sort_by_key(|guide| guide.clip());
     let named =
         |guide: GraphInput| Named { guide, name: text(&in_one_word(guide.id())), label: text(guide.label()) };
     guides.into_iter().map(named).collect()
@@ -89,9 +74,9 @@ mod tests {
     fn clips_of_guides_have_names_of_their_own() {
         let names: Vec<&CStr> = CLIPS.iter().map(|clip| clip.name.as_c_str()).collect();
         let known = [c"Normal", c"Depth", MOTION, MOTION_FORWARD, c"RestPosition", c"ObjectId", c"Flow"];
-        assert_eq!(names, known);
-        let places: Vec<Option<usize>> = guides().map(place).collect();
-        assert_eq!(places, (0..names.len()).map(Some).collect::<Vec<_>>());
+        assert_eq!(names[..known.len()], known);
+        let places: Vec<Option<u32>> = guides().map(GraphInput::clip).collect();
+        assert_eq!(places, (0..names.len() as u32).map(Some).collect::<Vec<_>>());
         assert_eq!(guide_label(GraphInput::ObjectId), Some(c"Object id"));
     }
 }

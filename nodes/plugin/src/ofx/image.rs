@@ -5,6 +5,7 @@ use super::host::{Host, Outcome, Properties};
 use crate::abi::images::Checked;
 use isophote::engine::{Image, Rect};
 use isophote::graph::GraphInput;
+use isophote::spec::ImageKind;
 use isophote_abi::openfx::*;
 use isophote_abi::*;
 use std::ffi::CStr;
@@ -268,17 +269,17 @@ impl<'h> Fetched<'h> {
     /// True where it holds what an input needs.
     pub fn suits(&self, input: GraphInput) -> bool {
         let is_float = matches!(self.sample, ISOPHOTE_SAMPLE_F16 | ISOPHOTE_SAMPLE_F32);
-        match input {
-            GraphInput::Normal => self.channels >= 3,
-            GraphInput::RestPosition => self.channels >= 3 && is_float,
+        match input.kind() {
+            ImageKind::Normal => self.channels >= 3,
+            ImageKind::Position => self.channels >= 3 && is_float,
             // Its strength is in alpha.
-            GraphInput::Flow => self.channels == 4,
-            GraphInput::Color
-            | GraphInput::Depth
-            | GraphInput::ObjectId
-            | GraphInput::Mask
-            | GraphInput::Motion
-            | GraphInput::MotionForward => true,
+            ImageKind::Flow => self.channels == 4,
+            ImageKind::Color
+            | ImageKind::Depth
+            | ImageKind::ObjectId
+            | ImageKind::Scalar
+            | ImageKind::Tensor
+            | ImageKind::Motion => true,
         }
     }
 
@@ -327,7 +328,7 @@ pub enum Beyond {
     Zero,
 }
 
-/// The one pixel of `held` nearest to a window beside it.
+/// The one pixel of `bounds` nearest to a window beside it.
 fn nearest(window: &Rect, bounds: &Rect) -> Rect {
     let x = window.x0.clamp(bounds.x0, bounds.x1 - 1);
     let y = window.y0.clamp(bounds.y0, bounds.y1 - 1);

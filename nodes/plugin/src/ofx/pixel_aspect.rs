@@ -16,6 +16,7 @@ use isophote::engine::cpu::Threads;
 use isophote::engine::image::MAX_SIDE;
 use isophote::engine::{Error, Image, Rect};
 use isophote::graph::GraphInput;
+use isophote::spec::ImageKind;
 use std::sync::{Mutex, PoisonError};
 
 /// Square pixels in one of the host's along one axis, at most: beyond that the finer axis loses detail instead.
@@ -184,13 +185,14 @@ enum By {
 
 impl By {
     fn input(input: GraphInput) -> Self {
-        match input {
-            GraphInput::Depth => Self::Surface,
-            GraphInput::ObjectId
-            | GraphInput::Motion
-            | GraphInput::MotionForward
-            | GraphInput::RestPosition => Self::Middle,
-            GraphInput::Color | GraphInput::Normal | GraphInput::Mask | GraphInput::Flow => Self::Mean,
+        match input.kind() {
+            ImageKind::Depth => Self::Surface,
+            ImageKind::ObjectId | ImageKind::Motion | ImageKind::Position => Self::Middle,
+            ImageKind::Color
+            | ImageKind::Normal
+            | ImageKind::Scalar
+            | ImageKind::Tensor
+            | ImageKind::Flow => Self::Mean,
         }
     }
 }

@@ -3,11 +3,7 @@
 use isophote_files::error::{Error, Result};
 use isophote_files::limits;
 use isophote_finishing::apply::picture_request::PictureRequest;
-use isophote_loader::abi::{
-    ISOPHOTE_ALPHA_EMISSIVE, ISOPHOTE_GUIDE_DEPTH, ISOPHOTE_GUIDE_FLOW, ISOPHOTE_GUIDE_MOTION,
-    ISOPHOTE_GUIDE_MOTION_FORWARD, ISOPHOTE_GUIDE_NORMAL, ISOPHOTE_GUIDE_OBJECT_ID,
-    ISOPHOTE_GUIDE_REST_POSITION, IsophoteRequest,
-};
+use isophote_loader::abi::{ISOPHOTE_ALPHA_EMISSIVE, IsophoteRequest};
 use isophote_pictures::exr::Guide;
 use isophote_pictures::pixels::Pixels;
 use isophote_pictures::primaries;
@@ -98,16 +94,7 @@ impl Frame {
 
     /// Request of looks on a picture of so much of the size, with all of its guides, whichever frame it is.
     pub fn request_of_all(&self, scale: f32, usual: IsophoteRequest) -> IsophoteRequest {
-        let guides = self.guides.iter().map(|image| match image.guide {
-            Guide::Normal => ISOPHOTE_GUIDE_NORMAL,
-            Guide::Depth => ISOPHOTE_GUIDE_DEPTH,
-            Guide::ObjectId => ISOPHOTE_GUIDE_OBJECT_ID,
-            Guide::Motion => ISOPHOTE_GUIDE_MOTION,
-            Guide::MotionForward => ISOPHOTE_GUIDE_MOTION_FORWARD,
-            Guide::RestPosition => ISOPHOTE_GUIDE_REST_POSITION,
-            Guide::Flow => ISOPHOTE_GUIDE_FLOW,
-        });
-        let guides = guides.fold(0, |all, guide| all | guide);
+        let guides = self.guides.iter().fold(0, |all, image| all | image.guide.bit());
         let Self { width, height, .. } = *self;
         IsophoteRequest { width, height, scale, guides, frame: 0, ..self.request(usual) }
     }
