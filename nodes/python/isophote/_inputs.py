@@ -50,7 +50,7 @@ def given(image: Any, name: str) -> Array:
             f"{what} has the shape {array.shape}; pictures have rows, columns and perhaps channels, and batches of them a "
             "dimension before these"
         )
-    if array.ndim > 2 and array.shape[-1] > 4 and 1 <= array.shape[-3] <= 4:
+    if name == "color" and array.ndim > 2 and array.shape[-1] > 4 and 1 <= array.shape[-3] <= 4:
         fix = "permute(0, 2, 3, 1)" if array.ndim == 4 else "permute(1, 2, 0)"
         raise InvalidValueError(
             f"{what} has the shape {array.shape}, and channels come last: use {fix} of a tensor, "
