@@ -5,10 +5,12 @@ use std::path::Path;
 
 use image::{ExtendedColorType, ImageEncoder, ImageResult};
 
-use crate::exr::{ExrFile, Picture, components};
+use crate::exr::{ExrFile, components};
 use crate::floats;
+use crate::meaning::{ImageState, Meaning};
 use crate::pixels::{Pixels, Precision, Samples};
-use crate::read::{ImageState, Source};
+use crate::primaries::REC709;
+use crate::read::Source;
 use isophote_files::error::{Error, Result};
 use isophote_files::files::{self, Existing};
 use isophote_files::output;
@@ -61,7 +63,7 @@ impl Format {
     }
 }
 
-/// Writes the results of what `source` held, one for each of its pictures, in the image state of `format`.
+/// Writes the results of what `source` held, one for each of its pictures, whose numbers mean what `meaning` says.
 /// All of them go into `exr`, an EXR file that they came from; of other files there is one picture.
 ///
 /// # Errors
@@ -71,6 +73,7 @@ pub fn write(
     existing: Existing,
     format: Format,
     mut results: Vec<Pixels>,
+    meaning: &Meaning,
     source: &Source,
     exr: Option<ExrFile>,
 ) -> Result<()> {
@@ -85,7 +88,7 @@ pub fn write(
         return Err(Error::file(path, "would be empty", "choose another picture"));
     };
     match format {
-        Format::Exr => write_exr(path, existing, &pixels, picture),
+        Format::Exr => write_exr(path, existing, &pixels, (picture.pixels.precision(), meaning)),
         Format::Png => {
             // A float result holds more than 8 bits can.
             let precision = match picture.pixels.precision() {
@@ -97,12 +100,12 @@ pub fn write(
             // PNG wants the larger byte first; the encoder takes the machine's order.
             files::write(path, existing, |file| {
                 let mut encoder = image::codecs::png::PngEncoder::new(file);
-                keep_profile(&mut encoder, source.profile.as_deref(), pixels.channels());
+                keep_profile(&mut encoder, meaning.profile.as_deref(), pixels.channels());
                 as_text(encoder.write_image(pixels.bytes(), pixels.width(), pixels.height(), color))
             })
         }
         Format::Tiff => {
-            let precision = match (source.state, picture.pixels.precision()) {
+            let precision = match (meaning.state, picture.pixels.precision()) {
                 (ImageState::SceneReferred, _) => Precision::F32,
                 (ImageState::DisplayReferred, Precision::U8) => Precision::U8,
                 (ImageState::DisplayReferred, _) => Precision::U16,
@@ -111,7 +114,7 @@ pub fn write(
             let color = color_type(&pixels);
             files::write(path, existing, |file| {
                 let mut encoder = image::codecs::tiff::TiffEncoder::new(file);
-                keep_profile(&mut encoder, source.profile.as_deref(), pixels.channels());
+                keep_profile(&mut encoder, meaning.profile.as_deref(), pixels.channels());
                 as_text(encoder.write_image(pixels.bytes(), pixels.width(), pixels.height(), color))
             })
         }
@@ -120,7 +123,7 @@ pub fn write(
             let color = color_type(&pixels);
             files::write(path, existing, |file| {
                 let mut encoder = image::codecs::jpeg::JpegEncoder::new_with_quality(file, JPEG_QUALITY);
-                keep_profile(&mut encoder, source.profile.as_deref(), pixels.channels());
+                keep_profile(&mut encoder, meaning.profile.as_deref(), pixels.channels());
                 as_text(encoder.write_image(pixels.bytes(), pixels.width(), pixels.height(), color))
             })
         }
@@ -138,8 +141,13 @@ fn grey_as_rgb(pixels: Pixels) -> Pixels {
 }
 
 /// EXR in the precision that the source deserves: 8 bits fit into halves, 16 do not.
-fn write_exr(path: &Path, existing: Existing, pixels: &Pixels, picture: &Picture) -> Result<()> {
-    let precision = match picture.pixels.precision() {
+fn write_exr(
+    path: &Path,
+    existing: Existing,
+    pixels: &Pixels,
+    (source, meaning): (Precision, &Meaning),
+) -> Result<()> {
+    let precision = match source {
         Precision::U8 | Precision::F16 => floats::Precision::Half,
         Precision::U16 | Precision::F32 => floats::Precision::Float,
     };
@@ -150,7 +158,8 @@ fn write_exr(path: &Path, existing: Existing, pixels: &Pixels, picture: &Picture
         channels: channels as usize,
         data: pixels.to_f32(),
     };
-    floats::save_exr(path, existing, &data, components(channels), precision)
+    let chromaticities = Some(meaning.primaries).filter(|_| !meaning.has_primaries(REC709));
+    floats::save_exr(path, existing, &data, components(channels), precision, chromaticities)
 }
 
 /// Keeps a colour profile where it is one of pictures with these channels.

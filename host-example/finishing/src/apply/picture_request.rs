@@ -5,7 +5,6 @@ use isophote_loader::abi::{
     ISOPHOTE_SPACE_SRGB, IsophoteRequest,
 };
 use isophote_pictures::exr::Picture;
-use isophote_pictures::read::ImageState;
 use isophote_pictures::space::Space;
 
 /// Farthest from 0 that a picture may begin, pixels, as the contract has it.
@@ -16,8 +15,8 @@ const MOST_ORIGIN: i32 = 1_000_000;
 pub struct PictureRequest {
     /// The space in which it is filtered.
     pub space: Space,
-    /// State of the numbers.
-    pub state: ImageState,
+    /// True where colour is multiplied by alpha.
+    pub is_premultiplied: bool,
     /// Position of the first pixel in the canonical picture.
     pub origin: [f64; 2],
     /// Height of the canonical picture; 0 for that of the picture.
@@ -28,14 +27,15 @@ pub struct PictureRequest {
 
 impl PictureRequest {
     /// Of a picture in `space`, of the frame of this number.
-    pub fn of(picture: &Picture, state: ImageState, space: Space, number: Option<i64>) -> Self {
+    pub fn of(picture: &Picture, space: Space, number: Option<i64>) -> Self {
         // Windows farther out than marks can be told apart are windows of their own.
-        let is_near = picture.origin.iter().all(|o| o.abs() <= MOST_ORIGIN);
+        let origin = picture.meaning.data.map_or([0; 2], |window| [window.x, window.y]);
+        let is_near = origin.iter().all(|o| o.abs() <= MOST_ORIGIN);
         Self {
             space,
-            state,
-            origin: if is_near { picture.origin.map(f64::from) } else { [0.0; 2] },
-            canonical_height: picture.display.map_or(0, |window| window.height as u32),
+            is_premultiplied: picture.meaning.is_premultiplied(),
+            origin: if is_near { origin.map(f64::from) } else { [0.0; 2] },
+            canonical_height: picture.meaning.display.map_or(0, |window| window.height as u32),
             frame: number.unwrap_or_default(),
         }
     }
@@ -49,10 +49,7 @@ impl PictureRequest {
                 Space::Acescg => ISOPHOTE_SPACE_ACESCG,
                 _ => ISOPHOTE_SPACE_LINEAR,
             },
-            alpha: match self.state {
-                ImageState::DisplayReferred => ISOPHOTE_ALPHA_STRAIGHT,
-                ImageState::SceneReferred => ISOPHOTE_ALPHA_PREMULTIPLIED,
-            },
+            alpha: if self.is_premultiplied { ISOPHOTE_ALPHA_PREMULTIPLIED } else { ISOPHOTE_ALPHA_STRAIGHT },
             origin_x,
             origin_y,
             canonical_height: self.canonical_height,

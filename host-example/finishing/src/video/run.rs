@@ -21,9 +21,9 @@ use crate::apply::tasks::Task;
 use isophote_files::error::{Error, Result};
 use isophote_files::files::{self, Existing};
 use isophote_files::stop::Stop;
-use isophote_pictures::exr::Picture;
+use isophote_pictures::meaning::Meaning;
 use isophote_pictures::pixels::{Pixels, Precision};
-use isophote_pictures::read::{ImageState, Source};
+use isophote_pictures::read::Source;
 use isophote_pictures::write::Format;
 
 /// Advice about a video that is damaged.
@@ -180,9 +180,7 @@ impl VideoJob<'_> {
         let name = self.input.display().to_string();
         let [past, future] = filter.frames()?;
         let hold = |(pixels, number)| {
-            let picture = Picture::alone(pixels);
-            let state = ImageState::DisplayReferred;
-            let mut source = Source { pictures: vec![picture], state, profile: None, exr: None };
+            let mut source = Source::alone(pixels, Meaning::display());
             self.masks.add(&mut source, Some(number))?;
             source.check()?;
             Ok::<_, Error>(Arc::new(CachedFrame::new(Some(number), source, false, budget.share())))
