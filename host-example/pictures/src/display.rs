@@ -24,6 +24,18 @@ pub fn shown(pixels: Pixels, meaning: &Meaning) -> Pixels {
     Pixels::new(display.width as u32, display.height as u32, channels, samples).unwrap_or(pixels)
 }
 
+/// Pixels in a length across and down by which files tell the shape of pixels: as many as are exact to a thousandth, each at most
+/// 65535.
+pub fn densities(pixel_aspect: f32) -> [u32; 2] {
+    const MANY: f32 = 1000.0;
+    let number = |density: f32| density.round().clamp(1.0, 65535.0) as u32;
+    match pixel_aspect {
+        1.0 => [1, 1],
+        wide if wide > 1.0 => [number(MANY), number(MANY * wide)],
+        high => [number(MANY / high), number(MANY)],
+    }
+}
+
 /// Samples of one window as those of another, 0 where there are none.
 fn moved<T: Copy + Default>(samples: &[T], channels: u32, from: Window, to: Window) -> Vec<T> {
     let channels = channels as usize;
@@ -55,18 +67,22 @@ mod tests {
     use super::*;
 
     fn meaning(data: [i32; 4], display: [i32; 4]) -> Meaning {
-        let window = |[x, y, width, height]: [i32; 4]| Window {
-            x,
-            y,
-            width: width as usize,
-            height: height as usize,
-        };
+        let window =
+            |[x, y, width, height]: [i32; 4]| Window { x, y, width: width as usize, height: height as usize };
         Meaning { data: Some(window(data)), display: Some(window(display)), ..Meaning::light() }
     }
 
     fn numbers(pixels: &Pixels) -> Vec<u8> {
         let Samples::U8(samples) = pixels.samples() else { return Vec::new() };
         samples.clone()
+    }
+
+    #[test]
+    fn shapes_of_pixels_are_ratios() {
+        assert_eq!(densities(1.0), [1, 1]);
+        assert_eq!(densities(2.0), [1000, 2000]);
+        assert_eq!(densities(0.5), [2000, 1000]);
+        assert_eq!(densities(f32::NAN), [1, 1000]);
     }
 
     #[test]

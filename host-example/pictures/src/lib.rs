@@ -17,6 +17,7 @@
 #![forbid(unsafe_code)]
 
 pub mod convert;
+mod display;
 pub mod exr;
 pub mod floats;
 mod hdr;
@@ -27,8 +28,10 @@ pub mod pixels;
 mod png;
 pub mod primaries;
 pub mod read;
+mod said;
 pub mod space;
 mod tiff;
+mod tiff_write;
 pub mod transfer;
 pub mod working;
 pub mod write;

@@ -16,7 +16,7 @@ use crate::meaning::{Alpha, ImageState, Meaning};
 use crate::pixels::{MOST_PIXELS, Pixels, Precision, Samples};
 use crate::primaries::{Change, REC709};
 use crate::tiff::Wide;
-use crate::{hdr, jpeg, png};
+use crate::{hdr, jpeg, png, said};
 use isophote_files::error::{Error, Result};
 use isophote_files::frames;
 use isophote_files::input;
@@ -186,6 +186,22 @@ impl Opened {
         }
     }
 
+    /// Width of a pixel over its height; of an EXR file that of its largest picture.
+    pub fn pixel_aspect(&self) -> f64 {
+        match &self.0 {
+            Kind::Exr(file) => file.pixel_aspect(),
+            Kind::Other(bytes, _) => f64::from(said::pixel_aspect(kind(bytes), bytes).unwrap_or(1.0)),
+        }
+    }
+
+    /// Name of the file's format.
+    pub fn kind(&self) -> &'static str {
+        match &self.0 {
+            Kind::Exr(_) => "EXR",
+            Kind::Other(bytes, _) => kind(bytes),
+        }
+    }
+
     /// Choices that the file offers: layers and views of an EXR file, nothing in others.
     pub fn offers(&self) -> Offers {
         match &self.0 {
@@ -267,6 +283,9 @@ fn decode(path: &Path, bytes: &[u8]) -> Result<Source> {
         return Err(Error::malformed(path, kind, "it ends before the picture does"));
     }
     let mut source = picture(path, decoder, kind)?;
+    for picture in &mut source.pictures {
+        said::add(kind, bytes, picture);
+    }
     if kind == "HDR"
         && let Some(primaries) = hdr::primaries(bytes)
     {
@@ -282,6 +301,11 @@ fn decode(path: &Path, bytes: &[u8]) -> Result<Source> {
         }
     }
     Ok(source)
+}
+
+/// The format of any file but an EXR file; nothing where it cannot be read.
+fn kind(bytes: &[u8]) -> &'static str {
+    decoder(Path::new(""), bytes).map_or("", |(kind, _)| kind)
 }
 
 /// The kind of any file but an EXR file, and a decoder that has read what it says of itself.

@@ -10,6 +10,7 @@ use tiff::encoder::colortype::{
 use tiff::encoder::{Rational, TiffEncoder, TiffValue};
 use tiff::tags::Tag;
 
+use crate::display::densities;
 use crate::meaning::Meaning;
 use crate::pixels::{Pixels, Samples};
 
@@ -17,8 +18,6 @@ use crate::pixels::{Pixels, Samples};
 pub const ASSOCIATED: u16 = 1;
 /// The same for alpha apart from colour.
 pub const UNASSOCIATED: u16 = 2;
-/// Pixels that the resolution counts across, where only the shape of pixels is told.
-const ACROSS: u32 = 10_000;
 
 /// Writes a picture of 8 or 16 bits, or of single floats of three or four channels.
 ///
@@ -55,7 +54,11 @@ struct Tags<'a> {
 }
 
 impl Tags<'_> {
-    fn encode<C: ColorType>(&self, file: &mut (impl Write + Seek), samples: &[C::Inner]) -> Result<(), TiffError>
+    fn encode<C: ColorType>(
+        &self,
+        file: &mut (impl Write + Seek),
+        samples: &[C::Inner],
+    ) -> Result<(), TiffError>
     where
         [C::Inner]: TiffValue,
     {
@@ -69,10 +72,43 @@ impl Tags<'_> {
             image.encoder().write_tag(Tag::IccProfile, profile)?;
         }
         if self.meaning.pixel_aspect != 1.0 {
-            let down = f64::from(ACROSS) * f64::from(self.meaning.pixel_aspect);
-            image.x_resolution(Rational { n: ACROSS, d: 1 });
-            image.y_resolution(Rational { n: down.round().max(1.0) as u32, d: 1 });
+            let [across, down] = densities(self.meaning.pixel_aspect);
+            image.x_resolution(Rational { n: across, d: 1 });
+            image.y_resolution(Rational { n: down, d: 1 });
         }
         image.write_data(samples)
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use std::io::Cursor;
+
+    use super::*;
+    use crate::meaning::Alpha;
+    use crate::tiff::{Fourth, said};
+
+    fn written(pixels: &Pixels, meaning: &Meaning) -> Vec<u8> {
+        let mut file = Cursor::new(Vec::new());
+        write(&mut file, pixels, meaning, None).unwrap();
+        file.into_inner()
+    }
+
+    #[test]
+    fn the_kind_of_alpha_and_the_shape_of_pixels_are_said() {
+        let pixels = Pixels::new(2, 1, 4, Samples::U8(vec![200, 100, 0, 255, 50, 25, 0, 64])).unwrap();
+        for (alpha, fourth) in
+            [(Alpha::Premultiplied, Fourth::Associated), (Alpha::Straight, Fourth::Unassociated)]
+        {
+            let meaning = Meaning { alpha, pixel_aspect: 1.5, ..Meaning::display() };
+            let said = said(&written(&pixels, &meaning));
+            assert_eq!((said.fourth, said.pixel_aspect), (Some(fourth), Some(1.5)));
+        }
+        let grey = Pixels::new(2, 1, 1, Samples::U16(vec![0, 65535])).unwrap();
+        let said = said(&written(&grey, &Meaning::display()));
+        assert_eq!((said.fourth, said.pixel_aspect), (None, None));
+        let floats = Pixels::new(1, 1, 1, Samples::F32(vec![0.0])).unwrap();
+        let refused = write(&mut Cursor::new(Vec::new()), &floats, &Meaning::light(), None);
+        assert!(refused.unwrap_err().contains("1 channels"));
     }
 }

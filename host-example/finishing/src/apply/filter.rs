@@ -7,6 +7,7 @@ use super::backend::Backend;
 use super::frame_cache::Window;
 use super::memory::Needs;
 use super::picture_request::PictureRequest;
+use super::square;
 use crate::stylize::style::Style;
 use isophote_example::history::{is_stage, split};
 use isophote_files::error::{AtPlace, Error, Result};
@@ -19,7 +20,7 @@ use isophote_pictures::exr::{ExrFile, Guide};
 use isophote_pictures::meaning::Meaning;
 use isophote_pictures::mix::{self, Encoding};
 use isophote_pictures::pixels::{Pixels, Precision};
-use isophote_pictures::read::Opened;
+use isophote_pictures::read::{Opened, Source};
 use isophote_pictures::space::Space;
 use isophote_pictures::working::WorkingSpace;
 use isophote_pictures::write::Format;
@@ -267,8 +268,9 @@ impl Filter {
             let (mut result, replaced) =
                 self.layered(name, &job, (channels, precision), encoding, &mut report)?;
             filtered.replaced += replaced;
+            result = square::unmake(&self.library, name, picture, result)?;
             if !scalar {
-                let meaning = working.of_results(to);
+                let meaning = format.kept(working.of_results(to));
                 result = working.leave(result, &meaning);
                 if at == 0 {
                     filtered.meaning = meaning;
@@ -405,13 +407,27 @@ impl Planner {
     /// # Errors
     /// As [`Planner::filter_memory`].
     pub fn needs(&mut self, file: &Path, frame: Option<i64>, opened: &Opened) -> Result<Option<Needs>> {
-        let Some(size) = opened.size() else { return Ok(None) };
-        let filter = self.filter_memory(&file.display().to_string(), frame, size)?;
+        let Some(own) = opened.size() else { return Ok(None) };
+        let name = file.display().to_string();
+        let size = square::size(&self.library, &name, own, opened.pixel_aspect())?;
+        let filter = self.filter_memory(&name, frame, size)?;
         // Each as it is read, as it is kept and as one of all frames.
         let masks = self.layers.iter().filter(|layer| layer.look.mask.is_some()).count() as u64;
         let masks = masks + if self.has_flow { 4 } else { 0 };
         let maps = u64::from(size.0) * u64::from(size.1) * 4 * 3 * masks;
-        Ok(Some(Needs { frame: opened.weight().saturating_add(maps), filter }))
+        let area = |(width, height): (u32, u32)| u64::from(width) * u64::from(height);
+        // Both are there while one is made of the other.
+        let grown =
+            if size == own { 0 } else { opened.weight().saturating_mul(area(size) / area(own).max(1)) };
+        Ok(Some(Needs { frame: opened.weight().saturating_add(maps).saturating_add(grown), filter }))
+    }
+
+    /// Makes the pixels of a frame square, where they are not.
+    ///
+    /// # Errors
+    /// As [`square::make`].
+    pub fn square(&self, name: &str, source: &mut Source) -> Result<()> {
+        square::make(&self.library, name, source)
     }
 }
 

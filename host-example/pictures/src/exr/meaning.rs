@@ -22,6 +22,7 @@ pub fn of(exr: &File, part: usize, has_alpha: bool) -> Meaning {
     let own = &exr.parts()[part];
     meaning.data = Some(own.window);
     meaning.display = own.display;
+    meaning.pixel_aspect = own.pixel_aspect.unwrap_or(1.0);
     let text = exr.texts(part).find(|(name, _)| *name == NAME).map(|(_, text)| String::from_utf8_lossy(text));
     let id = text.as_deref().unwrap_or_default().trim_end_matches('\0').trim();
     let named = space(id);

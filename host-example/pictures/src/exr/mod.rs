@@ -22,5 +22,5 @@ pub use self::guides::{Guide, GuideChoice};
 pub use self::mask::{MaskSource, OnUnknown, add};
 pub use self::names::components;
 pub use self::offers::{Layer, Offers};
-pub use self::picture::Picture;
+pub use self::picture::{OwnPixels, Picture};
 pub use isophote_motion::Convention;

@@ -29,14 +29,27 @@ pub struct Picture {
     pub meaning: Meaning,
     /// Share of results that is used, 0 to 1: a mask for each that was asked for.
     pub masks: Vec<Option<Pixels>>,
+    /// The pixels that it had, where its own are not square and were made so.
+    pub own: Option<OwnPixels>,
     /// Reason why there can be no result of it, for want of masks; neighbouring frames may depend on it all the same.
     pub refused: Option<Error>,
+}
+
+/// Pixels that a picture had before they were made square.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct OwnPixels {
+    /// Columns and rows.
+    pub size: (u32, u32),
+    /// Width of one over its height.
+    pub aspect: f64,
+    /// Scale of the picture in square pixels, as requests have it.
+    pub scale: f32,
 }
 
 impl Picture {
     /// A picture of which nothing else is known than what its numbers mean.
     pub fn alone(pixels: Pixels, meaning: Meaning) -> Self {
-        Self { pixels, guides: Vec::new(), meaning, masks: Vec::new(), refused: None }
+        Self { pixels, guides: Vec::new(), meaning, masks: Vec::new(), own: None, refused: None }
     }
 
     /// The window that its pixels fill.
@@ -98,7 +111,7 @@ pub fn read(
     }
     let pixels = interleaved(part.window, &planes).ok_or_else(unequal)?;
     let meaning = meaning::of(exr, chosen.group.part, chosen.alpha.is_some());
-    Ok(Picture { pixels, guides, meaning, masks, refused })
+    Ok(Picture { pixels, guides, meaning, masks, own: None, refused })
 }
 
 /// Samples a pixel that a result must have to go into the file.

@@ -101,6 +101,7 @@ impl Copied {
                 is_premultiplied: true,
                 origin: [0.0; 2],
                 canonical_height: 0,
+                scale: 1.0,
                 frame: 0,
             },
             has_light: false,
