@@ -2,8 +2,8 @@
 
 use crate::exr::Picture;
 use crate::meaning::Alpha;
-use crate::tiff::{Fourth, said};
-use crate::{png, tiff};
+use crate::png;
+use crate::tiff::{self, Fourth};
 
 /// Width of a pixel over its height, where a file of this kind says that they differ.
 pub fn pixel_aspect(kind: &str, bytes: &[u8]) -> Option<f32> {
@@ -22,7 +22,7 @@ pub fn add(kind: &str, bytes: &[u8], picture: &mut Picture) {
         return;
     }
     let has_alpha = picture.pixels.channels() == 4;
-    match said(bytes).fourth {
+    match tiff::said(bytes).fourth {
         Some(Fourth::Associated) if has_alpha => meaning.alpha = Alpha::Premultiplied,
         Some(Fourth::Unassociated) if has_alpha => meaning.alpha = Alpha::Straight,
         Some(Fourth::Other) => {

@@ -153,7 +153,10 @@ fn pictures_tell_their_size_colours_layers_and_guides() {
     let path = folder.path().join("plain.1.png");
     picture(20, 10).save(&path).expect("the picture can be written");
     let told = info(&path);
-    assert_eq!((&told["kind"], &told["format"], &told["size"]), (&"picture".into(), &"PNG".into(), &json!([20, 10])));
+    assert_eq!(
+        (&told["kind"], &told["format"], &told["size"]),
+        (&"picture".into(), &"PNG".into(), &json!([20, 10]))
+    );
     assert_eq!((&told["colours"], &told["transfer"]), (&"assumed".into(), &"sRGB".into()));
     assert_eq!((&told["sequence"], &told["warnings"]), (&Value::Null, &json!([])));
     fs::copy(&path, folder.path().join("plain.3.png")).expect("the folder is writable");
@@ -169,7 +172,8 @@ fn pictures_tell_their_size_colours_layers_and_guides() {
     channels.sort_by(|a, b| a.0.cmp(&b.0));
     let picture = create::Picture { width: 3, height: 2, channels, ..create::Picture::default() };
     let path = folder.path().join("layers.exr");
-    create::write(&picture, &mut fs::File::create(&path).expect("a file")).expect("the picture can be written");
+    create::write(&picture, &mut fs::File::create(&path).expect("a file"))
+        .expect("the picture can be written");
     let told = info(&path);
     let names = |list: &Value| -> Vec<String> {
         let name = |item: &Value| item["name"].as_str().unwrap_or_default().to_owned();
@@ -179,7 +183,9 @@ fn pictures_tell_their_size_colours_layers_and_guides() {
     assert!(names(&told["layers"]).contains(&"diffuse".to_owned()), "{}", told["layers"]);
     assert_eq!(told["motion"], false);
     let (text, _) = succeeds(isophote().arg("info").arg(&path));
-    for words in ["size            3x2", "guides          normal, channels N.X, N.Y, N.Z", "warnings        none"] {
+    for words in
+        ["size            3x2", "guides          normal, channels N.X, N.Y, N.Z", "warnings        none"]
+    {
         assert!(text.contains(words), "'{words}' is missing:\n{text}");
     }
 }
@@ -195,20 +201,36 @@ fn scenes_videos_and_presets_tell_what_they_hold() {
     assert!(extensions.contains(&json!({"name": "KHR_materials_transmission", "understood": true})));
     assert!(told["triangles"].as_u64().is_some_and(|count| count > 0));
     let preset = folder.path().join("dusk.json");
-    fs::write(&preset, r#"{"style": "cartoon", "params": {"posterize": 6}}"#).expect("the folder is writable");
+    fs::write(&preset, r#"{"style": "cartoon", "params": {"posterize": 6}}"#)
+        .expect("the folder is writable");
     let told = info(&preset);
     if told["warnings"] == json!([]) {
-        assert_eq!((&told["kind"], &told["style"], &told["nodes"]), (&"preset".into(), &"cartoon".into(), &json!(["cartoon"])));
+        assert_eq!(
+            (&told["kind"], &told["style"], &told["nodes"]),
+            (&"preset".into(), &"cartoon".into(), &json!(["cartoon"]))
+        );
     }
     if has_ffmpeg() {
         let video = folder.path().join("a.mp4");
         let made = Command::new("ffmpeg")
-            .args(["-v", "error", "-f", "lavfi", "-i", "testsrc=size=64x48:rate=25:duration=1", "-pix_fmt", "yuv420p"])
+            .args([
+                "-v",
+                "error",
+                "-f",
+                "lavfi",
+                "-i",
+                "testsrc=size=64x48:rate=25:duration=1",
+                "-pix_fmt",
+                "yuv420p",
+            ])
             .arg(&video)
             .status();
         assert!(made.is_ok_and(|status| status.success()));
         let told = info(&video);
-        assert_eq!((&told["kind"], &told["size"], &told["frames"]), (&"video".into(), &json!([64, 48]), &json!(25)));
+        assert_eq!(
+            (&told["kind"], &told["size"], &told["frames"]),
+            (&"video".into(), &json!([64, 48]), &json!(25))
+        );
         assert_eq!(told["frames_per_second"], 25.0);
     }
 }

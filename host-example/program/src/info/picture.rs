@@ -10,9 +10,7 @@ use isophote_files::frames::{Pattern, sequence_of};
 use isophote_pictures::exr::{Guide, Offers, Selection};
 use isophote_pictures::meaning::{Alpha, ImageState, Meaning, Window};
 use isophote_pictures::pixels::Precision;
-use isophote_pictures::primaries::{
-    ADOBE, AP0, AP1, Chromaticities, P3, REC709, REC2020,
-};
+use isophote_pictures::primaries::{ADOBE, AP0, AP1, Chromaticities, P3, REC709, REC2020};
 use isophote_pictures::read::Unread;
 use isophote_pictures::transfer::Transfer;
 
@@ -110,7 +108,9 @@ fn colours(facts: &mut Facts, meaning: &Meaning) {
         Transfer::Curves(_) => "curves of the profile".to_owned(),
     };
     facts.add("transfer", transfer);
-    let said = meaning.said_by.map_or("assumed: the file says nothing of colours".into(), |by| format!("said by {by}"));
+    let said = meaning
+        .said_by
+        .map_or("assumed: the file says nothing of colours".into(), |by| format!("said by {by}"));
     facts.told("colours", meaning.said_by.map_or("assumed", |by| by), said);
     facts.add(
         "state",
@@ -142,7 +142,8 @@ fn layers(facts: &mut Facts, offers: &Offers) {
         json!({ "name": shown(&layer.name), "views": views, "data": layer.is_data.then_some(true) })
     };
     facts.add("layers", offers.layers.iter().map(layer).collect::<Vec<_>>());
-    let guide = |(guide, channels): &(Guide, Vec<String>)| json!({ "name": guide.id(), "channels": channels });
+    let guide =
+        |(guide, channels): &(Guide, Vec<String>)| json!({ "name": guide.id(), "channels": channels });
     facts.add("guides", offers.guides.iter().map(guide).collect::<Vec<_>>());
     facts.add("motion", offers.guides.iter().any(|(guide, _)| guide.is_motion()));
 }
