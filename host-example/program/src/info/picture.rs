@@ -51,7 +51,7 @@ pub fn add(facts: &mut Facts, path: &Path) -> Result<()> {
     );
     window(facts, "data_window", Some(picture.window()));
     window(facts, "display_window", meaning.display);
-    facts.add("pixel_aspect", f64::from(meaning.pixel_aspect));
+    facts.told("pixel_aspect", rounded(meaning.pixel_aspect), meaning.pixel_aspect.to_string());
     colours(facts, meaning);
     layers(facts, &offers);
     facts.add("warnings", meaning.warnings.clone());
@@ -95,7 +95,7 @@ fn colours(facts: &mut Facts, meaning: &Meaning) {
     let own = meaning.primaries.map(|n| n.to_string()).join(" ");
     facts.told(
         "primaries",
-        json!({ "name": primaries, "xy": meaning.primaries }),
+        json!({ "name": primaries, "xy": meaning.primaries.map(rounded) }),
         primaries.map_or(own, str::to_owned),
     );
     let transfer = match &meaning.transfer {
@@ -132,6 +132,11 @@ fn colours(facts: &mut Facts, meaning: &Meaning) {
         meaning.profile.as_ref().map(|profile| profile.len()),
         meaning.profile.as_ref().map_or("none".into(), |profile| format!("ICC, {} bytes", profile.len())),
     );
+}
+
+/// A number as the digits that tell single floats apart say it.
+fn rounded(number: f32) -> f64 {
+    number.to_string().parse().unwrap_or_else(|_| f64::from(number))
 }
 
 /// Adds the layers of an EXR file, and the guides that are found beside the one that is read.
