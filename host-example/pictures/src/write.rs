@@ -1,6 +1,6 @@
 //! Results to files, as the extension says.
 
-use std::ops::Range;
+use std::io::Write;
 use std::path::Path;
 
 use image::{ExtendedColorType, ImageEncoder, ImageResult};
@@ -11,12 +11,11 @@ use crate::meaning::{ImageState, Meaning};
 use crate::pixels::{Pixels, Precision, Samples};
 use crate::primaries::REC709;
 use crate::read::Source;
+use crate::{icc, png};
 use isophote_files::error::{Error, Result};
 use isophote_files::files::{self, Existing};
 use isophote_files::output;
 
-/// Place in an ICC profile of the colour space of its pictures.
-const PROFILE_SPACE: Range<usize> = 16..20;
 /// Quality of JPEG files, 1 to 100.
 const JPEG_QUALITY: u8 = 95;
 
@@ -99,9 +98,15 @@ pub fn write(
             let color = color_type(&pixels);
             // PNG wants the larger byte first; the encoder takes the machine's order.
             files::write(path, existing, |file| {
-                let mut encoder = image::codecs::png::PngEncoder::new(file);
-                keep_profile(&mut encoder, meaning.profile.as_deref(), pixels.channels());
-                as_text(encoder.write_image(pixels.bytes(), pixels.width(), pixels.height(), color))
+                let mut bytes = Vec::new();
+                let mut encoder = image::codecs::png::PngEncoder::new(&mut bytes);
+                let is_said = match meaning.profile_of(pixels.channels()) {
+                    Some(profile) => encoder.set_icc_profile(profile.to_vec()).is_ok(),
+                    None => false,
+                };
+                as_text(encoder.write_image(pixels.bytes(), pixels.width(), pixels.height(), color))?;
+                let bytes = if is_said { bytes } else { png::with_meaning(bytes, meaning) };
+                file.write_all(&bytes).map_err(|e| e.to_string())
             })
         }
         Format::Tiff => {
@@ -114,7 +119,7 @@ pub fn write(
             let color = color_type(&pixels);
             files::write(path, existing, |file| {
                 let mut encoder = image::codecs::tiff::TiffEncoder::new(file);
-                keep_profile(&mut encoder, meaning.profile.as_deref(), pixels.channels());
+                say(&mut encoder, meaning, pixels.channels());
                 as_text(encoder.write_image(pixels.bytes(), pixels.width(), pixels.height(), color))
             })
         }
@@ -123,7 +128,7 @@ pub fn write(
             let color = color_type(&pixels);
             files::write(path, existing, |file| {
                 let mut encoder = image::codecs::jpeg::JpegEncoder::new_with_quality(file, JPEG_QUALITY);
-                keep_profile(&mut encoder, meaning.profile.as_deref(), pixels.channels());
+                say(&mut encoder, meaning, pixels.channels());
                 as_text(encoder.write_image(pixels.bytes(), pixels.width(), pixels.height(), color))
             })
         }
@@ -162,13 +167,13 @@ fn write_exr(
     floats::save_exr(path, existing, &data, components(channels), precision, chromaticities)
 }
 
-/// Keeps a colour profile where it is one of pictures with these channels.
-fn keep_profile(encoder: &mut impl ImageEncoder, profile: Option<&[u8]>, channels: u32) {
-    let Some(profile) = profile else { return };
-    let wanted: &[u8] = if channels == 1 { b"GRAY" } else { b"RGB " };
-    if profile.get(PROFILE_SPACE) == Some(wanted) {
-        // An encoder that cannot keep it leaves a picture that is taken for sRGB, as most are.
-        let _ = encoder.set_icc_profile(profile.to_vec());
+/// Says by a colour profile what numbers mean: the one of the source where it is one of pictures with these channels, else one
+/// that is made where the numbers are not what is assumed without.
+fn say(encoder: &mut impl ImageEncoder, meaning: &Meaning, channels: u32) {
+    let made = || icc::made(meaning).filter(|_| !meaning.is_usual() && channels > 1);
+    if let Some(profile) = meaning.profile_of(channels).map(<[u8]>::to_vec).or_else(made) {
+        // All encoders that are used keep profiles.
+        let _ = encoder.set_icc_profile(profile);
     }
 }
 
