@@ -175,8 +175,9 @@ fn write_exr(
         channels: channels as usize,
         data: pixels.to_f32(),
     };
+    let aspect = Some(meaning.pixel_aspect).filter(|aspect| *aspect != 1.0);
     let chromaticities = Some(meaning.primaries).filter(|_| !meaning.has_primaries(REC709));
-    floats::save_exr(path, existing, &data, components(channels), precision, chromaticities)
+    floats::save_exr(path, existing, &data, components(channels), precision, (chromaticities, aspect))
 }
 
 /// Says by a colour profile what numbers mean.
