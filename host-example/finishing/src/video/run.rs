@@ -6,12 +6,13 @@ use std::path::Path;
 use std::sync::Arc;
 use std::sync::mpsc::{Receiver, SyncSender, sync_channel};
 
-use super::container::is_pipe;
+use super::container::{Y4M, container, is_pipe};
 use super::decode::{self, OnError};
-use super::encode::{Encoder, Encoding};
+use super::encode::{Encoder, Encoding, More};
 use super::input::Input;
 use super::process::{End, Process, at};
 use super::stream::Stream;
+use super::tracks::Tracks;
 use crate::apply::filter::Filter;
 use crate::apply::frame_cache::{CachedFrame, Window};
 use crate::apply::masks::Masks;
@@ -105,10 +106,14 @@ impl VideoJob<'_> {
         // Frames after a complaint are of no use where the run is to fail.
         let fails = self.on_error == OnError::Fail;
         let is_over = || fails && complaints.first().is_some();
-        let more = input.more();
+        let (more, times) = (input.more(), input.times()?);
+        let container = container(self.output).unwrap_or(Y4M);
+        let tracks = more.map_or(Ok(Tracks::default()), |(path, _)| Tracks::of(path, container))?;
+        tracks.warn(self.input, self.output);
+        let more = more.map(|(path, start)| More { path, tracks: &tracks, start });
         let encoder = |channels| {
-            let (output, options) = (self.output, self.encode);
-            Encoder::start(&Encoding { stream, channels, more, output, options }, place)
+            let (output, options, times) = (self.output, self.encode, times.as_ref());
+            Encoder::start(&Encoding { stream, channels, more, times, output, options }, place)
         };
         let (filtered, cut) = std::thread::scope(|scope| {
             // It ends with the stream, or with the decoder.

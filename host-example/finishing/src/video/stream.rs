@@ -13,8 +13,16 @@ pub struct Stream {
     pub height: u32,
     /// Frames per second.
     pub rate: Ratio,
-    /// True where all frames last as long.
-    pub is_steady: bool,
+    /// Frames per second of which all frames last a whole number; the same as the rate where all last equally long.
+    pub grid: Ratio,
+    /// Seconds by which its times are told.
+    pub tick: Ratio,
+    /// Which field of its frames is shown first, `tff` or `bff`; nothing where they are whole.
+    pub fields: Option<&'static str>,
+    /// The decoder that sees its alpha, where the usual one does not.
+    pub decoder: Option<&'static str>,
+    /// True for GIF, APNG and WebP, which become what any player shows.
+    pub is_animation: bool,
     /// Frames, about; 0 where nobody knows.
     pub frames: u64,
     /// Promise of the container about how much there is of it.
@@ -56,7 +64,11 @@ impl Stream {
             width,
             height,
             rate,
-            is_steady: true,
+            grid: rate,
+            tick: rate.inverse(),
+            fields: None,
+            decoder: None,
+            is_animation: false,
             frames: 0,
             promise: Promise::None,
             pixels: "yuv420p",
@@ -79,13 +91,42 @@ impl Stream {
 
     /// Channels of its frames: with alpha or without.
     pub fn channels(&self) -> u32 {
-        const ALPHA: [&str; 11] =
-            ["yuva", "rgba", "bgra", "argb", "abgr", "gbrap", "ya", "vuya", "ayuv", "uyva", "pal8"];
-        if ALPHA.iter().any(|a| self.pixels.starts_with(a)) { 4 } else { 3 }
+        if has_alpha(self.pixels) { 4 } else { 3 }
     }
 
     /// Samples of a frame as it is decoded.
     pub fn samples(&self) -> usize {
         self.width as usize * self.height as usize * self.channels() as usize
     }
+}
+
+/// True where pixels of this form have alpha.
+pub fn has_alpha(pixels: &str) -> bool {
+    const ALPHA: [&str; 11] =
+        ["yuva", "rgba", "bgra", "argb", "abgr", "gbrap", "ya", "vuya", "ayuv", "uyva", "pal8"];
+    ALPHA.iter().any(|alpha| pixels.starts_with(alpha))
+}
+
+/// True where pixels of this form are red, green and blue.
+pub fn is_rgb(pixels: &str) -> bool {
+    const OTHERS: [&str; 3] = ["argb", "abgr", "0"];
+    let is_other = OTHERS.iter().any(|start| pixels.starts_with(start));
+    pixels == "pal8" || is_other || ["rgb", "bgr", "gb", "x2"].iter().any(|start| pixels.starts_with(start))
+}
+
+/// Bits of a sample of pixels of this form, about.
+pub fn depth(pixels: &str) -> u32 {
+    const DEEP: [(&str, u32); 9] = [
+        ("48", 16),
+        ("64", 16),
+        ("f32", 16),
+        ("f16", 16),
+        ("16", 16),
+        ("14", 14),
+        ("12", 12),
+        ("10", 10),
+        ("9", 9),
+    ];
+    let form = pixels.trim_end_matches("le").trim_end_matches("be");
+    DEEP.iter().find(|(end, _)| form.ends_with(end)).map_or(8, |(_, bits)| *bits)
 }

@@ -177,7 +177,7 @@ pub struct ApplyArgs {
 /// when the library or the device fails. Each output is written as a whole or not at all.
 pub fn run(args: &ApplyArgs) -> Result<()> {
     let files = args.files()?;
-    if video::is_video(files.input) || video::is_video(&files.output) {
+    if video::is_video(files.input) || video::becomes_video(&files.output) {
         return args.run_on_video(&files);
     }
     if args.on_error == OnError::Skip {
