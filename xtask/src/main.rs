@@ -3,6 +3,7 @@
 mod bench;
 mod bundle;
 mod card;
+mod cases;
 mod crates;
 mod demo;
 mod dist;

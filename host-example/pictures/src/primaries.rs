@@ -2,11 +2,6 @@
 //!
 //! Source: SMPTE RP 177 (matrices from chromaticities) and Lam 1985 (Bradford adaptation).
 
-use crate::pixels::{Pixels, Samples};
-
-/// Number that an infinity becomes.
-const LARGEST_HALF: f32 = 65504.0;
-
 /// Red, green, blue, white: x and y of each.
 pub type Chromaticities = [f32; 8];
 
@@ -18,6 +13,8 @@ pub const AP0: Chromaticities = [0.7347, 0.2653, 0.0, 1.0, 0.0001, -0.0770, 0.32
 pub const P3: Chromaticities = [0.680, 0.320, 0.265, 0.690, 0.150, 0.060, 0.3127, 0.3290];
 /// ITU-R BT.2020.
 pub const REC2020: Chromaticities = [0.708, 0.292, 0.170, 0.797, 0.131, 0.046, 0.3127, 0.3290];
+/// Adobe RGB (1998).
+pub const ADOBE: Chromaticities = [0.64, 0.33, 0.21, 0.71, 0.15, 0.06, 0.3127, 0.3290];
 
 /// Chromaticities that differ by less are the same; files write them with a few digits.
 const SAME: f32 = 2e-3;
@@ -47,25 +44,6 @@ impl Change {
     pub fn apply(&self, [r, g, b]: [f32; 3]) -> [f32; 3] {
         self.0.map(|row| row[0] * r + row[1] * g + row[2] * b)
     }
-}
-
-/// Colours of other primaries, premultiplied or not; what is no number or infinite is replaced first, as the
-/// library would, and counted, so that it does not spread to the other channels.
-pub fn changed(pixels: &Pixels, change: &Change) -> (Pixels, u64) {
-    let mut numbers = pixels.to_f32();
-    let mut replaced = 0;
-    for pixel in numbers.chunks_exact_mut(pixels.channels() as usize) {
-        if let Some(rgb) = pixel.first_chunk_mut::<3>() {
-            for value in rgb.iter_mut().filter(|v| !v.is_finite()) {
-                *value = if value.is_nan() { 0.0 } else { LARGEST_HALF.copysign(*value) };
-                replaced += 1;
-            }
-            *rgb = change.apply(*rgb);
-        }
-    }
-    // As many numbers as there were.
-    let changed = Pixels::new(pixels.width(), pixels.height(), pixels.channels(), Samples::F32(numbers));
-    (changed.unwrap_or_else(|| pixels.clone()), replaced)
 }
 
 /// True where two sets of primaries are the same but for rounding.

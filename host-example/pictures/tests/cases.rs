@@ -6,6 +6,7 @@ use std::path::{Path, PathBuf};
 use isophote_files::files::Existing;
 use isophote_files::frames::Pattern;
 use isophote_pictures::exr::{Guide, GuideChoice, Selection};
+use isophote_pictures::meaning::Meaning;
 use isophote_pictures::pixels::Pixels;
 use isophote_pictures::primaries;
 use isophote_pictures::read::{self, Source};
@@ -136,7 +137,7 @@ fn dwa_is_read_and_written_without_loss() {
         let mut source = source(path);
         let out = folder.path().join(path.file_name().expect("a name"));
         let (exr, pixels) = (source.exr.take(), source.pictures[0].pixels.clone());
-        write::write(&out, Existing::Keep, Format::Exr, vec![pixels], &source, exr)
+        write::write(&out, Existing::Keep, Format::Exr, vec![pixels], &Meaning::light(), &source, exr)
             .expect("it can be written");
         assert_eq!(self::source(&out).pictures[0].pixels.to_f32(), numbers);
     }
@@ -192,15 +193,15 @@ fn tiff_files_of_32_bit_integers_look_as_those_of_8() {
 
 #[test]
 fn colour_spaces_by_name_are_those_of_their_chromaticities() {
-    let primaries = |name: &str| source(&case("exr_color_interop").join(name)).pictures[0].chromaticities;
+    let primaries = |name: &str| source(&case("exr_color_interop").join(name)).pictures[0].meaning.primaries;
     for (named, written) in [("c_2020id.exr", "c_2020chr.exr"), ("c_ap1id.exr", "c_ap1chr.exr")] {
-        let (named, written) = (primaries(named).expect("known"), primaries(written).expect("written"));
+        let (named, written) = (primaries(named), primaries(written));
         assert!(primaries::same(named, written), "{named:?}");
     }
-    assert_eq!(primaries("cs_Linear_Rec2020.exr"), Some(primaries::REC2020));
-    assert_eq!(primaries("c_p3id.exr"), Some(primaries::P3));
+    assert_eq!(primaries("cs_Linear_Rec2020.exr"), primaries::REC2020);
+    assert_eq!(primaries("c_p3id.exr"), primaries::P3);
     for name in ["c_plain.exr", "c_data.exr"] {
-        assert_eq!(primaries(name), None, "{name}");
+        assert_eq!(primaries(name), primaries::REC709, "{name}");
     }
 }
 
@@ -218,17 +219,33 @@ fn profiles_are_kept_where_they_fit() {
         let source = source(&case("icc_profiles").join(name));
         let out = folder.path().join(format!("{name}.out"));
         let pixels = source.pictures[0].pixels.clone();
-        write::write(&out, Existing::Replace, format, vec![pixels], &source, None)
-            .expect("it can be written");
-        assert_eq!(self::source(&out).profile.is_some(), is_kept, "{name} to {format:?}");
+        write::write(
+            &out,
+            Existing::Replace,
+            format,
+            vec![pixels],
+            &source.pictures[0].meaning,
+            &source,
+            None,
+        )
+        .expect("it can be written");
+        assert_eq!(self::source(&out).pictures[0].meaning.profile.is_some(), is_kept, "{name} to {format:?}");
     }
     // A grey picture that becomes one of colours.
     let mut grey = source(&case("icc_profiles").join("gicc.png"));
-    assert!(grey.profile.is_some());
+    assert!(grey.pictures[0].meaning.profile.is_some());
     let of_colours = source(&case("icc_profiles").join("p3.png")).pictures.remove(0).pixels;
     grey.pictures[0].pixels = of_colours.clone();
     let out = folder.path().join("grey.png");
-    write::write(&out, Existing::Replace, Format::Png, vec![of_colours], &grey, None)
-        .expect("it can be written");
-    assert_eq!(source(&out).profile, None);
+    write::write(
+        &out,
+        Existing::Replace,
+        Format::Png,
+        vec![of_colours],
+        &grey.pictures[0].meaning,
+        &grey,
+        None,
+    )
+    .expect("it can be written");
+    assert_eq!(source(&out).pictures[0].meaning.profile, None);
 }

@@ -4,7 +4,7 @@ from typing import Any, Literal, Union
 
 from typing_extensions import Unpack
 
-from ._pixels import Array
+from ._inputs import Array
 from .style import Picture
 
 Color = Union[str, tuple[float, float, float], tuple[float, float, float, float]]

@@ -64,7 +64,8 @@ pub fn decoder(origin: Origin<'_>, stream: &Stream, from: Option<f64>, on_error:
         }
     }
     let Stream { range, matrix, .. } = stream;
-    let whole = stream.fields.map_or_else(String::new, |first| format!("bwdif=mode=send_frame:parity={first},"));
+    let whole =
+        stream.fields.map_or_else(String::new, |first| format!("bwdif=mode=send_frame:parity={first},"));
     let change = format!("{whole}scale=in_color_matrix={matrix}:in_range={range}:out_range=pc:{EXACT}");
     // Every frame once, however long it lasts.
     command.args(["-map", "0:V:0", "-vf", &change, "-fps_mode", "passthrough"]);

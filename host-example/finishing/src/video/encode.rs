@@ -101,9 +101,8 @@ impl Encoder {
         let mut process = at(Process::start(&mut encoding.encoder(place)), output, FIX)?;
         let is_on_black = encoding.channels == 4 && !form.has_alpha;
         let channels = if is_on_black { 3 } else { encoding.channels };
-        let header = times.map_or_else(Vec::new, |_| {
-            timed::header((stream.width, stream.height), channels, stream.rate)
-        });
+        let header = times
+            .map_or_else(Vec::new, |_| timed::header((stream.width, stream.height), channels, stream.rate));
         let is_open = process.child().stdin.as_mut().is_some_and(|into| into.write_all(&header).is_ok());
         Ok(Self {
             output: output.to_owned(),

@@ -9,7 +9,7 @@ use super::stream::Stream;
 use isophote_files::error::{Error, Result};
 use isophote_pictures::floats::Picture;
 use isophote_pictures::pixels::{Pixels, Samples};
-use isophote_pictures::space::srgb_encode;
+use isophote_pictures::transfer::srgb_encode;
 
 /// A video that is being made. It is opaque: what is transparent is put on black. A last odd row or column, which most videos
 /// cannot have, is left out.

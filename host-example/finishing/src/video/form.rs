@@ -115,7 +115,9 @@ impl Form {
         }
         match encoder {
             "libx264" | "libx265"
-                if !self.pixels.starts_with("gray") && !self.pixels.contains("444") && !is_rgb(self.pixels) =>
+                if !self.pixels.starts_with("gray")
+                    && !self.pixels.contains("444")
+                    && !is_rgb(self.pixels) =>
             {
                 let full = ["420", "422", "411", "410", "440"]
                     .iter()
@@ -148,7 +150,9 @@ fn own(encoder: &str, container: &str, is_rgb: bool, bits: u32, has_alpha: bool)
         _ => Some(16),
     };
     let planes = |most| {
-        Some(plane(most).map_or_else(|| format!("gbr{a}p"), |bits| deep(&format!("gbr{a}p{bits}")).to_owned()))
+        Some(
+            plane(most).map_or_else(|| format!("gbr{a}p"), |bits| deep(&format!("gbr{a}p{bits}")).to_owned()),
+        )
     };
     let name = match (encoder, is_rgb, has_alpha, is_deep) {
         ("gif" | "libwebp" | "libwebp_anim", ..) => "bgra",
@@ -242,9 +246,12 @@ mod tests {
 
     #[test]
     fn alpha_and_odd_sizes_are_kept_where_they_can_be() {
-        for (container, pixels, keeps) in
-            [("mp4", "yuva420p", false), ("mov", "yuva420p", true), ("avi", "bgra", true), ("gif", "bgra", true)]
-        {
+        for (container, pixels, keeps) in [
+            ("mp4", "yuva420p", false),
+            ("mov", "yuva420p", true),
+            ("avi", "bgra", true),
+            ("gif", "bgra", true),
+        ] {
             let form = form(container, pixels, (4, 4), None);
             assert_eq!(form.has_alpha, keeps, "{container}");
         }

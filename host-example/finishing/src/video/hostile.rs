@@ -104,7 +104,8 @@ fn known() -> BTreeSet<String> {
     for pairs in [&SPACES[..], &TRANSFERS, &PRIMARIES, &RANGES, &MATRICES] {
         known.extend(pairs.iter().map(|(_, word)| (*word).to_owned()));
     }
-    for (fields, decoder) in [(None, None), (Some("tff"), Some("libvpx")), (Some("bff"), Some("libvpx-vp9"))] {
+    for (fields, decoder) in [(None, None), (Some("tff"), Some("libvpx")), (Some("bff"), Some("libvpx-vp9"))]
+    {
         for pixels in ["yuv420p", "rgba", "gbrp10le"] {
             (plain.fields, plain.decoder, plain.pixels) = (fields, decoder, pixels);
             let words = arguments(&plain).into_iter().flatten();

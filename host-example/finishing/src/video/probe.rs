@@ -43,9 +43,6 @@ pub fn probe(path: &Path) -> Result<Stream> {
     })?;
     let (stream, unknown) = understand(path, &serde_json::from_str(&text).unwrap_or_default())?;
     warn_of(path, &unknown);
-    if stream.tags.iter().any(|tag| matches!(tag, ["-color_trc", "smpte2084" | "arib-std-b67"])) {
-        output::warn(format_args!("{}: is HDR and is filtered as it is encoded", path.display()));
-    }
     warn_of_fields(path, &stream);
     Ok(stream)
 }

@@ -268,7 +268,9 @@ mod tests {
     fn the_cause_is_told_whole() {
         let complaints = Complaints::default();
         let long = "x".repeat(1000);
-        let said = format!("Error initializing output stream 0:0 -- \n[mp4 @ 0x55e8883269c0] {long}\nConversion failed!\n");
+        let said = format!(
+            "Error initializing output stream 0:0 -- \n[mp4 @ 0x55e8883269c0] {long}\nConversion failed!\n"
+        );
         complaints.keep(said.as_bytes());
         assert_eq!(complaints.first(), Some(format!("mp4: {long}")));
         let complaints = Complaints::default();

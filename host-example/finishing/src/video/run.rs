@@ -18,13 +18,14 @@ use crate::apply::frame_cache::{CachedFrame, Window};
 use crate::apply::masks::Masks;
 use crate::apply::memory::Budget;
 use crate::apply::report::{Outcome, Report};
+use crate::apply::square;
 use crate::apply::tasks::Task;
 use isophote_files::error::{Error, Result};
 use isophote_files::files::{self, Existing};
 use isophote_files::stop::Stop;
-use isophote_pictures::exr::Picture;
+use isophote_pictures::meaning::Meaning;
 use isophote_pictures::pixels::{Pixels, Precision};
-use isophote_pictures::read::{ImageState, Source};
+use isophote_pictures::read::Source;
 use isophote_pictures::write::Format;
 
 /// Advice about a video that is damaged.
@@ -120,7 +121,7 @@ impl VideoJob<'_> {
             let relaying = input.pipe().zip(into).map(|(pipe, into)| scope.spawn(move || pipe.relay(into)));
             let (send, decoded) = sync_channel(AHEAD);
             let reading = scope.spawn(move || read(stream, &mut from, &send, &is_over));
-            let filtered = self.filter(filter, (decoded, &budget), &encoder, report);
+            let filtered = self.filter(filter, (decoded, &budget, &stream.meaning()), &encoder, report);
             let read = reading.join().map_err(|_| broken("decoding"));
             let cut = relaying.map_or(Ok(None), |relaying| relaying.join().map_err(|_| broken("reading")));
             let filtered = filtered?;
@@ -178,17 +179,17 @@ impl VideoJob<'_> {
     fn filter(
         &self,
         filter: &mut Filter,
-        (decoded, budget): (Receiver<Pixels>, &Budget),
+        (decoded, budget, meaning): (Receiver<Pixels>, &Budget, &Meaning),
         start: &dyn Fn(u32) -> Result<Encoder>,
         report: &Report,
     ) -> Result<Filtered> {
         let name = self.input.display().to_string();
         let [past, future] = filter.frames()?;
+        let library = filter.library();
         let hold = |(pixels, number)| {
-            let picture = Picture::alone(pixels);
-            let state = ImageState::DisplayReferred;
-            let mut source = Source { pictures: vec![picture], state, profile: None, exr: None };
+            let mut source = Source::alone(pixels, meaning.clone());
             self.masks.add(&mut source, Some(number))?;
+            square::make(&library, &name, &mut source)?;
             source.check()?;
             Ok::<_, Error>(Arc::new(CachedFrame::new(Some(number), source, false, budget.share())))
         };

@@ -40,8 +40,11 @@ pub fn header((width, height): (u32, u32), channels: u32, rate: Ratio) -> Vec<u8
         number(&[0x42, 0x87], 4),
         number(&[0x42, 0x85], 2),
     ];
-    let picture =
-        [number(&[0xB0], width.into()), number(&[0xBA], height.into()), part(&[0x2E, 0xB5, 0x24], &form(channels))];
+    let picture = [
+        number(&[0xB0], width.into()),
+        number(&[0xBA], height.into()),
+        part(&[0x2E, 0xB5, 0x24], &form(channels)),
+    ];
     let track = [
         number(&[0xD7], 1),
         number(&[0x73, 0xC5], 1),

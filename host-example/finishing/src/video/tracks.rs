@@ -77,8 +77,27 @@ const HOLDS: [Holds; 11] = [
     Holds {
         containers: &["matroska"],
         sound: &[
-            "aac", "ac3", "eac3", "mp3", "mp2", "alac", "opus", "vorbis", "flac", "dts", "truehd", "mlp", "tta",
-            "wavpack", "pcm_s16le", "pcm_s24le", "pcm_s32le", "pcm_f32le", "pcm_f64le", "pcm_u8", "wmav2",
+            "aac",
+            "ac3",
+            "eac3",
+            "mp3",
+            "mp2",
+            "alac",
+            "opus",
+            "vorbis",
+            "flac",
+            "dts",
+            "truehd",
+            "mlp",
+            "tta",
+            "wavpack",
+            "pcm_s16le",
+            "pcm_s24le",
+            "pcm_s32le",
+            "pcm_f32le",
+            "pcm_f64le",
+            "pcm_u8",
+            "wmav2",
         ],
         encoder: &[["-c", "flac"]],
         subtitles: &["subrip", "ass", "ssa", "webvtt", "dvd_subtitle", "hdmv_pgs_subtitle", "dvb_subtitle"],
@@ -162,7 +181,10 @@ impl Tracks {
     pub fn warn(&self, input: &Path, output: &Path) {
         if !self.left_out.is_empty() {
             let (what, input) = (self.left_out.join(", "), input.display());
-            output::warn(format_args!("{input}: {what}: left out, since {} cannot hold it", output.display()));
+            output::warn(format_args!(
+                "{input}: {what}: left out, since {} cannot hold it",
+                output.display()
+            ));
         }
     }
 

@@ -141,9 +141,7 @@ mod tests {
 
     #[test]
     fn frames_are_counted_and_timed() {
-        let part = |name: &[u8], bytes: &[u8]| {
-            [name, &(bytes.len() as u32).to_le_bytes(), bytes].concat()
-        };
+        let part = |name: &[u8], bytes: &[u8]| [name, &(bytes.len() as u32).to_le_bytes(), bytes].concat();
         let frame = |length: u8| part(b"ANMF", &[&[0; 12][..], &[length, 0, 0, 0, 9, 9]].concat());
         let start = [&b"RIFF\0\0\0\0WEBP"[..], &part(b"VP8X", &[2, 0, 0, 0, 159, 0, 0, 89, 0, 0])].concat();
         let all = [&start[..], &frame(40), &frame(0), &frame(80)].concat();
