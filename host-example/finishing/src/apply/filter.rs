@@ -196,6 +196,11 @@ impl Filter {
         Ok(Self { library, layers: layers(looks)?, device, space, threads })
     }
 
+    /// The library that it runs.
+    pub fn library(&self) -> Library {
+        self.library.clone()
+    }
+
     /// Another one beside it on the same device, of the same looks.
     ///
     /// # Errors

@@ -20,9 +20,9 @@ pub fn add(facts: &mut Facts, path: &Path) -> Result<()> {
     facts.told("size", json!([width, height]), format!("{width}x{height}"));
     facts.add("frames", clip.last());
     let rate = stream.frames_per_second();
-    let pace = if stream.is_steady { "" } else { ", not all equally long" };
+    let pace = if stream.is_steady() { "" } else { ", not all equally long" };
     facts.told("frames_per_second", rate, format!("{} ({rate:.3}){pace}", stream.rate));
-    facts.add("steady_rate", stream.is_steady);
+    facts.add("steady_rate", stream.is_steady());
     let aspect = stream.aspect.value();
     facts.told("pixel_aspect", aspect, stream.aspect.with(':'));
     facts.add("pixels", stream.pixels);

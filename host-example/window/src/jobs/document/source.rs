@@ -9,7 +9,6 @@ use isophote_files::frames::Pattern;
 use isophote_files::limits;
 use isophote_finishing::video::Clip;
 use isophote_pictures::exr::Selection;
-use isophote_pictures::meaning::Meaning;
 use isophote_pictures::read::{self, Opened, Source as Read};
 use isophote_pictures::space::Space;
 
@@ -99,7 +98,7 @@ fn decode(
     clip.go_to(first)?;
     while let Some((at, pixels)) = clip.take()? {
         if sink.wants(at) {
-            let source = Read::alone(pixels, Meaning::display());
+            let source = Read::alone(pixels, clip.stream().meaning());
             sink.put(at, Frame::of(&name, source, Some(at), reading.space));
         }
         if at >= number || sink.is_elsewhere(at + 1..=number) {
