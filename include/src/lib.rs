@@ -10,6 +10,7 @@
 pub mod constants;
 pub mod guides;
 pub mod openfx;
+pub mod pixel_aspect;
 pub mod precision;
 pub mod presets;
 pub mod sequences;
@@ -19,6 +20,7 @@ pub mod vulkan;
 
 pub use constants::*;
 pub use guides::*;
+pub use pixel_aspect::*;
 pub use precision::*;
 pub use presets::*;
 pub use sequences::*;

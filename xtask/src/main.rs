@@ -3,12 +3,15 @@
 mod bench;
 mod bundle;
 mod card;
+mod cases;
 mod crates;
 mod demo;
 mod dist;
 mod docs;
 mod error;
 mod experiments;
+#[cfg(test)]
+mod formats;
 mod gallery;
 mod gpu_cost;
 mod guides;

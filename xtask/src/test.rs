@@ -6,7 +6,7 @@ use crate::setup::{
     VALGRIND, VULKAN, VULKAN_HEADERS, WASM, XVFB,
 };
 use crate::tools::{cargo, cargo_command, heading, library_file, root, target_dir};
-use crate::{python, web};
+use crate::{cases, python, web};
 use std::path::{Path, PathBuf};
 use std::process::{Command, Output, Stdio};
 use std::sync::Mutex;
@@ -60,6 +60,9 @@ pub fn run(options: &Options) -> Result<()> {
     let is_everything = options.filter.is_none() && !options.list;
     if is_everything && !options.tests_only {
         check_sources()?;
+    }
+    if is_everything || options.filter.as_deref() == Some(cases::FILTER) {
+        cases::check()?;
     }
     heading("build");
     cargo(&["build", "--workspace", "--quiet"])?;

@@ -25,6 +25,8 @@ pub struct Picture {
     pub comments: Option<String>,
     /// Red, green, blue, white: x and y of each (`chromaticities`); Rec. ITU-R BT.709 without.
     pub chromaticities: Option<[f32; 8]>,
+    /// Width of a pixel over its height (`pixelAspectRatio`); 1 without.
+    pub pixel_aspect: Option<f32>,
     /// Row vectors times this matrix lead from the world to the camera (`worldToCamera`).
     pub world_to_camera: Option<[f32; 16]>,
     /// Row vectors times this matrix lead from the world to the window, each side from -1 to 1 (`worldToNDC`).
@@ -70,6 +72,7 @@ pub fn write(picture: &Picture, out: &mut (impl Write + Seek)) -> Result<()> {
     image.attributes.chromaticities = picture.chromaticities.map(|[rx, ry, gx, gy, bx, by, wx, wy]| {
         Chromaticities { red: Vec2(rx, ry), green: Vec2(gx, gy), blue: Vec2(bx, by), white: Vec2(wx, wy) }
     });
+    image.attributes.pixel_aspect = picture.pixel_aspect.unwrap_or(1.0);
     image.write().to_buffered(out).map_err(|error| match error {
         exr::error::Error::Io(error) => Error::Write(error),
         other => Error::Argument(other.to_string()),

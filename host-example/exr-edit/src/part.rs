@@ -44,6 +44,8 @@ pub struct Part {
     pub compression: u8,
     /// Red, green, blue, white: x and y of each (CIE 1931).
     pub chromaticities: Option<[f32; 8]>,
+    /// Width of a pixel over its height (`pixelAspectRatio`), where that is a positive number.
+    pub pixel_aspect: Option<f32>,
     /// Row vectors times this matrix lead from the world to the camera.
     pub world_to_camera: Option<[f32; 16]>,
     /// All attributes up to and without the closing zero, as they were.
@@ -148,6 +150,7 @@ impl Header {
             display: None,
             compression: 0,
             chromaticities: None,
+            pixel_aspect: None,
             world_to_camera: None,
             header: start..start,
             channel_list: 0..0,
@@ -194,6 +197,10 @@ impl Header {
                 self.tiles = Some(Tiles { width: value.u32()?, height: value.u32()?, mode: value.u8()? });
             }
             ("chromaticities", "chromaticities") => part.chromaticities = Some(value.floats()?),
+            ("pixelAspectRatio", "float") => {
+                let [aspect] = value.floats()?;
+                part.pixel_aspect = Some(aspect).filter(|aspect| aspect.is_finite() && *aspect > 0.0);
+            }
             ("worldToCamera", "m44f") => part.world_to_camera = Some(value.floats()?),
             _ => {}
         }

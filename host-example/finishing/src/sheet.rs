@@ -17,13 +17,11 @@ use image::{ImageBuffer, Rgb, RgbImage, Rgba};
 
 use isophote_files::error::{Error, Result};
 use isophote_files::files::{self, Existing};
-use isophote_pictures::convert;
+use isophote_pictures::convert::Conversion;
 use isophote_pictures::exr::Selection;
+use isophote_pictures::meaning::Meaning;
 use isophote_pictures::pixels::MOST_PIXELS;
-use isophote_pictures::primaries;
-use isophote_pictures::read::{self, ImageState};
-use isophote_pictures::space::srgb_encode;
-use isophote_pictures::working::WorkingSpace;
+use isophote_pictures::read;
 
 /// Pixels between and around pictures.
 const GAP: u32 = 12;
@@ -49,20 +47,15 @@ pub fn cells(path: &Path, label: &str, width: u32) -> Result<Vec<Cell>> {
     let several = source.pictures.len() > 1;
     let mut cells = Vec::with_capacity(source.pictures.len());
     for (view, picture) in source.pictures.iter().enumerate() {
-        let working = WorkingSpace::of(None, source.state, picture);
-        let pixels = match &working.change {
-            Some((there, _)) => primaries::changed(&picture.pixels, there).0,
-            None => picture.pixels.clone(),
-        };
-        let pixels = convert::between(pixels, source.state, working.space, ImageState::DisplayReferred);
+        let shown = Conversion::between(&picture.meaning, &Meaning::display());
+        let changed = shown.map(|conversion| conversion.apply(&picture.pixels).0);
+        let pixels = changed.as_ref().unwrap_or(&picture.pixels);
         let (wide, high, channels) = (pixels.width(), pixels.height(), pixels.channels() as usize);
         let mut numbers = Vec::with_capacity(wide as usize * high as usize * 4);
         for pixel in pixels.to_f32().chunks_exact(channels) {
             let (rgb, a) = match *pixel {
                 [r, g, b, a] => ([r, g, b], a.clamp(0.0, 1.0)),
                 [r, g, b] => ([r, g, b], 1.0),
-                // Numbers of light have no colours to convert.
-                [v, ..] if source.state == ImageState::SceneReferred => ([srgb_encode(v.max(0.0)); 3], 1.0),
                 [v, ..] => ([v; 3], 1.0),
                 [] => continue,
             };

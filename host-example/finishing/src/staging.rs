@@ -11,7 +11,7 @@ use glam::Vec3;
 use crate::stylize::preset;
 use isophote_files::error::{Error, Result};
 use isophote_files::output;
-use isophote_pictures::space::{srgb_decode, srgb_encode};
+use isophote_pictures::transfer::{srgb_decode, srgb_encode};
 use isophote_render::background::Background;
 use isophote_scene::camera::{self, Direction, Framing};
 use isophote_scene::environment::Environment;

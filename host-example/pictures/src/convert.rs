@@ -1,78 +1,133 @@
-//! Between display-referred and scene-referred numbers, and between primaries.
+//! Changes of what the numbers of pictures mean: transfer, primaries, kind of alpha.
 
+use rayon::prelude::*;
+
+use crate::meaning::Meaning;
 use crate::pixels::{Pixels, Samples};
-use crate::primaries::{Change, REC709};
-use crate::read::ImageState;
-use crate::space::{Space, srgb_decode, srgb_encode};
+use crate::primaries::{Change, same};
+use crate::transfer::Transfer;
 
-/// Turns colours that a graph gave for a picture of `from` in `space` into what a file of `to` holds. PNG and
-/// JPEG become sRGB from whatever EXR held; EXR becomes light of the same primaries.
-pub fn between(pixels: Pixels, from: ImageState, space: Space, to: ImageState) -> Pixels {
-    if from == to {
-        return pixels;
+/// Number that an infinity becomes.
+const LARGEST_HALF: f32 = 65504.0;
+
+/// A change from one meaning to another.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Conversion {
+    from: Encoding,
+    to: Encoding,
+    change: Option<Change>,
+}
+
+/// Relation of numbers to light that is not multiplied by alpha.
+#[derive(Clone, Debug, PartialEq)]
+struct Encoding {
+    transfer: Transfer,
+    is_premultiplied: bool,
+}
+
+impl Encoding {
+    fn of(meaning: &Meaning) -> Self {
+        Self { transfer: meaning.transfer.clone(), is_premultiplied: meaning.is_premultiplied() }
     }
-    let (width, height, channels) = (pixels.width(), pixels.height(), pixels.channels());
-    let change = space.primaries().and_then(|from| Change::new(from, REC709));
-    let mut numbers = pixels.to_f32();
-    for pixel in numbers.chunks_exact_mut(channels as usize) {
-        let (color, alpha) = match pixel {
-            [r, g, b, a] => ([r, g, b], *a),
-            [r, g, b] => ([r, g, b], 1.0),
-            _ => continue,
-        };
-        let [r, g, b] = color;
-        let mut rgb = [*r, *g, *b];
-        match to {
-            ImageState::DisplayReferred => {
-                if alpha > 0.0 {
-                    rgb = rgb.map(|v| v / alpha);
-                }
-                if let Some(change) = &change {
-                    rgb = change.apply(rgb);
-                }
-                if space != Space::Srgb {
-                    rgb = rgb.map(srgb_encode);
-                }
-            }
-            ImageState::SceneReferred => {
-                if space == Space::Srgb {
-                    rgb = rgb.map(srgb_decode);
-                }
-                rgb = rgb.map(|v| v * alpha);
-            }
+}
+
+impl Conversion {
+    /// From one meaning to another; nothing where numbers stay as they are. Primaries that span no colours stay too.
+    pub fn between(from: &Meaning, to: &Meaning) -> Option<Self> {
+        let change =
+            if same(from.primaries, to.primaries) { None } else { Change::new(from.primaries, to.primaries) };
+        let (from, to) = (Encoding::of(from), Encoding::of(to));
+        (change.is_some() || from != to).then_some(Self { from, to, change })
+    }
+
+    /// The picture in the other meaning, and how many samples of colour that are no number or infinite were replaced first,
+    /// as the library would, so that they do not spread to the other channels.
+    pub fn apply(&self, pixels: &Pixels) -> (Pixels, u64) {
+        let mut numbers = pixels.to_f32();
+        let channels = pixels.channels() as usize;
+        let replaced = numbers.par_chunks_exact_mut(channels).map(|pixel| self.pixel(pixel)).sum();
+        // As many numbers as there were.
+        let changed = Pixels::new(pixels.width(), pixels.height(), pixels.channels(), Samples::F32(numbers));
+        (changed.unwrap_or_else(|| pixels.clone()), replaced)
+    }
+
+    fn pixel(&self, pixel: &mut [f32]) -> u64 {
+        let colors = if pixel.len() == 1 { 1 } else { 3 };
+        let mut replaced = 0;
+        for value in pixel.iter_mut().take(colors).filter(|v| !v.is_finite()) {
+            *value = if value.is_nan() { 0.0 } else { LARGEST_HALF.copysign(*value) };
+            replaced += 1;
         }
-        [*r, *g, *b] = rgb;
+        match pixel {
+            [grey] => {
+                let [changed, ..] = self.to.transfer.encode(self.from.transfer.decode([*grey; 3]));
+                *grey = changed;
+            }
+            [r, g, b, alpha @ ..] => {
+                [*r, *g, *b] = self.color([*r, *g, *b], alpha.first().copied().unwrap_or(1.0));
+            }
+            _ => {}
+        }
+        replaced
     }
-    let samples = Samples::F32(numbers);
-    // The number of samples is that of `pixels`.
-    Pixels::new(width, height, channels, samples).unwrap_or(pixels)
+
+    fn color(&self, mut rgb: [f32; 3], alpha: f32) -> [f32; 3] {
+        let is_linear = self.from.transfer == Transfer::Linear && self.to.transfer == Transfer::Linear;
+        // Multiplied light needs no division where it stays such.
+        let is_apart = !(is_linear && self.from.is_premultiplied && self.to.is_premultiplied);
+        if is_apart && self.from.is_premultiplied && alpha > 0.0 {
+            rgb = rgb.map(|v| v / alpha);
+        }
+        rgb = self.from.transfer.decode(rgb);
+        if let Some(change) = &self.change {
+            rgb = change.apply(rgb);
+        }
+        rgb = self.to.transfer.encode(rgb);
+        // Light without coverage stays light.
+        let is_light = self.from.is_premultiplied && alpha <= 0.0;
+        if is_apart && self.to.is_premultiplied && !is_light {
+            rgb = rgb.map(|v| v * alpha);
+        }
+        rgb
+    }
 }
 
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::primaries::AP1;
 
     #[test]
     fn there_and_back_is_where_it_was() {
         let numbers: Vec<f32> =
             (0..8 * 4).map(|i| [0.0f32, 0.02, 0.5, 1.0][i % 4].max(0.01 * i as f32)).collect();
         let picture = Pixels::new(8, 1, 4, Samples::F32(numbers.clone())).unwrap();
-        let light =
-            between(picture.clone(), ImageState::DisplayReferred, Space::Srgb, ImageState::SceneReferred);
-        assert_ne!(light, picture);
-        let back =
-            between(light, ImageState::SceneReferred, Space::Linear, ImageState::DisplayReferred).to_f32();
-        for (a, b) in back.iter().zip(&numbers) {
+        let (display, light) = (Meaning::display(), Meaning::light());
+        let there = Conversion::between(&display, &light).unwrap();
+        let back = Conversion::between(&light, &display).unwrap();
+        let changed = there.apply(&picture).0;
+        assert_ne!(changed, picture);
+        for (a, b) in back.apply(&changed).0.to_f32().iter().zip(&numbers) {
             assert!((a - b).abs() < 1e-5, "{a} {b}");
         }
+        assert_eq!(Conversion::between(&light, &light), None);
     }
 
     #[test]
     fn white_stays_white_and_primaries_widen() {
         let aces = Pixels::new(2, 1, 3, Samples::F32(vec![1.0, 1.0, 1.0, 0.0, 1.0, 0.0])).unwrap();
-        let display =
-            between(aces, ImageState::SceneReferred, Space::Acescg, ImageState::DisplayReferred).to_f32();
+        let from = Meaning { primaries: AP1, ..Meaning::light() };
+        let display = Conversion::between(&from, &Meaning::display()).unwrap().apply(&aces).0.to_f32();
         assert!(display[..3].iter().all(|v| (v - 1.0).abs() < 1e-6));
         assert!(display[3] < 0.0 && display[4] > 1.0);
+    }
+
+    #[test]
+    fn bad_numbers_are_replaced_and_counted() {
+        let bad = Pixels::new(1, 1, 4, Samples::F32(vec![f32::NAN, f32::INFINITY, 0.5, 1.0])).unwrap();
+        let from = Meaning { primaries: AP1, ..Meaning::light() };
+        let (changed, replaced) = Conversion::between(&from, &Meaning::light()).unwrap().apply(&bad);
+        assert_eq!(replaced, 2);
+        assert!(changed.to_f32().iter().all(|v| v.is_finite()));
     }
 }

@@ -5,7 +5,8 @@ use std::path::Path;
 use half::f16;
 use isophote_exr_edit::{Plane, create};
 
-use crate::space::srgb_encode;
+use crate::primaries::Chromaticities;
+use crate::transfer::srgb_encode;
 use isophote_files::error::{Error, Result};
 use isophote_files::files::{self, Existing};
 
@@ -40,8 +41,10 @@ pub enum Precision {
 pub fn save(path: &Path, existing: Existing, picture: &Picture) -> Result<()> {
     match extension(path).as_str() {
         "png" => save_png(path, existing, picture),
-        "exr" if picture.channels == 1 => save_exr(path, existing, picture, &["Y"], Precision::Float),
-        "exr" => save_exr(path, existing, picture, &["R", "G", "B", "A"], Precision::Half),
+        "exr" if picture.channels == 1 => {
+            save_exr(path, existing, picture, &["Y"], Precision::Float, (None, None))
+        }
+        "exr" => save_exr(path, existing, picture, &["R", "G", "B", "A"], Precision::Half, (None, None)),
         _ => Err(unknown_extension(path)),
     }
 }
@@ -101,7 +104,8 @@ fn save_png(path: &Path, existing: Existing, picture: &Picture) -> Result<()> {
     })
 }
 
-/// Saves all channels under the given names as linear EXR, compressed without loss.
+/// Saves all channels under the given names as linear EXR of these primaries and pixels of this shape, compressed without loss;
+/// Rec.709 and square ones need not be named.
 ///
 /// # Errors
 /// As [`files::write()`].
@@ -111,8 +115,11 @@ pub fn save_exr(
     picture: &Picture,
     names: &[&str],
     precision: Precision,
+    (chromaticities, pixel_aspect): (Option<Chromaticities>, Option<f32>),
 ) -> Result<()> {
-    save_layers(path, existing, &[Layer { picture, names, precision }], None)
+    let image =
+        create::Picture { chromaticities, pixel_aspect, ..created(&[Layer { picture, names, precision }]) };
+    write_exr(path, existing, &image)
 }
 
 /// Numbers of an EXR file: a picture with the full names of its channels.
@@ -137,15 +144,21 @@ pub fn save_layers(
     layers: &[Layer<'_>],
     world_to_camera: Option<[f32; 16]>,
 ) -> Result<()> {
+    write_exr(path, existing, &create::Picture { world_to_camera, ..created(layers) })
+}
+
+fn created(layers: &[Layer<'_>]) -> create::Picture {
     let size = layers.first().map_or((0, 0), |layer| (layer.picture.width, layer.picture.height));
-    let image = create::Picture {
+    create::Picture {
         width: size.0 as usize,
         height: size.1 as usize,
         channels: layers.iter().flat_map(planes).collect(),
-        world_to_camera,
         ..create::Picture::default()
-    };
-    files::write(path, existing, |file| create::write(&image, file).map_err(|e| e.to_string()))
+    }
+}
+
+fn write_exr(path: &Path, existing: Existing, image: &create::Picture) -> Result<()> {
+    files::write(path, existing, |file| create::write(image, file).map_err(|e| e.to_string()))
 }
 
 /// The numbers of a layer as the channels of an EXR file, as many as have names.
@@ -189,7 +202,8 @@ mod tests {
         let folder = tempfile::tempdir().unwrap();
         let path = folder.path().join("a.exr");
         let picture = Picture { width: 2, height: 1, channels: 2, data: vec![1e-7, -3.5, 70000.0, 0.1] };
-        save_exr(&path, Existing::Keep, &picture, &["motion.X", "motion.Y"], Precision::Float).unwrap();
+        save_exr(&path, Existing::Keep, &picture, &["motion.X", "motion.Y"], Precision::Float, (None, None))
+            .unwrap();
         let read = exr::prelude::read_first_flat_layer_from_file(&path).unwrap();
         let channels = &read.layer_data.channel_data.list;
         assert_eq!(channels[0].name.to_string(), "motion.X");

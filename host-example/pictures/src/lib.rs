@@ -5,7 +5,10 @@
 //! | [`pixels`] | pixels in the precision of their file |
 //! | [`floats`] | pictures of 32-bit floats, saved as PNG or EXR |
 //! | [`space`], [`primaries`] | colour spaces and their primaries |
-//! | [`convert`] | changes between image states and between primaries |
+//! | [`meaning`] | meaning of the numbers of a picture |
+//! | [`transfer`] | relation of numbers to light |
+//! | [`cicp`] | primaries, transfers and matrices by their numbers in video and PNG |
+//! | [`convert`] | changes from one meaning to another |
 //! | [`working`] | space in which a picture is filtered |
 //! | [`read`] | PNG, JPEG, TIFF, WebP, HDR and EXR files to pictures |
 //! | [`write`](mod@write) | pictures to files |
@@ -14,17 +17,26 @@
 
 #![forbid(unsafe_code)]
 
+pub mod cicp;
+mod colours;
 pub mod convert;
+mod display;
 pub mod exr;
 pub mod floats;
 mod hdr;
+mod icc;
+mod inks;
 mod jpeg;
+pub mod meaning;
 pub mod mix;
 pub mod pixels;
 mod png;
 pub mod primaries;
 pub mod read;
+mod said;
 pub mod space;
 mod tiff;
+mod tiff_write;
+pub mod transfer;
 pub mod working;
 pub mod write;

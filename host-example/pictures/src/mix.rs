@@ -4,24 +4,24 @@
 use rayon::prelude::*;
 
 use crate::pixels::{Pixels, Samples};
-use crate::read::ImageState;
-use crate::space::{Space, srgb_decode, srgb_encode};
+use crate::space::Space;
+use crate::transfer::{srgb_decode, srgb_encode};
 
 /// Number that infinities become, as in the library.
 const LARGEST_HALF: f32 = 65504.0;
 
-/// Meaning of the numbers of a picture.
+/// Encoding of the colours that are mixed.
 #[derive(Clone, Copy, Debug)]
-pub struct Meaning {
-    /// State of the numbers, multiplied by alpha or not.
-    pub state: ImageState,
-    /// Their space.
+pub struct Encoding {
+    /// True where colour is multiplied by alpha.
+    pub is_premultiplied: bool,
+    /// Its space.
     pub space: Space,
 }
 
 /// `above` where the mask is 1, `below` where it is 0, both to the bit as far as the precision of `above` holds them. `below`
 /// may have fewer channels than `above`: grey, or no alpha.
-pub fn mixed(below: &Pixels, above: Pixels, mask: &Pixels, meaning: Meaning) -> Pixels {
+pub fn mixed(below: &Pixels, above: Pixels, mask: &Pixels, encoding: Encoding) -> Pixels {
     let channels = above.channels() as usize;
     let size = (above.width(), above.height());
     if (below.width(), below.height()) != size
@@ -43,7 +43,7 @@ pub fn mixed(below: &Pixels, above: Pixels, mask: &Pixels, meaning: Meaning) -> 
         let below = rgba(from);
         let pixel = match share {
             0.0 => below,
-            _ => blend(below, rgba(to), share, meaning),
+            _ => blend(below, rgba(to), share, encoding),
         };
         for (to, value) in to.iter_mut().zip(pixel) {
             *to = value;
@@ -67,8 +67,8 @@ fn rgba(pixel: &[f32]) -> [f32; 4] {
     [r, g, b, a].map(|v| if v.is_nan() { 0.0 } else { v.clamp(-LARGEST_HALF, LARGEST_HALF) })
 }
 
-fn blend(below: [f32; 4], above: [f32; 4], share: f32, meaning: Meaning) -> [f32; 4] {
-    let is_premultiplied = meaning.state == ImageState::SceneReferred;
+fn blend(below: [f32; 4], above: [f32; 4], share: f32, encoding: Encoding) -> [f32; 4] {
+    let is_premultiplied = encoding.is_premultiplied;
     let weights = [below[3] * (1.0 - share), above[3] * share];
     // Light without coverage has no colour of its own.
     if is_premultiplied && (below[3] == 0.0 || above[3] == 0.0) || weights == [0.0; 2] {
@@ -76,7 +76,7 @@ fn blend(below: [f32; 4], above: [f32; 4], share: f32, meaning: Meaning) -> [f32
         mixed.iter_mut().zip(above).for_each(|(a, b)| *a += (b - *a) * share);
         return mixed;
     }
-    let is_encoded = meaning.space == Space::Srgb;
+    let is_encoded = encoding.space == Space::Srgb;
     let alpha = weights[0] + weights[1];
     let color = |pixel: [f32; 4], c: usize| {
         let value = if is_premultiplied { pixel[c] / pixel[3] } else { pixel[c] };
@@ -100,8 +100,8 @@ mod tests {
         Pixels::new(numbers.len() as u32 / channels, 1, channels, Samples::F32(numbers.to_vec())).unwrap()
     }
 
-    const SCENE: Meaning = Meaning { state: ImageState::SceneReferred, space: Space::Linear };
-    const DISPLAY: Meaning = Meaning { state: ImageState::DisplayReferred, space: Space::Srgb };
+    const SCENE: Encoding = Encoding { is_premultiplied: true, space: Space::Linear };
+    const DISPLAY: Encoding = Encoding { is_premultiplied: false, space: Space::Srgb };
 
     #[test]
     fn where_the_mask_is_whole_nothing_is_reckoned() {

@@ -2,11 +2,6 @@
 //!
 //! Source: SMPTE RP 177 (matrices from chromaticities) and Lam 1985 (Bradford adaptation).
 
-use crate::pixels::{Pixels, Samples};
-
-/// Number that an infinity becomes.
-const LARGEST_HALF: f32 = 65504.0;
-
 /// Red, green, blue, white: x and y of each.
 pub type Chromaticities = [f32; 8];
 
@@ -18,6 +13,8 @@ pub const AP0: Chromaticities = [0.7347, 0.2653, 0.0, 1.0, 0.0001, -0.0770, 0.32
 pub const P3: Chromaticities = [0.680, 0.320, 0.265, 0.690, 0.150, 0.060, 0.3127, 0.3290];
 /// ITU-R BT.2020.
 pub const REC2020: Chromaticities = [0.708, 0.292, 0.170, 0.797, 0.131, 0.046, 0.3127, 0.3290];
+/// Adobe RGB (1998).
+pub const ADOBE: Chromaticities = [0.64, 0.33, 0.21, 0.71, 0.15, 0.06, 0.3127, 0.3290];
 
 /// Chromaticities that differ by less are the same; files write them with a few digits.
 const SAME: f32 = 2e-3;
@@ -32,13 +29,8 @@ impl Change {
     /// From light of some primaries to light of others, adapted to the other white by the Bradford method;
     /// nothing for primaries that span no colours.
     pub fn new(from: Chromaticities, to: Chromaticities) -> Option<Self> {
-        const BRADFORD: Matrix =
-            [[0.8951, 0.2664, -0.1614], [-0.7502, 1.7135, 0.0367], [0.0389, -0.0685, 1.0296]];
         let (into, out) = (xyz_from_rgb(from)?, inverse(&xyz_from_rgb(to)?)?);
-        let white = |m: &Matrix| apply(&BRADFORD, apply(m, [1.0; 3]));
-        let (old, new) = (white(&into), white(&xyz_from_rgb(to)?));
-        let scaled = [0, 1, 2].map(|r: usize| BRADFORD[r].map(|v| v * new[r] / old[r]));
-        let adapt = product(&inverse(&BRADFORD)?, &scaled);
+        let adapt = adaptation(apply(&into, [1.0; 3]), apply(&xyz_from_rgb(to)?, [1.0; 3]))?;
         let matrix = product(&out, &product(&adapt, &into));
         matrix.iter().flatten().all(|v| v.is_finite()).then(|| Self(matrix.map(|row| row.map(|v| v as f32))))
     }
@@ -49,25 +41,6 @@ impl Change {
     }
 }
 
-/// Colours of other primaries, premultiplied or not; what is no number or infinite is replaced first, as the
-/// library would, and counted, so that it does not spread to the other channels.
-pub fn changed(pixels: &Pixels, change: &Change) -> (Pixels, u64) {
-    let mut numbers = pixels.to_f32();
-    let mut replaced = 0;
-    for pixel in numbers.chunks_exact_mut(pixels.channels() as usize) {
-        if let Some(rgb) = pixel.first_chunk_mut::<3>() {
-            for value in rgb.iter_mut().filter(|v| !v.is_finite()) {
-                *value = if value.is_nan() { 0.0 } else { LARGEST_HALF.copysign(*value) };
-                replaced += 1;
-            }
-            *rgb = change.apply(*rgb);
-        }
-    }
-    // As many numbers as there were.
-    let changed = Pixels::new(pixels.width(), pixels.height(), pixels.channels(), Samples::F32(numbers));
-    (changed.unwrap_or_else(|| pixels.clone()), replaced)
-}
-
 /// True where two sets of primaries are the same but for rounding.
 pub fn same(a: Chromaticities, b: Chromaticities) -> bool {
     a.iter().zip(b).all(|(a, b)| (a - b).abs() < SAME)
@@ -75,6 +48,31 @@ pub fn same(a: Chromaticities, b: Chromaticities) -> bool {
 
 /// ITU-R BT.709, also what an EXR file without chromaticities means.
 pub const REC709: Chromaticities = [0.64, 0.33, 0.30, 0.60, 0.15, 0.06, 0.3127, 0.3290];
+
+/// Primaries of a device whose red, green and blue are these CIE XYZ beside a white of D50, and are shown beside `white`;
+/// nothing where they span no colours.
+pub fn of_colorants(colorants: [[f64; 3]; 3], white: [f64; 3]) -> Option<Chromaticities> {
+    let matrix = [0, 1, 2].map(|row: usize| colorants.map(|colorant| colorant[row]));
+    let adapt = adaptation(apply(&matrix, [1.0; 3]), white)?;
+    let point = |rgb: [f64; 3]| {
+        let xyz = apply(&adapt, apply(&matrix, rgb));
+        let sum: f64 = xyz.iter().sum();
+        [(xyz[0] / sum) as f32, (xyz[1] / sum) as f32]
+    };
+    let [[rx, ry], [gx, gy], [bx, by]] = [[1.0, 0.0, 0.0], [0.0, 1.0, 0.0], [0.0, 0.0, 1.0]].map(point);
+    let [white_x, white_y] = point([1.0; 3]);
+    let found = [rx, ry, gx, gy, bx, by, white_x, white_y];
+    Change::new(found, REC709).map(|_| found)
+}
+
+/// Bradford's change from CIE XYZ beside one white to those beside another.
+fn adaptation(from: [f64; 3], to: [f64; 3]) -> Option<Matrix> {
+    const BRADFORD: Matrix =
+        [[0.8951, 0.2664, -0.1614], [-0.7502, 1.7135, 0.0367], [0.0389, -0.0685, 1.0296]];
+    let (old, new) = (apply(&BRADFORD, from), apply(&BRADFORD, to));
+    let scaled = [0, 1, 2].map(|r: usize| BRADFORD[r].map(|v| v * new[r] / old[r]));
+    Some(product(&inverse(&BRADFORD)?, &scaled))
+}
 
 /// Weights of red, green and blue in luminance.
 pub fn luminance(chromaticities: Option<Chromaticities>) -> [f32; 3] {

@@ -10,11 +10,13 @@ use image::codecs::tiff::TiffDecoder;
 use image::codecs::webp::WebPDecoder;
 use image::{DynamicImage, ImageDecoder, ImageError, ImageResult, Limits};
 
+use crate::convert::Conversion;
 use crate::exr::{self, ExrFile, Offers, Picture, Selection};
-use crate::pixels::{MOST_PIXELS, Pixels, Precision, Samples};
-use crate::primaries::{self, Change, REC709, same};
+use crate::meaning::{ImageState, Meaning};
+use crate::pixels::{MOST_PIXELS, Pixels, Samples};
+use crate::primaries::{Change, REC709};
 use crate::tiff::Wide;
-use crate::{hdr, jpeg, png};
+use crate::{colours, hdr, jpeg, png, said};
 use isophote_files::error::{Error, Result};
 use isophote_files::frames;
 use isophote_files::input;
@@ -26,29 +28,26 @@ const EXR: [u8; 4] = [0x76, 0x2f, 0x31, 0x01];
 /// Bytes that a decoder may take for the smallest picture: its tables and texts.
 const LEAST: u64 = 64 << 20;
 
-/// State of the numbers of a file.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum ImageState {
-    /// Encoded for displays, alpha apart from colour: PNG, JPEG, WebP and TIFF of integers.
-    DisplayReferred,
-    /// Linear light, colour multiplied by alpha: EXR, HDR and TIFF of floats.
-    SceneReferred,
-}
-
 /// A picture with what is to be kept beside its pixels.
 #[derive(Debug)]
 pub struct Source {
     /// Pictures to be filtered: one, or one for each view of an EXR file.
     pub pictures: Vec<Picture>,
-    /// State of the numbers.
-    pub state: ImageState,
-    /// The colour profile of a PNG or JPEG file.
-    pub profile: Option<Vec<u8>>,
     /// Everything else in an EXR file.
     pub exr: Option<ExrFile>,
 }
 
 impl Source {
+    /// A picture of which nothing else is known than what its numbers mean.
+    pub fn alone(pixels: Pixels, meaning: Meaning) -> Self {
+        Self { pictures: vec![Picture::alone(pixels, meaning)], exr: None }
+    }
+
+    /// State of the numbers, which is that of all pictures of a file.
+    pub fn state(&self) -> ImageState {
+        self.pictures.first().map_or(ImageState::DisplayReferred, |picture| picture.meaning.state)
+    }
+
     /// Makes sure that there can be results of all pictures.
     ///
     /// # Errors
@@ -187,6 +186,22 @@ impl Opened {
         }
     }
 
+    /// Width of a pixel over its height; of an EXR file that of its largest picture.
+    pub fn pixel_aspect(&self) -> f64 {
+        match &self.0 {
+            Kind::Exr(file) => file.pixel_aspect(),
+            Kind::Other(bytes, _) => f64::from(said::pixel_aspect(kind(bytes), bytes).unwrap_or(1.0)),
+        }
+    }
+
+    /// Name of the file's format.
+    pub fn kind(&self) -> &'static str {
+        match &self.0 {
+            Kind::Exr(_) => "EXR",
+            Kind::Other(bytes, _) => kind(bytes),
+        }
+    }
+
     /// Choices that the file offers: layers and views of an EXR file, nothing in others.
     pub fn offers(&self) -> Offers {
         match &self.0 {
@@ -211,17 +226,24 @@ impl Opened {
     /// [`Error::Input`] when the file is of another kind, truncated, malformed or too large, or cannot have what
     /// was selected.
     pub fn decode(self, path: &Path) -> Result<Source> {
-        match self.0 {
+        let source = match self.0 {
             Kind::Exr(file) => {
                 let exr = file.decode(path)?;
                 let pictures = exr.pictures(path)?;
-                Ok(Source { pictures, state: ImageState::SceneReferred, profile: None, exr: Some(exr) })
+                Source { pictures, exr: Some(exr) }
             }
             Kind::Other(_, Some(option)) => {
-                Err(Error::input(option, format!("'{}' is no EXR file", path.display()), "leave it out"))
+                return Err(Error::input(
+                    option,
+                    format!("'{}' is no EXR file", path.display()),
+                    "leave it out",
+                ));
             }
-            Kind::Other(bytes, None) => decode(path, &bytes),
-        }
+            Kind::Other(bytes, None) => decode(path, &bytes)?,
+        };
+        let name = path.display().to_string();
+        source.pictures.iter().for_each(|picture| picture.meaning.tell(&name));
+        Ok(source)
     }
 }
 
@@ -260,18 +282,30 @@ fn decode(path: &Path, bytes: &[u8]) -> Result<Source> {
     if !is_whole {
         return Err(Error::malformed(path, kind, "it ends before the picture does"));
     }
-    let mut source = picture(path, decoder, kind)?;
+    let mut source = picture(path, decoder, (kind, bytes))?;
+    for picture in &mut source.pictures {
+        said::add(kind, bytes, picture);
+    }
     if kind == "HDR"
-        && let Some(own) = hdr::primaries(bytes).filter(|own| !same(*own, REC709))
+        && let Some(primaries) = hdr::primaries(bytes)
     {
-        // Results keep no header that could say so.
-        let change = Change::new(own, REC709)
-            .ok_or_else(|| Error::malformed(path, kind, "its PRIMARIES span no colours"))?;
-        for picture in &mut source.pictures {
-            picture.pixels = primaries::changed(&picture.pixels, &change).0;
+        if Change::new(primaries, REC709).is_none() {
+            return Err(Error::malformed(path, kind, "its PRIMARIES span no colours"));
+        }
+        for Picture { pixels, meaning, .. } in &mut source.pictures {
+            // Results keep no header that could say so.
+            if let Some(change) = Conversion::between(&Meaning { primaries, ..meaning.clone() }, meaning) {
+                *pixels = change.apply(pixels).0;
+            }
+            meaning.said_by = Some("PRIMARIES");
         }
     }
     Ok(source)
+}
+
+/// The format of any file but an EXR file; nothing where it cannot be read.
+fn kind(bytes: &[u8]) -> &'static str {
+    decoder(Path::new(""), bytes).map_or("", |(kind, _)| kind)
 }
 
 /// The kind of any file but an EXR file, and a decoder that has read what it says of itself.
@@ -338,17 +372,24 @@ pub fn check_size(path: &Path, width: u64, height: u64) -> Result<()> {
     }
 }
 
-fn picture(path: &Path, mut decoder: impl ImageDecoder, kind: &str) -> Result<Source> {
+fn picture(path: &Path, mut decoder: impl ImageDecoder, (kind, bytes): (&str, &[u8])) -> Result<Source> {
     let (width, height) = decoder.dimensions();
     check_size(path, width.into(), height.into())?;
     // Before the limits of the picture, which are too small for the profile of a small one; decoders have others until then.
     let profile = decoder.icc_profile().unwrap_or_default();
     // The size bounds the picture; what decoders need meanwhile is bounded by several times that.
     let mut limits = Limits::no_limits();
-    limits.max_alloc = Some(decoder.total_bytes().saturating_mul(4).saturating_add(LEAST));
+    let most = decoder.total_bytes().saturating_mul(4).saturating_add(LEAST);
+    limits.max_alloc = Some(most);
     decoder.set_limits(limits).map_err(|e| refused(path, kind, &e))?;
     let orientation = decoder.orientation().map_err(|e| refused(path, kind, &e))?;
-    let mut decoded = DynamicImage::from_decoder(decoder).map_err(|e| refused(path, kind, &e))?;
+    let is_grey = !decoder.color_type().has_color();
+    let of_inks = colours::of_inks(kind, bytes, profile.as_deref(), most);
+    let is_converted = of_inks.is_some();
+    let mut decoded = match of_inks {
+        Some(converted) => converted,
+        None => DynamicImage::from_decoder(decoder).map_err(|e| refused(path, kind, &e))?,
+    };
     // Nothing but the pixels is kept, so what the camera noted of its attitude is done here.
     decoded.apply_orientation(orientation);
     let (width, height) = (decoded.width(), decoded.height());
@@ -363,19 +404,16 @@ fn picture(path: &Path, mut decoder: impl ImageDecoder, kind: &str) -> Result<So
         DynamicImage::ImageLumaA16(_) => (4, Samples::U16(decoded.into_rgba16().into_raw())),
         other => (4, Samples::U8(other.into_rgba8().into_raw())),
     };
-    let pixels = Pixels::new(width, height, channels, samples)
+    let mut pixels = Pixels::new(width, height, channels, samples)
         .ok_or_else(|| Error::malformed(path, kind, "it does not hold as many pixels as it says"))?;
-    let picture = Picture::alone(pixels);
-    let state = match picture.pixels.precision() {
-        Precision::F16 | Precision::F32 => ImageState::SceneReferred,
-        Precision::U8 | Precision::U16 => ImageState::DisplayReferred,
-    };
-    Ok(Source { pictures: vec![picture], state, profile, exr: None })
+    let meaning = colours::meant((kind, bytes), profile, &mut pixels, (is_grey, is_converted));
+    Ok(Source::alone(pixels, meaning))
 }
 
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::pixels::Precision;
 
     /// A TIFF or BigTIFF file of floats (red, green, blue, alpha), all of them 0.
     fn tiff(is_big: bool, size: u32) -> Vec<u8> {

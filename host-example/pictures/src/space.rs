@@ -3,6 +3,7 @@
 use clap::ValueEnum;
 
 use crate::primaries::{AP1, Chromaticities, P3, REC2020};
+use crate::transfer::Transfer;
 
 /// Space of the numbers of a picture.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
@@ -32,14 +33,11 @@ impl Space {
             Self::Rec2020 => Some(REC2020),
         }
     }
-}
-
-/// Encodes linear light in [0, 1] for sRGB displays (IEC 61966-2-1).
-pub fn srgb_encode(linear: f32) -> f32 {
-    if linear <= 0.003_130_8 { 12.92 * linear } else { 1.055 * linear.powf(1.0 / 2.4) - 0.055 }
-}
-
-/// Linear light of a gamma-encoded value (IEC 61966-2-1).
-pub fn srgb_decode(encoded: f32) -> f32 {
-    if encoded <= 0.040_45 { encoded / 12.92 } else { ((encoded + 0.055) / 1.055).powf(2.4) }
+    /// The relation of numbers to light.
+    pub fn transfer(self) -> Transfer {
+        match self {
+            Self::Srgb => Transfer::Srgb,
+            Self::Linear | Self::Acescg | Self::P3 | Self::Rec2020 => Transfer::Linear,
+        }
+    }
 }

@@ -1,17 +1,58 @@
-//! TIFF files of 32-bit unsigned integers, which the decoder of others takes for floats: read as 16 bits, with which they
-//! look the same.
+//! TIFF files: tags that decoders keep to themselves, and files of 32-bit unsigned integers, which the decoder of others takes for
+//! floats: read as 16 bits, with which they look the same.
 
 use std::io::Cursor;
 
 use image::error::{DecodingError, LimitError, LimitErrorKind};
 use image::metadata::Orientation;
 use image::{ColorType, ImageDecoder, ImageError, ImageFormat, ImageResult};
+use tiff::decoder::ifd::Value;
 use tiff::decoder::{Decoder, DecodingResult, Limits};
 use tiff::tags::Tag;
 use tiff::{ColorType as TiffColor, TiffError};
 
+use crate::tiff_write::{ASSOCIATED, UNASSOCIATED};
+
 /// The number of unsigned integers among sample formats.
 const UNSIGNED: u16 = 1;
+
+/// What a file says of its fourth sample.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Fourth {
+    /// Alpha that colour is multiplied by.
+    Associated,
+    /// Alpha apart from colour.
+    Unassociated,
+    /// Something else than alpha.
+    Other,
+}
+
+/// Tags of a file that decoders keep to themselves.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct Said {
+    /// `ExtraSamples`; nothing where the file has no such samples, or does not say which.
+    pub fourth: Option<Fourth>,
+    /// Width of a pixel over its height, where resolutions differ.
+    pub pixel_aspect: Option<f32>,
+}
+
+/// Tags of a file; none of what is damaged.
+pub fn said(bytes: &[u8]) -> Said {
+    let Ok(mut decoder) = Decoder::new(Cursor::new(bytes)) else { return Said::default() };
+    let extra = decoder.find_tag_unsigned_vec::<u16>(Tag::ExtraSamples).ok().flatten();
+    let fourth = extra.and_then(|kinds| kinds.first().copied()).map(|kind| match kind {
+        ASSOCIATED => Fourth::Associated,
+        UNASSOCIATED => Fourth::Unassociated,
+        _ => Fourth::Other,
+    });
+    let mut resolution = |tag| match decoder.find_tag(tag).ok().flatten()? {
+        Value::Rational(n, d) if n > 0 && d > 0 => Some(f64::from(n) / f64::from(d)),
+        _ => None,
+    };
+    let both = resolution(Tag::XResolution).zip(resolution(Tag::YResolution));
+    let aspect = both.map(|(across, down)| (down / across) as f32);
+    Said { fourth, pixel_aspect: aspect.filter(|aspect| (0.01..=100.0).contains(aspect) && *aspect != 1.0) }
+}
 
 /// A decoder of such a file that has read what it says of itself.
 pub struct Wide<'a> {
@@ -79,10 +120,9 @@ impl ImageDecoder for Wide<'_> {
         if samples.len() < pixels * channels {
             return Err(ImageError::Limits(LimitError::from_kind(LimitErrorKind::InsufficientMemory)));
         }
-        for (at, to) in buffer.as_chunks_mut::<2>().0.iter_mut().enumerate() {
-            // Planes follow each other where they are apart.
-            let from = if layout.planes > 1 { at % channels * pixels + at / channels } else { at };
-            *to = narrow(samples[from]).to_ne_bytes();
+        let samples = interleaved(samples, layout.planes > 1, channels);
+        for (to, sample) in buffer.as_chunks_mut::<2>().0.iter_mut().zip(samples) {
+            *to = narrow(sample).to_ne_bytes();
         }
         Ok(())
     }
@@ -90,6 +130,15 @@ impl ImageDecoder for Wide<'_> {
     fn read_image_boxed(self: Box<Self>, buffer: &mut [u8]) -> ImageResult<()> {
         (*self).read_image(buffer)
     }
+}
+
+/// Samples pixel by pixel: planes follow each other where they are apart.
+pub fn interleaved<T: Copy>(samples: Vec<T>, is_planar: bool, channels: usize) -> Vec<T> {
+    if !is_planar {
+        return samples;
+    }
+    let pixels = samples.len() / channels;
+    (0..pixels * channels).map(|at| samples[at % channels * pixels + at / channels]).collect()
 }
 
 /// The nearest number of 16 bits for the same share of the range.

@@ -1,36 +1,98 @@
 //! In which space a picture is filtered.
 
+use crate::convert::Conversion;
 use crate::exr::Picture;
-use crate::primaries::{AP1, Change, REC709, same};
-use crate::read::ImageState;
+use crate::meaning::{ImageState, Meaning};
+use crate::pixels::Pixels;
+use crate::primaries::{AP1, REC709};
 use crate::space::Space;
+use crate::transfer::Transfer;
 
-/// The colour space in which a picture is filtered, and the change of primaries to it, which the library does not
-/// know and which is done here.
+/// The space in which a picture is filtered, and the change to it from what its numbers mean. The library knows three
+/// spaces; others are changed here.
+#[derive(Debug)]
 pub struct WorkingSpace {
-    /// The space of the request.
+    /// The space of the request: sRGB, linear or ACEScg.
     pub space: Space,
-    /// To Rec.709 and back, for primaries that a request cannot name.
-    pub change: Option<(Change, Change)>,
+    /// The change to it.
+    pub there: Option<Conversion>,
+    /// Meaning of the picture's numbers.
+    source: Meaning,
+    /// Meaning of numbers in the working space.
+    working: Meaning,
 }
 
 impl WorkingSpace {
-    /// Space that `space` names, or that of the file without.
-    pub fn of(space: Option<Space>, state: ImageState, picture: &Picture) -> Self {
-        let known = |space| Self { space, change: None };
-        let primaries = match (space, state) {
-            (Some(Space::P3 | Space::Rec2020), _) => space.and_then(Space::primaries),
-            (Some(space), _) => return known(space),
-            (None, ImageState::DisplayReferred) => return known(Space::Srgb),
-            (None, ImageState::SceneReferred) => picture.chromaticities,
+    /// Space for a picture whose numbers mean what `space` names, or what the file says without.
+    pub fn of(space: Option<Space>, picture: &Picture) -> Self {
+        let source = picture.meaning.clone().named(space);
+        let is_grey = picture.pixels.channels() == 1;
+        let is_rec709 = is_grey || source.has_primaries(REC709);
+        let space = match source.transfer {
+            Transfer::Srgb if is_rec709 => Space::Srgb,
+            Transfer::Linear if !is_rec709 && source.has_primaries(AP1) => Space::Acescg,
+            _ => Space::Linear,
         };
-        let change = |from| Some((Change::new(from, REC709)?, Change::new(REC709, from)?));
-        match primaries {
-            Some(c) if same(c, AP1) => known(Space::Acescg),
-            Some(c) if !same(c, REC709) && picture.pixels.channels() > 1 => {
-                Self { space: Space::Linear, change: change(c) }
-            }
-            _ => known(Space::Linear),
+        let (primaries, transfer) = (space.primaries().unwrap_or(REC709), space.transfer());
+        // Grey has the white of its file.
+        let primaries = if is_grey { source.primaries } else { primaries };
+        let working = Meaning { primaries, transfer, ..source.clone() };
+        Self { space, there: Conversion::between(&source, &working), source, working }
+    }
+
+    /// Meaning of results in files of a state.
+    pub fn of_results(&self, state: ImageState) -> Meaning {
+        self.source.of_results(state)
+    }
+
+    /// Numbers of the working space in another meaning.
+    pub fn leave(&self, pixels: Pixels, to: &Meaning) -> Pixels {
+        match Conversion::between(&self.working, to) {
+            Some(conversion) => conversion.apply(&pixels).0,
+            None => pixels,
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::meaning::Alpha;
+    use crate::pixels::{Precision, Samples};
+    use crate::primaries::P3;
+
+    fn picture(meaning: Meaning, samples: Vec<u8>) -> Picture {
+        Picture::alone(Pixels::new(samples.len() as u32 / 4, 1, 4, Samples::U8(samples)).unwrap(), meaning)
+    }
+
+    #[test]
+    fn display_p3_is_filtered_as_light_and_comes_back_as_it_was() {
+        let samples: Vec<u8> = (0..=255).flat_map(|v| [v, 255 - v, v / 2, v.max(1)]).collect();
+        let meaning = Meaning { primaries: P3, ..Meaning::display() };
+        let picture = picture(meaning, samples);
+        let working = WorkingSpace::of(None, &picture);
+        assert_eq!(working.space, Space::Linear);
+        let (color, _) = working.there.as_ref().unwrap().apply(&picture.pixels);
+        let same = working.of_results(ImageState::DisplayReferred);
+        let back = working.leave(color.clone(), &same).converted(Precision::U8);
+        assert_eq!(back, picture.pixels);
+        // In an EXR file it is light of Rec.709, multiplied by alpha.
+        let light = working.of_results(ImageState::SceneReferred);
+        assert!(light.is_usual() && light.alpha == Alpha::Premultiplied);
+        let [first, .., alpha] = working.leave(color.clone(), &light).to_f32()[4 * 200..][..4] else {
+            panic!()
+        };
+        assert!((first - color.to_f32()[4 * 200] * alpha).abs() < 1e-6);
+    }
+
+    #[test]
+    fn usual_numbers_are_not_touched() {
+        let picture = picture(Meaning::display(), vec![1, 2, 3, 4]);
+        for (named, space) in
+            [(None, Space::Srgb), (Some(Space::Linear), Space::Linear), (Some(Space::Acescg), Space::Acescg)]
+        {
+            let working = WorkingSpace::of(named, &picture);
+            assert_eq!((working.space, working.there), (space, None));
         }
     }
 }

@@ -1,20 +1,22 @@
 //! Results to files, as the extension says.
 
-use std::ops::Range;
+use std::io::Write;
 use std::path::Path;
 
+use image::codecs::jpeg::{PixelDensity, PixelDensityUnit};
 use image::{ExtendedColorType, ImageEncoder, ImageResult};
 
-use crate::exr::{ExrFile, Picture, components};
+use crate::exr::{ExrFile, components};
 use crate::floats;
+use crate::meaning::{Alpha, ImageState, Meaning};
 use crate::pixels::{Pixels, Precision, Samples};
-use crate::read::{ImageState, Source};
+use crate::primaries::REC709;
+use crate::read::Source;
+use crate::{display, icc, png, tiff_write};
 use isophote_files::error::{Error, Result};
 use isophote_files::files::{self, Existing};
 use isophote_files::output;
 
-/// Place in an ICC profile of the colour space of its pictures.
-const PROFILE_SPACE: Range<usize> = 16..20;
 /// Quality of JPEG files, 1 to 100.
 const JPEG_QUALITY: u8 = 95;
 
@@ -59,9 +61,19 @@ impl Format {
             Self::Exr => ImageState::SceneReferred,
         }
     }
+
+    /// Meaning of results that it can keep: PNG has alpha apart from colour, EXR colour that is multiplied by it.
+    pub fn kept(self, meaning: Meaning) -> Meaning {
+        let alpha = match (self, meaning.alpha) {
+            (Self::Png | Self::Jpeg, Alpha::Premultiplied) => Alpha::Straight,
+            (Self::Exr, Alpha::Straight) => Alpha::Premultiplied,
+            (_, alpha) => alpha,
+        };
+        Meaning { alpha, ..meaning }
+    }
 }
 
-/// Writes the results of what `source` held, one for each of its pictures, in the image state of `format`.
+/// Writes the results of what `source` held, one for each of its pictures, whose numbers mean what `meaning` says.
 /// All of them go into `exr`, an EXR file that they came from; of other files there is one picture.
 ///
 /// # Errors
@@ -71,6 +83,7 @@ pub fn write(
     existing: Existing,
     format: Format,
     mut results: Vec<Pixels>,
+    meaning: &Meaning,
     source: &Source,
     exr: Option<ExrFile>,
 ) -> Result<()> {
@@ -84,8 +97,9 @@ pub fn write(
     let (Some(pixels), Some(picture)) = (results.into_iter().next(), source.pictures.first()) else {
         return Err(Error::file(path, "would be empty", "choose another picture"));
     };
+    let pixels = display::shown(pixels, meaning);
     match format {
-        Format::Exr => write_exr(path, existing, &pixels, picture),
+        Format::Exr => write_exr(path, existing, &pixels, (picture.pixels.precision(), meaning)),
         Format::Png => {
             // A float result holds more than 8 bits can.
             let precision = match picture.pixels.precision() {
@@ -96,31 +110,37 @@ pub fn write(
             let color = color_type(&pixels);
             // PNG wants the larger byte first; the encoder takes the machine's order.
             files::write(path, existing, |file| {
-                let mut encoder = image::codecs::png::PngEncoder::new(file);
-                keep_profile(&mut encoder, source.profile.as_deref(), pixels.channels());
-                as_text(encoder.write_image(pixels.bytes(), pixels.width(), pixels.height(), color))
+                let mut bytes = Vec::new();
+                let mut encoder = image::codecs::png::PngEncoder::new(&mut bytes);
+                let is_said = match meaning.profile_of(pixels.channels()) {
+                    Some(profile) => encoder.set_icc_profile(profile.to_vec()).is_ok(),
+                    None => false,
+                };
+                as_text(encoder.write_image(pixels.bytes(), pixels.width(), pixels.height(), color))?;
+                let bytes = if is_said { bytes } else { png::with_meaning(bytes, meaning) };
+                let bytes = png::with_shape(bytes, meaning.pixel_aspect);
+                file.write_all(&bytes).map_err(|e| e.to_string())
             })
         }
         Format::Tiff => {
-            let precision = match (source.state, picture.pixels.precision()) {
+            let precision = match (meaning.state, picture.pixels.precision()) {
                 (ImageState::SceneReferred, _) => Precision::F32,
                 (ImageState::DisplayReferred, Precision::U8) => Precision::U8,
                 (ImageState::DisplayReferred, _) => Precision::U16,
             };
             let pixels = grey_as_rgb(pixels.converted(precision));
-            let color = color_type(&pixels);
-            files::write(path, existing, |file| {
-                let mut encoder = image::codecs::tiff::TiffEncoder::new(file);
-                keep_profile(&mut encoder, source.profile.as_deref(), pixels.channels());
-                as_text(encoder.write_image(pixels.bytes(), pixels.width(), pixels.height(), color))
-            })
+            let profile = profile(meaning, pixels.channels());
+            files::write(path, existing, |file| tiff_write::write(file, &pixels, meaning, profile.as_deref()))
         }
         Format::Jpeg => {
             let pixels = opaque(path, pixels.converted(Precision::U8));
             let color = color_type(&pixels);
             files::write(path, existing, |file| {
                 let mut encoder = image::codecs::jpeg::JpegEncoder::new_with_quality(file, JPEG_QUALITY);
-                keep_profile(&mut encoder, source.profile.as_deref(), pixels.channels());
+                let [across, down] = display::densities(meaning.pixel_aspect);
+                let density = (across as u16, down as u16);
+                encoder.set_pixel_density(PixelDensity { density, unit: PixelDensityUnit::PixelAspectRatio });
+                say(&mut encoder, meaning, pixels.channels());
                 as_text(encoder.write_image(pixels.bytes(), pixels.width(), pixels.height(), color))
             })
         }
@@ -138,8 +158,13 @@ fn grey_as_rgb(pixels: Pixels) -> Pixels {
 }
 
 /// EXR in the precision that the source deserves: 8 bits fit into halves, 16 do not.
-fn write_exr(path: &Path, existing: Existing, pixels: &Pixels, picture: &Picture) -> Result<()> {
-    let precision = match picture.pixels.precision() {
+fn write_exr(
+    path: &Path,
+    existing: Existing,
+    pixels: &Pixels,
+    (source, meaning): (Precision, &Meaning),
+) -> Result<()> {
+    let precision = match source {
         Precision::U8 | Precision::F16 => floats::Precision::Half,
         Precision::U16 | Precision::F32 => floats::Precision::Float,
     };
@@ -150,17 +175,24 @@ fn write_exr(path: &Path, existing: Existing, pixels: &Pixels, picture: &Picture
         channels: channels as usize,
         data: pixels.to_f32(),
     };
-    floats::save_exr(path, existing, &data, components(channels), precision)
+    let aspect = Some(meaning.pixel_aspect).filter(|aspect| *aspect != 1.0);
+    let chromaticities = Some(meaning.primaries).filter(|_| !meaning.has_primaries(REC709));
+    floats::save_exr(path, existing, &data, components(channels), precision, (chromaticities, aspect))
 }
 
-/// Keeps a colour profile where it is one of pictures with these channels.
-fn keep_profile(encoder: &mut impl ImageEncoder, profile: Option<&[u8]>, channels: u32) {
-    let Some(profile) = profile else { return };
-    let wanted: &[u8] = if channels == 1 { b"GRAY" } else { b"RGB " };
-    if profile.get(PROFILE_SPACE) == Some(wanted) {
-        // An encoder that cannot keep it leaves a picture that is taken for sRGB, as most are.
-        let _ = encoder.set_icc_profile(profile.to_vec());
+/// Says by a colour profile what numbers mean.
+fn say(encoder: &mut impl ImageEncoder, meaning: &Meaning, channels: u32) {
+    if let Some(profile) = profile(meaning, channels) {
+        // All encoders that are used keep profiles.
+        let _ = encoder.set_icc_profile(profile);
     }
+}
+
+/// The colour profile that says what numbers mean: the one of the source where it is one of pictures with these channels, else one
+/// that is made where the numbers are not what is assumed without.
+fn profile(meaning: &Meaning, channels: u32) -> Option<Vec<u8>> {
+    let made = || icc::made(meaning).filter(|_| !meaning.is_usual() && channels > 1);
+    meaning.profile_of(channels).map(<[u8]>::to_vec).or_else(made)
 }
 
 fn as_text(result: ImageResult<()>) -> std::result::Result<(), String> {

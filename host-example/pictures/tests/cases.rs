@@ -5,10 +5,13 @@ use std::path::{Path, PathBuf};
 
 use isophote_files::files::Existing;
 use isophote_files::frames::Pattern;
+use isophote_pictures::convert::Conversion;
 use isophote_pictures::exr::{Guide, GuideChoice, Selection};
-use isophote_pictures::pixels::Pixels;
+use isophote_pictures::meaning::Meaning;
+use isophote_pictures::pixels::{Pixels, Precision};
 use isophote_pictures::primaries;
 use isophote_pictures::read::{self, Source};
+use isophote_pictures::transfer::Transfer;
 use isophote_pictures::write::{self, Format};
 
 fn case(name: &str) -> PathBuf {
@@ -136,7 +139,7 @@ fn dwa_is_read_and_written_without_loss() {
         let mut source = source(path);
         let out = folder.path().join(path.file_name().expect("a name"));
         let (exr, pixels) = (source.exr.take(), source.pictures[0].pixels.clone());
-        write::write(&out, Existing::Keep, Format::Exr, vec![pixels], &source, exr)
+        write::write(&out, Existing::Keep, Format::Exr, vec![pixels], &Meaning::light(), &source, exr)
             .expect("it can be written");
         assert_eq!(self::source(&out).pictures[0].pixels.to_f32(), numbers);
     }
@@ -192,15 +195,15 @@ fn tiff_files_of_32_bit_integers_look_as_those_of_8() {
 
 #[test]
 fn colour_spaces_by_name_are_those_of_their_chromaticities() {
-    let primaries = |name: &str| source(&case("exr_color_interop").join(name)).pictures[0].chromaticities;
+    let primaries = |name: &str| source(&case("exr_color_interop").join(name)).pictures[0].meaning.primaries;
     for (named, written) in [("c_2020id.exr", "c_2020chr.exr"), ("c_ap1id.exr", "c_ap1chr.exr")] {
-        let (named, written) = (primaries(named).expect("known"), primaries(written).expect("written"));
+        let (named, written) = (primaries(named), primaries(written));
         assert!(primaries::same(named, written), "{named:?}");
     }
-    assert_eq!(primaries("cs_Linear_Rec2020.exr"), Some(primaries::REC2020));
-    assert_eq!(primaries("c_p3id.exr"), Some(primaries::P3));
+    assert_eq!(primaries("cs_Linear_Rec2020.exr"), primaries::REC2020);
+    assert_eq!(primaries("c_p3id.exr"), primaries::P3);
     for name in ["c_plain.exr", "c_data.exr"] {
-        assert_eq!(primaries(name), None, "{name}");
+        assert_eq!(primaries(name), primaries::REC709, "{name}");
     }
 }
 
@@ -218,17 +221,129 @@ fn profiles_are_kept_where_they_fit() {
         let source = source(&case("icc_profiles").join(name));
         let out = folder.path().join(format!("{name}.out"));
         let pixels = source.pictures[0].pixels.clone();
-        write::write(&out, Existing::Replace, format, vec![pixels], &source, None)
-            .expect("it can be written");
-        assert_eq!(self::source(&out).profile.is_some(), is_kept, "{name} to {format:?}");
+        write::write(
+            &out,
+            Existing::Replace,
+            format,
+            vec![pixels],
+            &source.pictures[0].meaning,
+            &source,
+            None,
+        )
+        .expect("it can be written");
+        assert_eq!(self::source(&out).pictures[0].meaning.profile.is_some(), is_kept, "{name} to {format:?}");
     }
     // A grey picture that becomes one of colours.
     let mut grey = source(&case("icc_profiles").join("gicc.png"));
-    assert!(grey.profile.is_some());
+    assert!(grey.pictures[0].meaning.profile.is_some());
     let of_colours = source(&case("icc_profiles").join("p3.png")).pictures.remove(0).pixels;
     grey.pictures[0].pixels = of_colours.clone();
     let out = folder.path().join("grey.png");
-    write::write(&out, Existing::Replace, Format::Png, vec![of_colours], &grey, None)
+    write::write(
+        &out,
+        Existing::Replace,
+        Format::Png,
+        vec![of_colours],
+        &grey.pictures[0].meaning,
+        &grey,
+        None,
+    )
+    .expect("it can be written");
+    assert_eq!(source(&out).pictures[0].meaning.profile, None);
+}
+
+/// The first pixel of a case as light, by what its reader says of its numbers.
+fn light(name: &str) -> [f32; 3] {
+    let picture = source(&case(name)).pictures.remove(0);
+    let change = Conversion::between(&picture.meaning, &Meaning::light()).expect("it is encoded");
+    let numbers = change.apply(&picture.pixels).0.to_f32();
+    if picture.pixels.channels() == 1 { [numbers[0]; 3] } else { [numbers[0], numbers[1], numbers[2]] }
+}
+
+#[test]
+fn profiles_say_what_numbers_mean() {
+    // The note's numbers are of 8 bits; JPEG changes red by one.
+    for (name, near) in [("p3.png", 4e-3), ("p3.tif", 4e-3), ("p3.jpg", 2e-2), ("p3.webp", 4e-3)] {
+        let found = light(&format!("icc_profiles/{name}"));
+        let is_right = found.iter().zip([0.694, 0.023, 0.0086]).all(|(a, b)| (a - b).abs() < near);
+        assert!(is_right, "{name}: {found:?}");
+    }
+    let meaning = source(&case("icc_profiles/p3.png")).pictures.remove(0).meaning;
+    assert!(meaning.has_primaries(primaries::P3) && meaning.transfer == Transfer::Srgb, "{meaning:?}");
+    assert_eq!(meaning.said_by, Some("ICC profile"));
+    // The profile of grey has a gamma of 1.8, and results of colours are sRGB.
+    let grey = source(&case("icc_profiles/gicc.png")).pictures.remove(0).meaning;
+    assert!(matches!(grey.transfer, Transfer::Gamma(gamma) if (gamma - 1.8).abs() < 1e-2), "{grey:?}");
+    let results = grey.of_results(grey.state);
+    assert!(grey.profile.is_some() && grey.warnings.is_empty() && results.is_usual());
+    assert_eq!(results.profile, None);
+}
+
+#[test]
+fn inks_become_colours_by_their_profile() {
+    for name in ["icc_profiles/cmyk_icc.jpg", "icc_profiles/cmyk_icc.tif"] {
+        let picture = source(&case(name)).pictures.remove(0);
+        let [r, g, b] = [0, 1, 2].map(|channel: usize| picture.pixels.bytes()[channel]);
+        // Little CMS gives 202, 102, 76 by the same tables.
+        let is_right = [(r, 202), (g, 102), (b, 76)].iter().all(|(found, right)| found.abs_diff(*right) <= 2);
+        assert!(is_right, "{name}: {r} {g} {b}");
+        assert_eq!((picture.meaning.is_usual(), picture.meaning.profile), (true, None));
+        assert_eq!(picture.pixels.precision(), Precision::U8);
+    }
+}
+
+#[test]
+fn numbers_mean_the_same_in_all_files_that_are_written() {
+    let folder = tempfile::tempdir().expect("a folder");
+    let read = source(&case("icc_profiles/p3.png"));
+    let pixels = read.pictures[0].pixels.clone();
+    for (primaries, transfer) in [
+        (primaries::P3, Transfer::Srgb),
+        (primaries::REC2020, Transfer::Pq),
+        (primaries::REC2020, Transfer::Hlg),
+        (primaries::REC2020, Transfer::Rec709),
+        (primaries::ADOBE, Transfer::Gamma(2.2)),
+        (primaries::AP1, Transfer::Linear),
+        (primaries::AP0, Transfer::Linear),
+    ] {
+        let meaning = Meaning { primaries, transfer, ..Meaning::display() };
+        for name in ["a.png", "a.tif", "a.jpg"] {
+            let path = folder.path().join(name);
+            let format = Format::of(&path).expect("a kind of file");
+            write::write(&path, Existing::Replace, format, vec![pixels.clone()], &meaning, &read, None)
+                .expect("it can be written");
+            let found = source(&path).pictures.remove(0).meaning;
+            let said = format!("{name}: {} as {}", meaning.words(), found.words());
+            assert!(found.warnings.is_empty(), "{said}: {:?}", found.warnings);
+            // Negative chromaticities cannot be said in PNG.
+            assert!(found.has_primaries(primaries) || primaries[5] < 0.0 && name == "a.png", "{said}");
+            match (&found.transfer, &meaning.transfer) {
+                (Transfer::Gamma(a), Transfer::Gamma(b)) => assert!((a - b).abs() < 1e-3, "{said}"),
+                (a, b) => assert_eq!(a, b, "{said}"),
+            }
+        }
+    }
+    // The usual is not said.
+    let path = folder.path().join("usual.png");
+    write::write(&path, Existing::Keep, Format::Png, vec![pixels], &Meaning::display(), &read, None)
         .expect("it can be written");
-    assert_eq!(source(&out).profile, None);
+    let bytes = fs::read(&path).expect("it is there");
+    for chunk in [b"cICP", b"gAMA", b"cHRM", b"iCCP", b"sRGB"] {
+        assert!(bytes.windows(4).all(|window| window != chunk));
+    }
+}
+
+#[test]
+fn light_of_other_primaries_is_written_with_them() {
+    let folder = tempfile::tempdir().expect("a folder");
+    let read = source(&case("exr_color_interop/c_2020id.exr"));
+    let picture = &read.pictures[0];
+    for name in ["a.tif", "a.exr"] {
+        let path = folder.path().join(name);
+        let (format, pixels) = (Format::of(&path).expect("a kind"), picture.pixels.clone());
+        write::write(&path, Existing::Keep, format, vec![pixels], &picture.meaning, &read, None)
+            .expect("it can be written");
+        let found = source(&path).pictures.remove(0).meaning;
+        assert!(found.has_primaries(primaries::REC2020) && found.transfer == Transfer::Linear, "{found:?}");
+    }
 }

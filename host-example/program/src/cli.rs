@@ -2,7 +2,7 @@
 
 use clap::{CommandFactory, Parser, Subcommand};
 
-use crate::verbs::{apply, bench, documents, farm, nodes, preset, render, sheet, view};
+use crate::verbs::{apply, bench, documents, farm, info, nodes, preset, render, sheet, view};
 use isophote_files::error::Result;
 
 const AFTER_HELP: &str = "Files that are there already stay unless --force is given, and no result takes the place of a file \
@@ -32,6 +32,8 @@ enum Command {
     Preset(preset::PresetArgs),
     /// Makes jobs for render farms.
     Farm(farm::FarmArgs),
+    /// Prints what is understood of a file: a picture, a video, a scene, a preset.
+    Info(info::InfoArgs),
     /// Lists the nodes, or the parameters of one.
     Nodes(nodes::NodesArgs),
     /// Measures how fast the nodes are.
@@ -53,6 +55,7 @@ impl Cli {
             Command::Sheet(args) => sheet::run(args),
             Command::Preset(args) => preset::run(args),
             Command::Farm(args) => farm::run(args),
+            Command::Info(args) => info::run(args),
             Command::Nodes(args) => nodes::run(args),
             Command::Bench(args) => bench::run(args),
             Command::Documents(args) => documents::run(args, Self::command()),

@@ -33,7 +33,7 @@ fn looks_right(folder: &Path, scene: &Path, more: &[&str]) -> (String, RgbImage)
         for plane in &planes {
             assert!(plane.iter().all(|v| v.is_finite()), "{name} ({style}) has what is not a number");
         }
-        let byte = |v: f32| (isophote_pictures::space::srgb_encode(v.clamp(0.0, 1.0)) * 255.0 + 0.5) as u8;
+        let byte = |v: f32| (isophote_pictures::transfer::srgb_encode(v.clamp(0.0, 1.0)) * 255.0 + 0.5) as u8;
         let picture = RgbImage::from_fn(320, 180, |x, y| {
             let at = (y * 320 + x) as usize;
             image::Rgb([0, 1, 2].map(|channel: usize| byte(planes[channel][at])))

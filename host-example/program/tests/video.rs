@@ -3,10 +3,10 @@
 mod support;
 
 use std::fs;
-use std::path::Path;
+use std::path::{Path, PathBuf};
 use std::process::{Command, Stdio};
 
-use support::{IN_PIXELS, fails, isophote, listing, succeeds, video_folder};
+use support::{IN_PIXELS, fails, isophote, listing, root, succeeds, video_folder};
 
 fn ffmpeg(folder: &Path, args: &str) {
     let mut command = Command::new("ffmpeg");
@@ -195,4 +195,263 @@ fn scenes_become_videos() {
     refused(&["-"], &["is not a kind of picture"]);
     fails(render(&["out.mp4"]).env("ISOPHOTE_FFMPEG", "/nowhere"), 1, &["ffmpeg", "install"]);
     assert_eq!(listing(at), before, "nothing half-written is left");
+}
+
+/// Changes nothing of a file in the folder of cases, into `output`; returns what was warned of.
+fn unchanged(folder: &Path, case: &str, output: &str) -> String {
+    let input = root().join("tests/data/cases").join(case);
+    let input = input.to_str().expect("a name of letters");
+    succeeds(&mut apply(folder, &["gaussian", input, output, "--set", "sigma=0", "--force"])).1
+}
+
+/// Frames as raw bytes of this form.
+fn raw(file: &Path, form: &str, decoder: &[&str]) -> Vec<u8> {
+    let mut command = Command::new("ffmpeg");
+    command.args(["-v", "error"]).args(decoder).arg("-i").arg(file);
+    command.args(["-map", "0:V:0", "-fps_mode", "passthrough", "-f", "rawvideo", "-pix_fmt", form, "-"]);
+    command.output().expect("ffmpeg runs").stdout
+}
+
+fn case(name: &str) -> PathBuf {
+    root().join("tests/data/cases").join(name)
+}
+
+/// Greatest difference of two videos, of 255.
+fn greatest(a: &[u8], b: &[u8]) -> u8 {
+    assert!(!a.is_empty() && a.len() == b.len(), "{} and {} bytes", a.len(), b.len());
+    a.iter().zip(b).map(|(a, b)| a.abs_diff(*b)).max().unwrap_or(0)
+}
+
+/// When pictures are shown, in seconds and in order.
+fn times(file: &Path) -> Vec<f64> {
+    let mut command = Command::new("ffprobe");
+    command.args([
+        "-v",
+        "error",
+        "-select_streams",
+        "v:0",
+        "-show_entries",
+        "packet=pts_time",
+        "-of",
+        "csv=p=0",
+    ]);
+    let text = succeeds(command.arg(file)).0;
+    let mut times: Vec<f64> =
+        text.lines().map(|line| line.trim_end_matches(',').parse().expect("a time")).collect();
+    times.sort_by(f64::total_cmp);
+    times
+}
+
+#[test]
+fn cases_of_other_tracks_are_kept_or_made_anew() {
+    let Some(folder) = video_folder() else { return };
+    let at = folder.path();
+    for (input, output, codecs) in [
+        ("srt.mkv", "srt.mp4", "h264 aac mov_text"),
+        ("ass.mkv", "ass.mp4", "h264 aac mov_text"),
+        ("a.mp4", "a.webm", "vp9 opus"),
+        ("movtext.mp4", "movtext.mkv", "h264 aac subrip"),
+        ("pcm.mov", "pcm.mp4", "h264 aac"),
+        ("pcm.mov", "pcm.mov", "h264 pcm_s16le"),
+    ] {
+        assert_eq!(unchanged(at, &format!("video_streams/{input}"), output), "", "{output}");
+        let mut command = Command::new("ffprobe");
+        command.args(["-v", "error", "-show_entries", "stream=codec_name", "-of", "csv=p=0"]);
+        let text = succeeds(command.arg(at.join(output))).0;
+        let found: Vec<&str> = text.lines().map(|line| line.trim_end_matches(',')).collect();
+        assert_eq!(found.join(" "), codecs, "{output}");
+    }
+    let said = unchanged(at, "video_streams/srt.mkv", "srt.avi");
+    assert!(said.lines().count() == 1 && said.contains("subtitles (subrip, track 2)"), "{said}");
+}
+
+#[test]
+fn cases_of_times_are_kept() {
+    let Some(folder) = video_folder() else { return };
+    let at = folder.path();
+    for output in ["late.mp4", "late.mkv", "late.mov"] {
+        assert_eq!(unchanged(at, "video_start/late.mp4", output), "", "{output}");
+        let [video, sound] = ["v:0", "a:0"].map(|stream| {
+            let text = probe(&at.join(output), stream, "start_time");
+            text.trim_end_matches(',').parse::<f64>().expect("a time")
+        });
+        assert!((video - sound - 0.667).abs() < 0.04, "{output}: pictures at {video}, sound at {sound}");
+    }
+    unchanged(at, "video_timecode/tc.mov", "tc.mov");
+    let mut command = Command::new("ffprobe");
+    command.args(["-v", "error", "-select_streams", "v:0", "-show_entries", "stream_tags=timecode"]);
+    let text = succeeds(command.args(["-of", "csv=p=0"]).arg(at.join("tc.mov"))).0;
+    assert_eq!(text.trim(), "01:00:00:00");
+    for (input, outputs) in
+        [("vfr.mp4", &["vfr.mp4", "vfr.mkv", "vfr.webm"][..]), ("vfrl.mp4", &["vfrl.mov"])]
+    {
+        let input = format!("video_vfr/{input}");
+        let before = times(&case(&input));
+        for output in outputs {
+            assert_eq!(unchanged(at, &input, output), "", "{output}");
+            let after = times(&at.join(output));
+            assert_eq!(before.len(), after.len(), "{output}");
+            let off = before.iter().zip(&after).map(|(a, b)| (a - b).abs()).fold(0.0, f64::max);
+            assert!(off < 0.0011, "{output}: frames are off by {off} s");
+            let [a, b] = [case(&input), at.join(output)].map(|file| raw(&file, "gray", &[]));
+            let sum: u64 = a.iter().zip(&b).map(|(a, b)| u64::from(a.abs_diff(*b))).sum();
+            assert!(a.len() == b.len() && sum < 4 * a.len() as u64, "{output} has other frames");
+        }
+    }
+    let said = unchanged(at, "video_vfr/vfr.mp4", "vfr.avi");
+    assert!(said.contains("unequally long") && said.lines().count() == 1, "{said}");
+}
+
+#[test]
+fn cases_of_fields_become_whole_pictures_with_a_warning() {
+    let Some(folder) = video_folder() else { return };
+    let at = folder.path();
+    let said = unchanged(at, "video_interlaced/inter.mp4", "whole.mp4");
+    assert!(said.contains("is interlaced") && said.contains("bwdif") && said.lines().count() == 1, "{said}");
+    assert_eq!(probe(&at.join("whole.mp4"), "v:0", "field_order,nb_frames"), "progressive,15");
+}
+
+#[test]
+fn cases_of_red_green_and_blue_are_exact() {
+    let Some(folder) = video_folder() else { return };
+    let at = folder.path();
+    for (input, output) in [
+        ("video_gbr/ffv1.mkv", "ffv1.mkv"),
+        ("video_gbr/ffv1.mkv", "ffv1.mp4"),
+        ("video_gbr/ffv1.mkv", "ffv1.webm"),
+        ("video_gbr/x264rgb.mp4", "x264rgb.mp4"),
+        ("video_gbr/x264rgb.mp4", "x264rgb.avi"),
+        ("video_rgb_range/png.mov", "png.mov"),
+        ("video_rgb_range/oddpng.mov", "oddpng.mkv"),
+        ("video_rgb_range/white.mov", "white.mov"),
+        ("video_rgb_range/black.mov", "black.mov"),
+        ("video_rgb_range/white.mov", "white.mp4"),
+        ("video_rgb_range/white.mov", "white.apng"),
+    ] {
+        unchanged(at, input, output);
+        let [before, after] = [case(input), at.join(output)].map(|file| raw(&file, "rgb24", &[]));
+        assert!(greatest(&before, &after) <= 1, "{output} differs by {}", greatest(&before, &after));
+    }
+    // By encoders that hold luma and chroma, too.
+    let white = case("video_rgb_range/white.mov");
+    let args = [
+        "gaussian",
+        white.to_str().expect("letters"),
+        "x.mov",
+        "--set",
+        "sigma=0",
+        "--encode",
+        "-c:v libx264",
+    ];
+    succeeds(&mut apply(at, &args));
+    assert!(raw(&at.join("x.mov"), "rgb24", &[]).iter().all(|value| *value >= 254));
+}
+
+#[test]
+fn cases_of_odd_sizes_keep_them() {
+    let Some(folder) = video_folder() else { return };
+    let at = folder.path();
+    for (input, output) in
+        [("odd.mkv", "a.mkv"), ("odd.mkv", "a.mp4"), ("odd.webm", "a.webm"), ("odd.webm", "b.mkv")]
+    {
+        assert_eq!(unchanged(at, &format!("video_odd/{input}"), output), "", "{output}");
+        assert_eq!(probe(&at.join(output), "v:0", "width,height"), "161,91", "{output}");
+    }
+    let said = unchanged(at, "video_odd/odd.mkv", "a.wmv");
+    assert!(said.contains("161x91") && said.contains("160x90") && said.lines().count() == 1, "{said}");
+    assert_eq!(probe(&at.join("a.wmv"), "v:0", "width,height"), "160,90");
+}
+
+#[test]
+fn cases_of_containers_are_videos() {
+    let Some(folder) = video_folder() else { return };
+    let at = folder.path();
+    for (name, others) in [
+        ("a.gif", &["a.gif", "a.apng", "a.webp", "gif.mp4"][..]),
+        ("a.mpg", &["a.mpg", "mpg.mp4"]),
+        ("a.m2ts", &["a.m2ts"]),
+        ("a.wmv", &["a.wmv"]),
+        ("a.3gp", &["a.3gp", "3gp.gif"]),
+        ("a.ogv", &["a.ogv"]),
+    ] {
+        for output in others {
+            let said = unchanged(at, &format!("video_containers/{name}"), output);
+            let is_silent = *output == "3gp.gif" || said.is_empty();
+            assert!(is_silent, "{name} to {output}: {said}");
+            if *output == "a.webp" {
+                continue;
+            }
+            let frames = raw(&at.join(output), "gray", &[]).len() / (160 * 90);
+            assert_eq!(frames, 15, "{name} to {output}");
+        }
+    }
+    // Pictures that move are videos, and those that do not are pictures.
+    fs::copy(at.join("a.apng"), at.join("moving.png")).expect("the folder is writable");
+    for (input, output) in [("a.webp", "webp.mkv"), ("moving.png", "png.mkv")] {
+        succeeds(&mut apply(at, &["gaussian", input, output, "--set", "sigma=0"]));
+        let [before, after] = [at.join("a.gif"), at.join(output)].map(|file| raw(&file, "rgb24", &[]));
+        let sum: u64 = before.iter().zip(&after).map(|(a, b)| u64::from(a.abs_diff(*b))).sum();
+        assert!(before.len() == after.len() && sum < 8 * before.len() as u64, "{input} has other frames");
+    }
+    fails(&mut apply(at, &["ink", "moving.png", "out.png"]), 2, &["a video becomes a video", ".apng"]);
+    ffmpeg(at, "-i a.gif -frames:v 1 still.webp");
+    succeeds(&mut apply(at, &["ink", "still.webp", "still.png"]));
+}
+
+#[test]
+fn cases_of_alpha_keep_it_where_they_can() {
+    let Some(folder) = video_folder() else { return };
+    let at = folder.path();
+    let vp9 = ["-c:v", "libvpx-vp9"];
+    for (input, output, most) in [
+        ("pr4444.mov", "pr4444.mov", 2),
+        ("pr4444.mov", "pr4444.mkv", 1),
+        ("qtrle.mov", "qtrle.mov", 0),
+        ("qtrle.mov", "qtrle.mkv", 0),
+        ("alpha.webm", "alpha.webm", 12),
+        ("alpha.webm", "alpha.mkv", 1),
+        ("qtrle.mov", "qtrle.webm", 12),
+    ] {
+        let input = format!("video_alpha/{input}");
+        assert_eq!(unchanged(at, &input, output), "", "{output}");
+        let decoder = |name: &str| if name.ends_with("webm") { &vp9[..] } else { &[] };
+        let alpha = |file: &Path, name: &str| {
+            let pixels = raw(file, "rgba", decoder(name));
+            pixels.into_iter().skip(3).step_by(4).collect::<Vec<u8>>()
+        };
+        let (before, after) = (alpha(&case(&input), &input), alpha(&at.join(output), output));
+        let difference = greatest(&before, &after);
+        assert!(difference <= most, "{output}: alpha differs by {difference}");
+        assert!(before.iter().any(|a| *a < 255), "{input} has alpha");
+    }
+    let said = unchanged(at, "video_alpha/pr4444.mov", "opaque.mp4");
+    assert!(said.contains("cannot hold alpha") && said.lines().count() == 1, "{said}");
+}
+
+#[test]
+fn cases_of_pixel_aspect_turn_with_the_picture() {
+    let Some(folder) = video_folder() else { return };
+    let at = folder.path();
+    for (input, size_and_aspect) in [("rotated_sar.mp4", "480,720,9:8"), ("sar.mp4", "720,480,8:9")] {
+        assert_eq!(unchanged(at, &format!("pixel_aspect/{input}"), input), "");
+        assert_eq!(probe(&at.join(input), "v:0", "width,height,sample_aspect_ratio"), size_and_aspect);
+    }
+    // Marks are round when they are shown: a dot of pixels that are twice as wide as high.
+    ffmpeg(
+        at,
+        "-f lavfi -i color=black:s=96x96:d=0.1,drawbox=48:48:1:1:white,setsar=2 -c:v ffv1 -pix_fmt gray dot.mkv",
+    );
+    succeeds(&mut apply(
+        at,
+        &["gaussian", "dot.mkv", "blur.mkv", "--set", "sigma=6", "--encode", "-c:v ffv1"],
+    ));
+    let pixels = raw(&at.join("blur.mkv"), "gray16le", &[]);
+    let mut sums = [0.0; 3];
+    for (index, value) in pixels[..96 * 96 * 2].as_chunks::<2>().0.iter().enumerate() {
+        let weight = f64::from(u16::from_le_bytes(*value));
+        let [x, y] = [index % 96, index / 96].map(|at| at as f64 - 48.0);
+        sums = [sums[0] + weight, sums[1] + weight * x * x, sums[2] + weight * y * y];
+    }
+    let [across, down] = [sums[1], sums[2]].map(|sum| (sum / sums[0]).sqrt());
+    assert!((down / across - 2.0).abs() < 0.25, "{across} pixels across, {down} down");
 }

@@ -60,8 +60,8 @@ fn difference(a: &ColorImage, b: &ColorImage) -> f32 {
 
 /// A picture made smaller by averaging its light.
 fn smaller(image: &ColorImage) -> ColorImage {
-    let light = |v: u8| isophote_pictures::space::srgb_decode(f32::from(v) / 255.0);
-    let level = |v: f32| (isophote_pictures::space::srgb_encode(v) * 255.0).round() as u8;
+    let light = |v: u8| isophote_pictures::transfer::srgb_decode(f32::from(v) / 255.0);
+    let level = |v: f32| (isophote_pictures::transfer::srgb_encode(v) * 255.0).round() as u8;
     let factor = FACTOR as usize;
     let size = image.size.map(|side| side / factor);
     let mean = |x: usize, y: usize, channel: usize| {

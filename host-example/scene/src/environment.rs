@@ -8,11 +8,10 @@ use glam::Vec3;
 use half::f16;
 
 use isophote_files::error::{Error, Result};
-use isophote_pictures::convert;
+use isophote_pictures::convert::Conversion;
 use isophote_pictures::exr::Selection;
-use isophote_pictures::primaries::{Change, REC709, same};
-use isophote_pictures::read::{self, ImageState};
-use isophote_pictures::space::Space;
+use isophote_pictures::meaning::Meaning;
+use isophote_pictures::read;
 
 /// Most pixels across; larger pictures are reduced.
 const MOST_ACROSS: usize = 8192;
@@ -74,17 +73,14 @@ impl Environment {
                 "name one that is twice as wide as high",
             ));
         }
-        let is_light = source.state == ImageState::SceneReferred;
-        let primaries = picture.chromaticities.filter(|c| is_light && channels > 1 && !same(*c, REC709));
-        let change = primaries.and_then(|from| Change::new(from, REC709));
-        let pixels = convert::between(picture.pixels, source.state, Space::Srgb, ImageState::SceneReferred);
+        let changed = Conversion::between(&picture.meaning, &Meaning::light());
+        let pixels = changed.map_or_else(|| picture.pixels.clone(), |change| change.apply(&picture.pixels).0);
         let light = |pixel: &[f32]| {
             let rgb = match *pixel {
                 [r, g, b, ..] => [r, g, b],
                 [v, ..] => [v; 3],
                 [] => [0.0; 3],
             };
-            let rgb = change.as_ref().map_or(rgb, |change| change.apply(rgb));
             // What is no number is no light; what is infinite is the most that the numbers hold.
             Vec3::from(rgb.map(|v| if v > 0.0 { v.min(f16::MAX.to_f32()) } else { 0.0 }))
         };

@@ -39,11 +39,15 @@ pub fn load(path: &Path, budget: &Budget) -> Result<Scene> {
     let file = File::open(path).map_err(|e| unreadable(e.to_string()))?;
     let bytes = budget.read(file).map_err(unreadable)?;
     let malformed = |problem: String| Error::file(path, problem, budget.fix("export the scene again"));
-    let Parsed { document, channels, blob, warnings } = parse(&bytes, budget).map_err(malformed)?;
+    let Parsed { document, channels, blob, extensions, warnings } = parse(&bytes, budget).map_err(malformed)?;
     let buffers = read_buffers(path, &document, blob, budget)?;
     let accessors = Accessors { buffers: &buffers, budget };
-    let mut scene =
-        Scene { cameras: read_cameras(&document), lights: read_lights(&document), ..Scene::empty(warnings) };
+    let mut scene = Scene {
+        cameras: read_cameras(&document),
+        lights: read_lights(&document),
+        extensions,
+        ..Scene::empty(warnings)
+    };
     images::read(path, &document, &accessors, &mut scene)?;
     materials::read(&document, &accessors, &mut scene);
     meshes::read(&document, &accessors, &mut scene).map_err(malformed)?;
@@ -61,6 +65,7 @@ struct Parsed {
     channels: animations::Channels,
     /// The binary chunk of a `.glb`.
     blob: Option<Vec<u8>>,
+    extensions: Vec<(String, bool)>,
     warnings: Vec<String>,
 }
 
@@ -97,8 +102,10 @@ fn parse(bytes: &[u8], budget: &Budget) -> std::result::Result<Parsed, String> {
     let mut root: json::Root = json::deserialize::from_str(&text).map_err(|e| invalid(e.to_string()))?;
     let required = std::mem::take(&mut root.extensions_required);
     let warnings = extensions::check(&root.extensions_used, &required)?;
+    let extensions = extensions::all(&root.extensions_used, &required);
     validate(&root)?;
-    Ok(Parsed { document: gltf::Document::from_json_without_validation(root), channels, blob, warnings })
+    let document = gltf::Document::from_json_without_validation(root);
+    Ok(Parsed { document, channels, blob, extensions, warnings })
 }
 
 fn validate(root: &json::Root) -> std::result::Result<(), String> {

@@ -89,6 +89,7 @@ impl Scene {
             draws: Vec::new(),
             bounds: Bounds { min: Vec3::ZERO, max: Vec3::ZERO, extremes: Vec::new() },
             warnings,
+            extensions: Vec::new(),
             files: Vec::new(),
         }
     }

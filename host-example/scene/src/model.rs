@@ -318,6 +318,8 @@ pub struct Scene {
     pub bounds: Bounds,
     /// Warnings about what was read but could not be honoured, one line each.
     pub warnings: Vec<String>,
+    /// Extensions of glTF that the file uses, and whether each is understood.
+    pub extensions: Vec<(String, bool)>,
     /// The files that it was read from, where the system tells them apart.
     pub files: Vec<Identity>,
 }

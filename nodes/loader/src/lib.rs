@@ -27,6 +27,7 @@ pub mod guides;
 mod image;
 mod library;
 mod open;
+pub mod pixel_aspect;
 pub mod plan;
 pub mod preset;
 mod printable;

@@ -16,6 +16,7 @@ pub mod guides;
 pub mod handles;
 pub mod images;
 pub mod objects;
+pub mod pixel_aspect;
 pub mod plan;
 pub mod precision;
 pub mod presets;
@@ -114,6 +115,7 @@ unsafe extern "C" fn extension(id: *const c_char) -> *const c_void {
         _ if id == sequence::EXTENSION => (&raw const sequence::API).cast(),
         _ if id == guides::EXTENSION => (&raw const guides::API).cast(),
         _ if id == presets::EXTENSION => (&raw const presets::API).cast(),
+        _ if id == pixel_aspect::EXTENSION => (&raw const pixel_aspect::API).cast(),
         _ if id == precision::EXTENSION => (&raw const precision::API).cast(),
         #[cfg(not(target_vendor = "apple"))]
         _ if id == vulkan::EXTENSION => (&raw const vulkan::API).cast(),

@@ -13,4 +13,5 @@ static OWN: isophote_glibc::Kept = isophote_glibc::KEPT;
 pub mod abi;
 pub mod ofx;
 mod pinned;
+mod pixel_aspect;
 mod reserve;

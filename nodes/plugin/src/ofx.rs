@@ -1,7 +1,7 @@
 //! The OpenFX face: every node as an image effect of its own, for hosts such as Nuke, Resolve and Natron.
 //!
 //! Thin: [`effects`] derives what there is from the nodes' declarations, [`describe`] describes it to hosts,
-//! [`settings`], [`known`], [`image`] and [`inputs`] read what hosts have, [`pixel_aspect`] makes their pixels square,
+//! [`settings`], [`known`], [`image`] and [`inputs`] read what hosts have, [`crate::pixel_aspect`] makes their pixels square,
 //! and [`render`] runs the plan that is [`prepared`]. Nothing is kept between calls but the host's functions, so that
 //! any action may come on any thread, in any number.
 
@@ -18,7 +18,6 @@ mod instance;
 mod known;
 mod motion;
 mod needed;
-mod pixel_aspect;
 mod prepared;
 mod quirks;
 mod render;

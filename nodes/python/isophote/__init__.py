@@ -11,9 +11,9 @@ from __future__ import annotations
 
 from . import nodes
 from ._catalogue import Choice, Node, Param, Port, Value, catalogue
+from ._inputs import Array
 from ._library import native
 from ._motion import motion
-from ._pixels import Array
 from .devices import Device, DeviceLike
 from .errors import (
     DeviceError,

@@ -6,8 +6,9 @@ from typing import Any
 
 import numpy as np
 
+from ._inputs import Array, given
 from ._library import native
-from ._pixels import Array, dense
+from ._pixels import dense
 
 
 def motion(backward: Any = None, forward: Any = None, *, convention: str = "isophote") -> dict[str, Array]:
@@ -32,4 +33,4 @@ def motion(backward: Any = None, forward: Any = None, *, convention: str = "isop
 
 
 def _floats(vectors: Any) -> Array | None:
-    return None if vectors is None else dense(np.asarray(vectors, np.float32))
+    return None if vectors is None else dense(np.asarray(given(vectors, "motion"), np.float32))

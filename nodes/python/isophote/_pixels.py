@@ -2,14 +2,12 @@
 
 from __future__ import annotations
 
-import os
 from typing import Any
 
 import numpy as np
 
+from ._inputs import Array, given, tensor
 from .errors import InvalidValueError
-
-Array = np.ndarray[Any, Any]
 
 _FORMATS = "uint8, uint16, float16 or float32"
 
@@ -19,19 +17,12 @@ def pixels(image: Any, name: str) -> Array:
 
     `name` is the input's, which says what other types of numbers mean.
     """
-    if isinstance(image, (str, os.PathLike)):
-        fix = "read it first, by numpy.asarray(PIL.Image.open(...)) or what else reads such files"
-        raise InvalidValueError(f"input image '{name}' is the name of a file; {fix}")
-    array = np.asarray(image)
+    array = given(image, name)
     if array.ndim == 2:
         array = array[:, :, np.newaxis]
     if array.ndim != 3:
-        raise InvalidValueError(
-            f"input image '{name}' has the shape {array.shape}; pictures have rows, columns and perhaps channels"
-        )
-    if array.dtype == np.bool_:
-        array = array.astype(np.uint8) * 255 if name == "mask" else array.astype(np.uint8)
-    elif name == "object_id" and array.dtype.kind in "iu" and array.dtype.itemsize > 2:
+        raise InvalidValueError(f"input image '{name}' has the shape {array.shape}, which is a batch; give one picture")
+    if name == "object_id" and array.dtype.kind in "iu" and array.dtype.itemsize > 2:
         array = array.astype(np.float32)
     array = array.astype(_format(array.dtype, f"input image '{name}'"), copy=False)
     if name == "color" and array.shape[2] == 2:
@@ -58,12 +49,22 @@ def dense(array: Array) -> Array:
     return array if one_after_the_other and apart else np.ascontiguousarray(array)
 
 
+def writable(out: Any) -> Array:
+    """The caller's array that a result is written to, or one in the memory of its tensor."""
+    if isinstance(out, np.ndarray):
+        return out
+    if not hasattr(out, "__dlpack__"):
+        raise InvalidValueError(f"out is no array and no tensor with __dlpack__, but of {type(out)}")
+    return tensor(out, "out")
+
+
 class Target:
     """Where a result is written: the caller's array, or a new one."""
 
-    def __init__(self, image: Any, kind: str, out: Array | None) -> None:
-        """`image` is the picture that a result of this kind is made of, `out` the caller's array."""
-        source = np.asarray(image)
+    def __init__(self, source: Array, kind: str, out: Any) -> None:
+        """`source` is the picture that a result of this kind is made of, `out` the caller's array or tensor."""
+        self._caller: Array | None = out
+        out = None if out is None else writable(out)
         height, width = source.shape[:2]
         if kind == "color":
             shape, dtype = source.shape, source.dtype
@@ -77,7 +78,7 @@ class Target:
             raise InvalidValueError(f"out has the shape {out.shape}, and the picture has {height} rows of {width} pixels")
         if not out.flags.writeable:
             raise InvalidValueError("out is read-only")
-        self.out = out
+        self.out: Array = out
         _format(out.dtype, "out")
         view = out[:, :, np.newaxis] if out.ndim == 2 else out
         channels = view.shape[2]
@@ -89,7 +90,7 @@ class Target:
         self._view = view
 
     def finished(self) -> Array:
-        """The result, in the caller's array or the new one."""
+        """The result: the caller's array or tensor, or the new array."""
         if self.pixels is not self._view:
             self._view[...] = self.pixels[:, :, self._picked]
-        return self.out
+        return self.out if self._caller is None else self._caller

@@ -11,7 +11,7 @@ from collections.abc import Callable
 from typing import Any
 
 from ._catalogue import Node, Param, catalogue
-from ._pixels import Array
+from ._inputs import Array
 from .style import GUIDES, apply
 
 __all__ = list(catalogue())

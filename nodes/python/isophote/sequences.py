@@ -6,8 +6,9 @@ import threading
 from collections.abc import Callable, Iterable, Iterator, Mapping
 from typing import Any
 
+from ._inputs import Array, given
 from ._library import native
-from ._pixels import Array, Target, pixels
+from ._pixels import Target, pixels
 from .presets import StyleLike
 from .style import GUIDES, Settings, Style, opened
 
@@ -55,15 +56,16 @@ class Sequence:
         self._sequence = native.Sequence(memory, max_motion)
         self._lock = threading.RLock()
 
-    def frame(self, number: int, out: Array | None = None) -> Array:
+    def frame(self, number: int, out: Any = None) -> Array:
         """The stylized picture of a frame, in `out` where that is given."""
-        image = self._source("color", number)
-        if image is None:
+        picture = self._source("color", number)
+        if picture is None:
             raise IndexError(f"there is no frame {number}")
+        image = given(picture, "color")
 
         def source(name: str, frame: int) -> Array | None:
-            given = image if (name, frame) == ("color", number) else self._source(name, frame)
-            return None if given is None else pixels(given, name)
+            found = image if (name, frame) == ("color", number) else self._source(name, frame)
+            return None if found is None else pixels(found, name)
 
         request = self._settings.request(pixels(image, "color"), self._guides, number, self.style)
         with self._lock, self.style._lock:

@@ -9,8 +9,11 @@ from collections.abc import Callable, Mapping
 from pathlib import Path
 from typing import Any, TypedDict
 
+import numpy as np
+
+from ._inputs import Array, given
 from ._library import native
-from ._pixels import Array, Target, pixels
+from ._pixels import Target, pixels, writable
 from .devices import Device, DeviceLike, open_device
 from .errors import InvalidValueError
 from .presets import LENGTHS, LOOK, PLACE, Preset, StyleLike, as_json, as_text
@@ -152,7 +155,7 @@ class Style:
         image: Any,
         /,
         *,
-        out: Array | None = None,
+        out: Any = None,
         frame: int = 0,
         settings: Settings | None = None,
         **inputs: Any,
@@ -160,14 +163,49 @@ class Style:
         """Applies the style to a picture. `isophote.apply` describes the arguments."""
         guides = {name: inputs.pop(name) for name in GUIDES if name in inputs}
         settings = settings or Settings(**inputs)
-        images = {"color": pixels(image, "color")}
-        images.update((name, pixels(guide, name)) for name, guide in guides.items() if guide is not None)
+        images = {"color": given(image, "color")}
+        images.update((name, given(guide, name)) for name, guide in guides.items() if guide is not None)
+        if images["color"].ndim == 4:
+            return self._batch(images, out, frame, settings)
+        return self._picture(images, out, frame, settings)
+
+    def _picture(self, images: dict[str, Array], out: Array | None, frame: int, settings: Settings) -> Array:
+        """The result of one picture."""
+        image = images["color"]
+        images = {name: pixels(each, name) for name, each in images.items()}
         request = settings.request(images["color"], list(images), frame, self)
         with self._lock:
             self._at(frame)
             target = Target(image, self.output_kind, out)
             self._graph.process(request, images, target.pixels, settings.device, settings.threads, settings.progress)
         return target.finished()
+
+    def _batch(self, images: dict[str, Array], out: Array | None, frame: int, settings: Settings) -> Array:
+        """The results of pictures that are one array, each by itself."""
+        shape = images["color"].shape
+        count = shape[0]
+        if count == 0:
+            raise InvalidValueError("input image 'color' is a batch of no picture")
+        whole = None if out is None else writable(out)
+        if whole is not None and (whole.ndim not in (3, 4) or whole.shape[:3] != shape[:3]):
+            raise InvalidValueError(f"out has the shape {whole.shape}, and the batch {shape}")
+        results = []
+        for number in range(count):
+            target = None if whole is None else whole[number]
+            of_one = {name: _of_batch(each, name, number, shape) for name, each in images.items()}
+            results.append(self._picture(of_one, target, frame, settings))
+        return np.stack(results) if out is None else out
+
+
+def _of_batch(images: Array, name: str, number: int, shape: tuple[int, ...]) -> Array:
+    """The picture of this number in a batch, or the one picture that all have."""
+    has_no_channels = images.shape == shape[:3] and images.shape[:2] != shape[1:3]
+    if images.ndim != 4 and not has_no_channels:
+        return images
+    if images.shape[0] != shape[0]:
+        raise InvalidValueError(f"input image '{name}' is a batch of {images.shape[0]} pictures, and there are {shape[0]}")
+    picture: Array = images[number]
+    return picture
 
 
 def _opened(style: StyleLike) -> native.Style:
@@ -208,7 +246,7 @@ def apply(
     motion: Any = None,
     motion_forward: Any = None,
     rest_position: Any = None,
-    out: Array | None = None,
+    out: Any = None,
     frame: int = 0,
     color_space: str = "srgb",
     alpha_mode: str = "straight",
@@ -229,8 +267,11 @@ def apply(
     has a function with all of them for every node.
 
     Pictures are arrays of uint8, uint16 (0 to 1 is all of the range), float16 or float32, of rows, columns and channels:
-    RGB, RGBA, or grey with or without alpha. They are read, and `out` is written, where they lie in memory if pixels of a
-    row follow each other there, whatever the order of rows; other layouts are copied. Guides are what a renderer knows:
+    RGB, RGBA, or grey with or without alpha; bool is 0 or 255. They are read, and `out` is written, where they lie in
+    memory if pixels of a row follow each other there, whatever the order of rows; other layouts are copied. Tensors with
+    `__dlpack__`, such as those of PyTorch, are taken in the same way, and images of Pillow as what they show: a palette's
+    colours, and RGB for CMYK. A batch has one dimension more, before the rows; each of its pictures is computed by itself,
+    with its own guides or those of all, and the result is a batch. Guides are what a renderer knows:
 
     - `normal`: view-space normals, x right, y up, z towards the camera.
     - `depth`: distance from the camera, 0 or less where there is nothing.

@@ -10,13 +10,14 @@ use std::path::{Path, PathBuf};
 use std::process::ExitCode;
 
 /// The files that declare the contract, in the order of the header.
-const SOURCES: [&str; 9] = [
+const SOURCES: [&str; 10] = [
     "include/src/constants.rs",
     "include/src/types.rs",
     "include/src/table.rs",
     "include/src/sequences.rs",
     "include/src/precision.rs",
     "include/src/guides.rs",
+    "include/src/pixel_aspect.rs",
     "include/src/presets.rs",
     "include/src/vulkan.rs",
     "nodes/plugin/src/abi/entry.rs",
@@ -57,6 +58,10 @@ const PREAMBLE: &str = "\
  *
  *   const struct IsophoteGuidesApi *guides = api->extension(\"isophote.guides/1\");
  *   const struct IsophotePresetsApi *presets = api->extension(\"isophote.presets/1\");
+ *
+ * Pixels that are not square, as those of anamorphic pictures, are made so and back by
+ *
+ *   const struct IsophotePixelAspectApi *aspects = api->extension(\"isophote.pixel_aspect/1\");
  *
  * A host that renders with Vulkan records the filter into its command buffers, from and to its images:
  *
@@ -198,6 +203,7 @@ fn generate(root: &Path) -> Result<String, Error> {
         "IsophoteSequenceApi",
         "IsophotePrecisionApi",
         "IsophoteGuidesApi",
+        "IsophotePixelAspectApi",
         "IsophotePresetsApi",
         "IsophoteVulkanApi",
     ]

@@ -7,6 +7,7 @@ use super::backend::Backend;
 use super::frame_cache::Window;
 use super::memory::Needs;
 use super::picture_request::PictureRequest;
+use super::square;
 use crate::stylize::style::Style;
 use isophote_example::history::{is_stage, split};
 use isophote_files::error::{AtPlace, Error, Result};
@@ -14,12 +15,12 @@ use isophote_loader::abi::{IsophoteHistory, IsophoteRequest};
 use isophote_loader::catalogue::Kind;
 use isophote_loader::plan::{Role, Texture};
 use isophote_loader::{Control, Device, Input, Library, Sequence};
-use isophote_pictures::convert;
+use isophote_pictures::convert::Conversion;
 use isophote_pictures::exr::{ExrFile, Guide};
-use isophote_pictures::mix::{self, Meaning};
+use isophote_pictures::meaning::Meaning;
+use isophote_pictures::mix::{self, Encoding};
 use isophote_pictures::pixels::{Pixels, Precision};
-use isophote_pictures::primaries::{self, Change};
-use isophote_pictures::read::{ImageState, Opened};
+use isophote_pictures::read::{Opened, Source};
 use isophote_pictures::space::Space;
 use isophote_pictures::working::WorkingSpace;
 use isophote_pictures::write::Format;
@@ -76,6 +77,8 @@ const MIXED: u64 = 3 * 16;
 pub struct Filtered {
     /// One for each picture that is written.
     pub results: Vec<Pixels>,
+    /// Meaning of their numbers.
+    pub meaning: Meaning,
     /// Samples that were NaN or infinite and were replaced.
     pub replaced: u64,
 }
@@ -193,6 +196,11 @@ impl Filter {
         Ok(Self { library, layers: layers(looks)?, device, space, threads })
     }
 
+    /// The library that it runs.
+    pub fn library(&self) -> Library {
+        self.library.clone()
+    }
+
     /// Another one beside it on the same device, of the same looks.
     ///
     /// # Errors
@@ -239,35 +247,38 @@ impl Filter {
         }
         let in_place = exr.filter(|_| format == Format::Exr);
         let count = if in_place.is_some() { source.pictures.len() } else { source.pictures.len().min(1) };
-        let to = format.state(source.state);
+        let to = format.state(source.state());
         let scalar = self.layers.iter().all(|layer| layer.look.style.kind != Kind::Color);
-        let mut filtered = Filtered { results: Vec::with_capacity(count), replaced: 0 };
+        let mut filtered =
+            Filtered { results: Vec::with_capacity(count), meaning: Meaning::usual(to), replaced: 0 };
         for (at, picture) in source.pictures.iter().take(count).enumerate() {
             let channels = match in_place {
                 Some(exr) => exr.result_channels(at, scalar),
                 None if scalar => 1,
                 None => picture.pixels.channels().max(3),
             };
-            let working = WorkingSpace::of(self.space, source.state, picture);
-            let there = working.change.as_ref().map(|(there, _)| there);
+            let working = WorkingSpace::of(self.space, picture);
+            let there = working.there.as_ref();
             let (color, bad) = own.working(at, there).unwrap_or((&picture.pixels, 0));
             filtered.replaced += bad;
-            let precision = if to == source.state { color.precision() } else { Precision::F32 };
+            let precision = if to == source.state() { color.precision() } else { Precision::F32 };
             let size = (color.width(), color.height());
             let usual = self.library.request(size).map_err(|e| e.at(name, "use a smaller picture"))?;
-            let request = PictureRequest::of(picture, source.state, working.space, own.number).request(usual);
+            let request = PictureRequest::of(picture, working.space, own.number).request(usual);
             let job = LayerJob { at, there, request, color, window };
             let share = 1.0 / count as f32;
             let mut report = |done: f32| progress((at as f32 + done) * share);
-            let meaning = Meaning { state: source.state, space: working.space };
+            let is_premultiplied = picture.meaning.is_premultiplied();
+            let encoding = Encoding { is_premultiplied, space: working.space };
             let (mut result, replaced) =
-                self.layered(name, &job, (channels, precision), meaning, &mut report)?;
+                self.layered(name, &job, (channels, precision), encoding, &mut report)?;
             filtered.replaced += replaced;
+            result = square::unmake(&self.library, name, picture, result)?;
             if !scalar {
-                result = convert::between(result, source.state, working.space, to);
-                let is_shown = source.state == ImageState::SceneReferred && to == ImageState::DisplayReferred;
-                if let Some((_, back)) = working.change.filter(|_| !is_shown) {
-                    result = primaries::changed(&result, &back).0;
+                let meaning = format.kept(working.of_results(to));
+                result = working.leave(result, &meaning);
+                if at == 0 {
+                    filtered.meaning = meaning;
                 }
             }
             filtered.results.push(result);
@@ -281,7 +292,7 @@ impl Filter {
         name: &str,
         job: &LayerJob<'_>,
         (channels, precision): (u32, Precision),
-        meaning: Meaning,
+        encoding: Encoding,
         progress: &mut dyn FnMut(f32),
     ) -> Result<(Pixels, u64)> {
         let (color, count) = (job.color, self.layers.len() as f32);
@@ -300,7 +311,7 @@ impl Filter {
             replaced = bad.max(replaced);
             let mask = layer.look.mask.and_then(|mask| masks.get(mask)?.as_ref());
             below = Some(match mask.filter(|_| layer.is_mixed()) {
-                Some(mask) => mix::mixed(below.as_ref().unwrap_or(color), result, mask, meaning),
+                Some(mask) => mix::mixed(below.as_ref().unwrap_or(color), result, mask, encoding),
                 None => result,
             });
         }
@@ -401,13 +412,27 @@ impl Planner {
     /// # Errors
     /// As [`Planner::filter_memory`].
     pub fn needs(&mut self, file: &Path, frame: Option<i64>, opened: &Opened) -> Result<Option<Needs>> {
-        let Some(size) = opened.size() else { return Ok(None) };
-        let filter = self.filter_memory(&file.display().to_string(), frame, size)?;
+        let Some(own) = opened.size() else { return Ok(None) };
+        let name = file.display().to_string();
+        let size = square::size(&self.library, &name, own, opened.pixel_aspect())?;
+        let filter = self.filter_memory(&name, frame, size)?;
         // Each as it is read, as it is kept and as one of all frames.
         let masks = self.layers.iter().filter(|layer| layer.look.mask.is_some()).count() as u64;
         let masks = masks + if self.has_flow { 4 } else { 0 };
         let maps = u64::from(size.0) * u64::from(size.1) * 4 * 3 * masks;
-        Ok(Some(Needs { frame: opened.weight().saturating_add(maps), filter }))
+        let area = |(width, height): (u32, u32)| u64::from(width) * u64::from(height);
+        // Both are there while one is made of the other.
+        let grown =
+            if size == own { 0 } else { opened.weight().saturating_mul(area(size) / area(own).max(1)) };
+        Ok(Some(Needs { frame: opened.weight().saturating_add(maps).saturating_add(grown), filter }))
+    }
+
+    /// Makes the pixels of a frame square, where they are not.
+    ///
+    /// # Errors
+    /// As [`square::make`].
+    pub fn square(&self, name: &str, source: &mut Source) -> Result<()> {
+        square::make(&self.library, name, source)
     }
 }
 
@@ -416,7 +441,7 @@ impl Planner {
 struct LayerJob<'a> {
     at: usize,
     /// The change to the working space.
-    there: Option<&'a Change>,
+    there: Option<&'a Conversion>,
     request: IsophoteRequest,
     /// The picture in its working space.
     color: &'a Pixels,

@@ -3,9 +3,9 @@
 use std::sync::{Arc, Mutex, OnceLock, PoisonError};
 
 use super::memory::Share;
+use isophote_pictures::convert::Conversion;
 use isophote_pictures::exr::{ExrFile, Picture};
 use isophote_pictures::pixels::Pixels;
-use isophote_pictures::primaries::{self, Change};
 use isophote_pictures::read::Source;
 
 /// A frame that was read.
@@ -37,11 +37,10 @@ impl<'a> CachedFrame<'a> {
     }
 
     /// A picture in its working space, with the number of samples that were replaced on the way.
-    pub fn working(&self, at: usize, change: Option<&Change>) -> Option<(&Pixels, u64)> {
+    pub fn working(&self, at: usize, change: Option<&Conversion>) -> Option<(&Pixels, u64)> {
         let picture = self.source.pictures.get(at)?;
         let Some(change) = change else { return Some((&picture.pixels, 0)) };
-        let (pixels, replaced) =
-            self.changed.get(at)?.get_or_init(|| primaries::changed(&picture.pixels, change));
+        let (pixels, replaced) = self.changed.get(at)?.get_or_init(|| change.apply(&picture.pixels));
         Some((pixels, *replaced))
     }
 }
@@ -58,7 +57,7 @@ pub struct Window<'a> {
 impl Window<'_> {
     /// Image for an input of picture `at` in a frame, if that is like the frame itself; `change` leads to the working
     /// space.
-    pub fn image(&self, at: usize, input: &str, frame: i64, change: Option<&Change>) -> Option<&Pixels> {
+    pub fn image(&self, at: usize, input: &str, frame: i64, change: Option<&Conversion>) -> Option<&Pixels> {
         let (cached, picture) = self.alike(at, frame)?;
         match input {
             "color" => cached.working(at, change).map(|(pixels, _)| pixels),
@@ -77,7 +76,7 @@ impl Window<'_> {
         let (own, other): (&Picture, &Picture) =
             (self.own.source.pictures.get(at)?, cached.source.pictures.get(at)?);
         let size = |picture: &Picture| (picture.pixels.width(), picture.pixels.height());
-        let is_alike = size(own) == size(other) && self.own.source.state == cached.source.state;
+        let is_alike = size(own) == size(other) && own.meaning.state == other.meaning.state;
         is_alike.then_some((cached, other))
     }
 }

@@ -140,8 +140,10 @@ impl Masks {
     /// [`Error::Failure`] where memory is short.
     pub fn add(&self, source: &mut Source, number: Option<i64>) -> Result<()> {
         for picture in &mut source.pictures {
-            let frame =
-                Frame { data: picture.window(), display: picture.display.unwrap_or(picture.window()) };
+            let frame = Frame {
+                data: picture.window(),
+                display: picture.meaning.display.unwrap_or(picture.window()),
+            };
             if let Some(flow) = &self.flow {
                 match flow.of_frame(number, frame) {
                     Ok(pixels) => {
@@ -246,7 +248,7 @@ impl Flow {
         };
         let own = picture.window();
         let window = frame
-            .place(own, picture.display)
+            .place(own, picture.meaning.display)
             .map_err(|problem| Error::file(path, problem, "paint flow maps of the picture's size"))?;
         let channels = picture.pixels.channels() as usize;
         if channels < 3 {

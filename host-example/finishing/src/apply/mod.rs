@@ -12,4 +12,5 @@ pub mod picture_request;
 pub mod reader;
 pub mod report;
 pub mod sequence;
+pub mod square;
 pub mod tasks;

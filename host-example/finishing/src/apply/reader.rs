@@ -144,6 +144,7 @@ impl<'a> Reader<'a> {
         }
         let is_written = number.is_none_or(|number| self.tasks.contains(&number));
         self.frame_source.masks.add(&mut source, number)?;
+        self.planner.square(&path.display().to_string(), &mut source)?;
         Ok(CachedFrame::new(number, source, is_written, share))
     }
 }

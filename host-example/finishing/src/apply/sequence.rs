@@ -190,7 +190,15 @@ impl<'a> Run<'a> {
         let replaced = filtered.replaced;
         let format = Format::of(&task.output)?;
         let is_written = self.consent.write(task.made(), read::is_whole, |existing| {
-            write::write(&task.output, existing, format, filtered.results, &own.source, exr)
+            write::write(
+                &task.output,
+                existing,
+                format,
+                filtered.results,
+                &filtered.meaning,
+                &own.source,
+                exr,
+            )
         });
         drop(own);
         let is_written = match is_written {

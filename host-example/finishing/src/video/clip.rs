@@ -6,14 +6,16 @@
 
 use std::path::{Path, PathBuf};
 use std::process::ChildStdout;
+use std::thread::Builder;
 
-use super::container::container;
+use super::container::{container, is_moving_webp};
 use super::decode;
 use super::decode::{OnError, Origin};
 use super::packets::Packets;
 use super::probe::probe;
 use super::process::{Process, at};
 use super::stream::Stream;
+use super::webp::Webp;
 use isophote_files::error::{Error, Result};
 use isophote_pictures::pixels::Pixels;
 
@@ -31,6 +33,8 @@ const FIX: &str = "name an intact video that ffmpeg reads";
 pub struct Clip {
     path: PathBuf,
     stream: Stream,
+    /// Frames that ffmpeg does not read by itself.
+    webp: Option<Webp>,
     /// When frames are shown, in seconds from where the file begins and in order; empty where they are not found so.
     times: Vec<f64>,
     /// Frames, about where that is not known exactly.
@@ -55,13 +59,14 @@ impl Clip {
         if !path.is_file() {
             return Err(Error::file(path, "is no file", "name a video"));
         }
-        let stream = probe(path)?;
-        let times = if stream.is_steady { Packets::of(path, &stream)?.times() } else { Vec::new() };
+        let webp = is_moving_webp(path).then(|| Webp::open(path)).transpose()?;
+        let stream = webp.as_ref().map_or_else(|| probe(path), |webp| Ok(webp.stream()))?;
+        let times = if webp.is_none() { Packets::of(path, &stream)?.times() } else { Vec::new() };
         let count = if times.is_empty() { stream.frames.max(1) } else { times.len() as u64 };
         let count = i64::try_from(count).unwrap_or(i64::MAX);
         let is_timed = container(path).is_some_and(|kind| TIMED.contains(&kind) || kind == WEBM);
         let times = if is_timed { times } else { Vec::new() };
-        Ok(Self { path: path.to_owned(), stream, times, count, decoder: None })
+        Ok(Self { path: path.to_owned(), stream, webp, times, count, decoder: None })
     }
 
     /// Properties that it gives of itself.
@@ -88,9 +93,15 @@ impl Clip {
         self.decoder = None;
         let first = if can_seek { number.clamp(1, self.count) } else { 1 };
         // Whoever looks at a damaged video wants to see what there is.
-        let origin = Origin::File(&self.path);
+        let origin = self.webp.as_ref().map_or(Origin::File(&self.path), |webp| Origin::Raw(webp.size()));
         let mut decoder = decode::decoder(origin, &self.stream, self.before(first), OnError::Skip);
         let mut process = at(Process::start(&mut decoder), &self.path, FIX)?;
+        if let Some((webp, mut into)) = self.webp.clone().zip(process.child().stdin.take()) {
+            // It ends with the file, or with the decoder.
+            let relay = move || drop(webp.relay(&mut into));
+            let started = Builder::new().name("frames".into()).spawn(relay);
+            started.map_err(|e| Error::failure(format!("a thread cannot be started: {e}"), "try again"))?;
+        }
         if let Some(from) = process.child().stdout.take() {
             self.decoder = Some(Decoder { process, from, next: first });
         }

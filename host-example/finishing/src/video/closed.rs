@@ -14,6 +14,8 @@ pub struct Ratio {
 impl Ratio {
     /// Sides of square pixels.
     pub const ONE: Self = Self { above: NonZeroU32::MIN, below: NonZeroU32::MIN };
+    /// Seconds of a millisecond.
+    pub const THOUSANDTH: Self = Self { above: NonZeroU32::MIN, below: NonZeroU32::MIN.saturating_add(999) };
     /// Frames a second where nobody says how many.
     pub const USUAL_RATE: Self = Self { above: NonZeroU32::MIN.saturating_add(24), below: NonZeroU32::MIN };
 
@@ -41,6 +43,16 @@ impl Ratio {
         let thousandths = (rate * 1000.0).round();
         // Numbers beyond those of the type become its greatest, and NaN becomes 0.
         Self::new(thousandths as u32, 1000)?.as_rate().filter(|r| (r.value() - rate).abs() <= 0.001)
+    }
+
+    /// Its two numbers the other way round.
+    pub fn inverse(self) -> Self {
+        Self { above: self.below, below: self.above }
+    }
+
+    /// Number of these in 1; nothing where 1 is no whole number of them.
+    pub fn parts_of_one(self) -> Option<u32> {
+        (self.above.get() == 1).then_some(self.below.get())
     }
 
     /// As one number.
@@ -169,6 +181,12 @@ pub const MATRICES: [(&str, &str); 7] = [
     ("bt2020nc", "bt2020"),
     ("bt2020c", "bt2020"),
 ];
+
+/// Orders of the fields of frames: names in files, and those of ffmpeg's filters.
+pub const FIELDS: [(&str, &str); 4] = [("tt", "tff"), ("tb", "tff"), ("bb", "bff"), ("bt", "bff")];
+
+/// Codecs that hold alpha beside the pixels that their usual decoders see, with a decoder that sees it.
+pub const HIDDEN_ALPHA: [(&str, &str); 2] = [("vp9", "libvpx-vp9"), ("vp8", "libvpx")];
 
 /// The matrix that players take for pictures of so many rows where a file names none.
 pub fn usual_matrix(height: u32) -> &'static str {

@@ -30,6 +30,8 @@ pub enum Origin<'a> {
     File(&'a Path),
     /// YUV4MPEG on the decoder's standard input.
     Piped,
+    /// Raw pictures of this size there, of 8 bits with alpha.
+    Raw((u32, u32)),
 }
 
 /// The command that decodes a video to its standard output: all of it, or from the first frame that is shown at `from`
@@ -45,23 +47,28 @@ pub fn decoder(origin: Origin<'_>, stream: &Stream, from: Option<f64>, on_error:
         Origin::Piped => {
             command.args(PROTOCOLS).args(["-f", Y4M, "-i", "pipe:0"]).stdin(Stdio::piped());
         }
+        Origin::Raw((width, height)) => {
+            command.args(PROTOCOLS).args(["-f", "rawvideo", "-pix_fmt", "rgba"]);
+            command.args(["-s", &format!("{width}x{height}"), "-i", "pipe:0"]).stdin(Stdio::piped());
+        }
         Origin::File(path) => {
             command.arg("-nostdin");
             if let Some(seconds) = from {
                 command.args(["-ss", &format!("{seconds:.6}")]);
             }
+            if let Some(decoder) = stream.decoder {
+                command.args(["-c:v", decoder]);
+            }
             process::read(&mut command, path);
             command.stdin(Stdio::null());
         }
     }
-    let Stream { rate, range, matrix, .. } = stream;
-    let change = format!("scale=in_color_matrix={matrix}:in_range={range}:out_range=pc:{EXACT}");
-    command.args(["-map", "0:v:0", "-vf", &change]);
-    // Frames of unequal length are repeated or left out to last equally long.
-    match stream.is_steady {
-        true => command.args(["-fps_mode", "passthrough"]),
-        false => command.args(["-fps_mode", "cfr", "-r", &rate.to_string()]),
-    };
+    let Stream { range, matrix, .. } = stream;
+    let whole =
+        stream.fields.map_or_else(String::new, |first| format!("bwdif=mode=send_frame:parity={first},"));
+    let change = format!("{whole}scale=in_color_matrix={matrix}:in_range={range}:out_range=pc:{EXACT}");
+    // Every frame once, however long it lasts.
+    command.args(["-map", "0:V:0", "-vf", &change, "-fps_mode", "passthrough"]);
     command.args(["-pix_fmt", rgb(stream.channels()), "-f", "rawvideo", "pipe:1"]);
     command.stdout(Stdio::piped());
     command

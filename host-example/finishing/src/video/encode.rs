@@ -4,20 +4,36 @@ use std::io::{ErrorKind, Write};
 use std::path::{Path, PathBuf};
 use std::process::{Command, Stdio};
 
-use super::container::{Y4M, container, is_pipe};
+use super::container::{WEBP, Y4M, container, is_pipe};
 use super::decode::{EXACT, rgb};
+use super::form::Form;
+use super::opaque::on_black;
 use super::process::{self, End, PROTOCOLS, Problem, Process, at, command, file};
 use super::recount;
 use super::stream::Stream;
+use super::timed::{self, Times};
+use super::tracks::Tracks;
 use isophote_files::error::{Error, Result};
 use isophote_files::files;
-use isophote_pictures::pixels::Pixels;
+use isophote_files::output;
+use isophote_pictures::pixels::{Pixels, Samples};
 
 /// Advice about an encoder that refuses.
 const FIX: &str = "name another kind of video, or other options by --encode";
 
 /// Standard output.
 const PIPED: &str = "pipe:1";
+
+/// Containers whose frames all last equally long.
+const EVEN: [&str; 6] = ["avi", "mxf", "vob", "dv", "ogv", Y4M];
+/// Those that begin with their first frame.
+const AT_ONCE: [&str; 4] = ["mxf", "dv", "ogv", Y4M];
+/// Those that have a scale of their own for the times of frames.
+const SCALED: [&str; 4] = ["mp4", "mov", "3gp", "3g2"];
+/// Least seconds by which pictures begin later than what else is in a file.
+const LEAST_START: f64 = 0.000_5;
+/// Filters that find the best colours of every frame for itself.
+const PALETTE: &str = ",split[a][b];[a]palettegen=stats_mode=single[p];[b][p]paletteuse=new=1";
 
 /// Options by which a video is made.
 #[derive(Clone, Copy, Debug)]
@@ -27,11 +43,24 @@ pub struct Encoding<'a> {
     /// Channels of the frames that are handed over.
     pub channels: u32,
     /// A file whose sound, subtitles and metadata it takes over.
-    pub more: Option<&'a Path>,
+    pub more: Option<More<'a>>,
+    /// When frames are shown, which do not last equally long.
+    pub times: Option<&'a Times>,
     /// The video, which may be `-`; it says which kind of container.
     pub output: &'a Path,
     /// Options of the encoder instead of the usual ones.
     pub options: Option<&'a str>,
+}
+
+/// What is taken over of a file beside the pictures.
+#[derive(Clone, Copy, Debug)]
+pub struct More<'a> {
+    /// The file.
+    pub path: &'a Path,
+    /// Its other tracks.
+    pub tracks: &'a Tracks,
+    /// When the pictures begin, in seconds from where the file does.
+    pub start: f64,
 }
 
 /// An encoder at work.
@@ -44,6 +73,15 @@ pub struct Encoder {
     /// Frames that were handed over.
     handed: u64,
     is_open: bool,
+    /// True where transparent frames are put on black.
+    is_on_black: bool,
+    /// True where somebody was told that they are.
+    is_told: bool,
+    times: Option<Times>,
+    /// Seconds that a frame lasts about.
+    length: f64,
+    /// True where the result has as many frames as are handed over.
+    is_counted: bool,
 }
 
 impl Encoder {
@@ -52,28 +90,60 @@ impl Encoder {
     /// # Errors
     /// [`Error::Failure`] without ffmpeg, [`Error::Input`] for options that change how many frames there are.
     pub fn start(encoding: &Encoding<'_>, place: &Path) -> Result<Self> {
-        let output = encoding.output;
+        let Encoding { stream, output, times, .. } = *encoding;
         encoding.options.map_or(Ok(()), check_options)?;
         let place = Some(place).filter(|_| !is_pipe(output));
         if place.is_some() {
             at(recount::check(), output, FIX)?;
         }
-        let process = at(Process::start(&mut encoding.encoder(place)), output, FIX)?;
+        let form = encoding.form();
+        encoding.warn(&form);
+        let mut process = at(Process::start(&mut encoding.encoder(place)), output, FIX)?;
+        let is_on_black = encoding.channels == 4 && !form.has_alpha;
+        let channels = if is_on_black { 3 } else { encoding.channels };
+        let header = times
+            .map_or_else(Vec::new, |_| timed::header((stream.width, stream.height), channels, stream.rate));
+        let is_open = process.child().stdin.as_mut().is_some_and(|into| into.write_all(&header).is_ok());
         Ok(Self {
             output: output.to_owned(),
             place: place.map(Path::to_owned),
             process,
             handed: 0,
-            is_open: true,
+            is_open,
+            is_on_black,
+            is_told: false,
+            times: times.cloned(),
+            length: 1.0 / stream.frames_per_second(),
+            is_counted: times.is_none() || !encoding.is_even(),
         })
     }
 
     /// Hands over a frame of 16 bits, and says whether the encoder takes more; [`Encoder::end`] says why not.
     pub fn put(&mut self, frame: &Pixels) -> bool {
+        let opaque = self.is_on_black.then(|| self.opaque(frame));
+        let frame = opaque.as_ref().unwrap_or(frame);
+        let start = self.times.as_ref().map_or_else(Vec::new, |times| {
+            timed::before_frame(times.of(self.handed, self.length), frame.bytes().len())
+        });
         self.handed += 1;
-        let into = self.process.child().stdin.as_mut().map(|into| into.write_all(frame.bytes()));
+        let into = self.process.child().stdin.as_mut();
+        let into = into.map(|into| into.write_all(&start).and_then(|()| into.write_all(frame.bytes())));
         self.is_open &= matches!(into, Some(Ok(())));
         self.is_open
+    }
+
+    /// The frame without its alpha, which is told once where there is any.
+    fn opaque(&mut self, frame: &Pixels) -> Pixels {
+        if let (Samples::U16(samples), false) = (frame.samples(), self.is_told)
+            && samples.as_chunks::<4>().0.iter().any(|pixel| pixel[3] < u16::MAX)
+        {
+            self.is_told = true;
+            output::warn(format_args!(
+                "{}: cannot hold alpha, and what is transparent is put on black (.mov, .mkv and .webm can)",
+                self.output.display()
+            ));
+        }
+        on_black(frame)
     }
 
     /// True where it has taken every frame.
@@ -86,7 +156,7 @@ impl Encoder {
     /// # Errors
     /// [`Error::Input`] where ffmpeg refuses to begin, [`Error::Failure`] for a video that is not whole.
     pub fn end(self) -> Result<()> {
-        let Self { output, place, mut process, handed, is_open } = self;
+        let Self { output, place, mut process, handed, is_open, is_counted, .. } = self;
         drop(process.child().stdin.take());
         let end = process.finish();
         // Some ffmpegs end well without a file's last bytes, which they only complain of.
@@ -104,7 +174,7 @@ impl Encoder {
                 Problem::Missing(error) => error,
                 Problem::Said(text) => lost(format!("cannot be read again: {text}")),
             })?;
-            if count != handed {
+            if (is_counted && count != handed) || count == 0 {
                 return Err(lost(format!("holds {count} frames of {handed} that were written")));
             }
         } else if !is_open {
@@ -148,41 +218,61 @@ fn check_options(options: &str) -> Result<()> {
 }
 
 impl Encoding<'_> {
+    fn container(&self) -> &'static str {
+        container(self.output).unwrap_or(Y4M)
+    }
+
+    /// Pixels as the encoder gets them.
+    fn form(&self) -> Form {
+        Form::of(self.container(), self.stream, self.channels, self.options)
+    }
+
+    /// True where all frames of the result last equally long.
+    fn is_even(&self) -> bool {
+        EVEN.contains(&self.container())
+    }
+
+    /// Says what the result cannot hold.
+    fn warn(&self, form: &Form) {
+        let output = self.output.display();
+        if self.times.is_some() && self.is_even() {
+            let rate = self.stream.grid.value();
+            output::warn(format_args!(
+                "{output}: cannot hold frames that last unequally long, and has {rate:.3} frames a second, some of them twice \
+                 (.mp4, .mov, .mkv and .webm can)"
+            ));
+        }
+        let Stream { width, height, .. } = self.stream;
+        if form.size != (*width, *height) {
+            let (across, down) = form.size;
+            output::warn(format_args!(
+                "{output}: cannot hold {width}x{height} pixels, and has {across}x{down}, without the last column or row"
+            ));
+        }
+    }
+
     /// The command that encodes from its standard input.
     pub fn encoder(&self, place: Option<&Path>) -> Command {
-        let Stream { width, height, rate, pixels, aspect, range, matrix, tags, .. } = self.stream;
-        let container = container(self.output).unwrap_or(Y4M);
+        let container = self.container();
+        let form = self.form();
         let mut command = command("ffmpeg");
-        command.args(["-v", "error", "-y"]).args(PROTOCOLS).args([
-            "-f",
-            "rawvideo",
-            "-pix_fmt",
-            rgb(self.channels),
-        ]);
-        command.args(["-s", &format!("{width}x{height}"), "-framerate", &rate.to_string(), "-i", "pipe:0"]);
+        command.args(["-v", "error", "-y"]);
+        self.read_frames(&mut command, &form);
         let more = self.more.filter(|_| container != Y4M);
         if let Some(more) = more {
-            process::read(&mut command, more);
+            process::read(&mut command, more.path);
         }
         command.args(["-map", "0:v:0"]);
-        if more.is_some() {
-            command.args(["-map", "1:a?", "-map", "1:s?", "-c:a", "copy", "-c:s", "copy"]);
-            command.args(["-map_metadata", "1", "-map_chapters", "1"]);
+        if let Some(more) = more {
+            command.args(&more.tracks.options);
         }
-        let change = format!(
-            "scale=in_range=pc:out_color_matrix={matrix}:out_range={range}:{EXACT},format={pixels},setsar={aspect}"
-        );
-        command.args(["-vf", &change]);
-        command.args(tags.iter().flatten());
-        match self.options {
-            Some(options) => command.args(options.split_whitespace()),
-            None => command.args(usual(container)),
-        };
+        command.args(["-vf", &self.filters(&form)]);
+        command.args(form.tags.iter().flatten());
+        self.keep_times(&mut command);
+        command.args(&form.options);
+        command.args(self.muxing());
+        command.args(self.options.into_iter().flat_map(str::split_whitespace));
         command.args(["-f", container]);
-        if container == Y4M {
-            // Forms of more than 8 bits are no part of the first description of it.
-            command.args(["-strict", "-1"]);
-        }
         match place {
             Some(place) => command.arg(file(place)).stdout(Stdio::null()),
             None => command.arg(PIPED),
@@ -190,16 +280,79 @@ impl Encoding<'_> {
         command.stdin(Stdio::piped());
         command
     }
-}
 
-/// Options of the encoder where none are given: little is lost.
-fn usual(container: &str) -> &'static [&'static str] {
-    match container {
-        "mp4" | "mov" => &["-c:v", "libx264", "-crf", "14", "-preset", "medium", "-movflags", "+faststart"],
-        "matroska" | "mpegts" => &["-c:v", "libx264", "-crf", "14", "-preset", "medium"],
-        "webm" => &["-c:v", "libvpx-vp9", "-crf", "18", "-b:v", "0", "-row-mt", "1"],
-        "avi" => &["-c:v", "mpeg4", "-q:v", "2"],
-        "mxf" => &["-c:v", "mpeg2video", "-q:v", "2"],
-        _ => &[],
+    /// Options of the first input, which are the frames.
+    fn read_frames(&self, command: &mut Command, form: &Form) {
+        let Stream { width, height, rate, .. } = self.stream;
+        let start = self.start();
+        if start != 0.0 {
+            command.args(["-itsoffset", &format!("{start:.6}")]);
+        }
+        command.args(PROTOCOLS);
+        if self.times.is_some() {
+            command.args(["-f", "matroska"]);
+        } else {
+            let channels = if form.has_alpha || self.channels != 4 { self.channels } else { 3 };
+            command.args(["-f", "rawvideo", "-pix_fmt", rgb(channels), "-s", &format!("{width}x{height}")]);
+            command.args(["-framerate", &rate.to_string()]);
+        }
+        command.args(["-i", "pipe:0"]);
+    }
+
+    /// When the pictures begin, in seconds from where the sound or the subtitles do.
+    fn start(&self) -> f64 {
+        let start = self.more.map_or(0.0, |more| more.start);
+        if AT_ONCE.contains(&self.container()) || start.abs() < LEAST_START { 0.0 } else { start }
+    }
+
+    fn filters(&self, form: &Form) -> String {
+        let Form { pixels, range, matrix, size: (width, height), .. } = form;
+        let aspect = self.stream.aspect;
+        let cut = match (*width, *height) == (self.stream.width, self.stream.height) {
+            true => String::new(),
+            false => format!("crop={width}:{height}:0:0,"),
+        };
+        let palette = if self.container() == "gif" && self.options.is_none() { PALETTE } else { "" };
+        format!(
+            "{cut}scale=in_range=pc:out_color_matrix={matrix}:out_range={range}:{EXACT},format={pixels},setsar={aspect}{palette}"
+        )
+    }
+
+    /// Options by which frames are shown when they are to be.
+    fn keep_times(&self, command: &mut Command) {
+        let Stream { grid, tick, .. } = self.stream;
+        let is_timed = self.times.is_some();
+        if is_timed && self.is_even() {
+            command.args(["-fps_mode", "cfr", "-r", &grid.to_string()]);
+            return;
+        }
+        command.args(["-fps_mode", "passthrough"]);
+        if (is_timed || self.start() != 0.0) && !self.is_even() {
+            command.args(["-enc_time_base", &tick.with(':')]);
+            if let Some(scale) = tick.parts_of_one().filter(|_| SCALED.contains(&self.container())) {
+                command.args(["-video_track_timescale", &scale.to_string()]);
+            }
+        }
+    }
+
+    /// Options of the container.
+    fn muxing(&self) -> Vec<String> {
+        let words = |words: &[&str]| words.iter().map(|word| (*word).to_owned()).collect();
+        let last = self.times.and_then(|times| times.last);
+        match self.container() {
+            "mp4" | "mov" if self.options.is_none() => words(&["-movflags", "+faststart"]),
+            "mpegts" if self.output.extension().is_some_and(|e| !e.eq_ignore_ascii_case("ts")) => {
+                words(&["-mpegts_m2ts_mode", "1"])
+            }
+            "gif" => {
+                let last = last.map_or(-1.0, |seconds| (seconds * 100.0).round());
+                vec!["-loop".into(), "0".into(), "-final_delay".into(), format!("{last}")]
+            }
+            "apng" => words(&["-plays", "0"]),
+            WEBP => words(&["-loop", "0"]),
+            // Forms of more than 8 bits are no part of the first description of it.
+            Y4M => words(&["-strict", "-1"]),
+            _ => Vec::new(),
+        }
     }
 }

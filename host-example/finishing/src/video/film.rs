@@ -4,11 +4,12 @@ use std::path::Path;
 
 use super::closed::Ratio;
 use super::encode::{Encoder, Encoding};
+use super::opaque::on_black;
 use super::stream::Stream;
 use isophote_files::error::{Error, Result};
 use isophote_pictures::floats::Picture;
-use isophote_pictures::pixels::{Pixels, Precision, Samples};
-use isophote_pictures::space::srgb_encode;
+use isophote_pictures::pixels::{Pixels, Samples};
+use isophote_pictures::transfer::srgb_encode;
 
 /// A video that is being made. It is opaque: what is transparent is put on black. A last odd row or column, which most videos
 /// cannot have, is left out.
@@ -41,7 +42,7 @@ impl<'a> Film<'a> {
         let rate = Ratio::of_rate(rate)
             .ok_or_else(|| Error::file(output, format!("cannot have {rate} frames a second"), "use 24"))?;
         let stream = Stream::of_frames((size.0 & !1, size.1 & !1), rate);
-        let encoding = Encoding { stream: &stream, channels, more: None, output, options };
+        let encoding = Encoding { stream: &stream, channels, more: None, times: None, output, options };
         Ok(Self { output, size, channels, encoder: Encoder::start(&encoding, place)? })
     }
 
@@ -91,26 +92,19 @@ pub fn shown(picture: &Picture) -> Option<Pixels> {
 /// 16 bits on black, of an even number of rows and columns.
 fn opaque(frame: &Pixels) -> Pixels {
     let (width, height) = (frame.width() & !1, frame.height() & !1);
-    let count = frame.channels() as usize;
-    let pixels = frame.clone().converted(Precision::U16);
+    let pixels = on_black(frame);
+    let count = pixels.channels() as usize;
     let Samples::U16(samples) = pixels.samples() else { return pixels };
     let rows = samples.chunks_exact(frame.width() as usize * count).take(height as usize);
-    let kept = rows.flat_map(|row| &row[..width as usize * count]);
-    let kept: Vec<u16> = match count {
-        4 => {
-            let all: Vec<u16> = kept.copied().collect();
-            let over = |v: u16, a: u16| ((u32::from(v) * u32::from(a) + 32767) / 65535) as u16;
-            all.as_chunks::<4>().0.iter().flat_map(|[r, g, b, a]| [*r, *g, *b].map(|v| over(v, *a))).collect()
-        }
-        _ => kept.copied().collect(),
-    };
-    let channels = if count == 4 { 3 } else { frame.channels() };
+    let kept: Vec<u16> = rows.flat_map(|row| &row[..width as usize * count]).copied().collect();
     // As many samples as the size says.
-    Pixels::new(width, height, channels, Samples::U16(kept)).unwrap_or(pixels)
+    Pixels::new(width, height, pixels.channels(), Samples::U16(kept)).unwrap_or(pixels)
 }
 
 #[cfg(test)]
 mod tests {
+    use isophote_pictures::pixels::Precision;
+
     use super::*;
 
     #[test]

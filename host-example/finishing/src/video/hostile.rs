@@ -8,9 +8,11 @@ use serde_json::{Value, json};
 
 use super::closed::{MATRICES, PIXELS, PRIMARIES, RANGES, SPACES, TRANSFERS};
 use super::decode::{OnError, Origin, decoder};
-use super::encode::Encoding;
+use super::encode::{Encoding, More};
 use super::probe;
 use super::stream::Stream;
+use super::timed::Times;
+use super::tracks::Tracks;
 use super::y4m::Header;
 
 /// Signs that separate words within arguments.
@@ -75,19 +77,23 @@ impl Chance {
 /// Arguments of both commands that a stream leads to.
 fn arguments(stream: &Stream) -> Vec<Vec<String>> {
     let output = Path::new("out.mp4");
-    let encoding = Encoding {
+    let tracks = Tracks::default();
+    let encoding = |times| Encoding {
         stream,
         channels: stream.channels(),
-        more: Some(Path::new("in.mp4")),
+        more: Some(More { path: Path::new("in.mp4"), tracks: &tracks, start: 1.5 }),
+        times,
         output,
         options: None,
     };
     let words = |command: &Command| command.get_args().map(|a| a.to_str().unwrap().to_owned()).collect();
     let decode = |origin| words(&decoder(origin, stream, Some(1.5), OnError::Fail));
     vec![
+        decode(Origin::Raw((4, 4))),
         decode(Origin::Piped),
         decode(Origin::File(Path::new("in.mp4"))),
-        words(&encoding.encoder(Some(output))),
+        words(&encoding(None).encoder(Some(output))),
+        words(&encoding(Some(&Times { shown: vec![0.0, 0.5], last: None })).encoder(Some(output))),
     ]
 }
 
@@ -98,9 +104,10 @@ fn known() -> BTreeSet<String> {
     for pairs in [&SPACES[..], &TRANSFERS, &PRIMARIES, &RANGES, &MATRICES] {
         known.extend(pairs.iter().map(|(_, word)| (*word).to_owned()));
     }
-    for is_steady in [true, false] {
-        for pixels in ["yuv420p", "rgba"] {
-            (plain.is_steady, plain.pixels) = (is_steady, pixels);
+    for (fields, decoder) in [(None, None), (Some("tff"), Some("libvpx")), (Some("bff"), Some("libvpx-vp9"))]
+    {
+        for pixels in ["yuv420p", "rgba", "gbrp10le"] {
+            (plain.fields, plain.decoder, plain.pixels) = (fields, decoder, pixels);
             let words = arguments(&plain).into_iter().flatten();
             words.for_each(|word| known.extend(word.split(SIGNS).map(str::to_owned)));
         }
@@ -118,7 +125,7 @@ fn check(stream: &Stream, known: &BTreeSet<String>, from: &str) {
         let at = words.iter().position(|word| word == "-vf").unwrap() + 1;
         words[at].chars().filter(|c| SIGNS.contains(c)).collect::<String>()
     };
-    let plain = Stream::of_frames((4, 4), super::closed::Ratio::ONE);
+    let plain = Stream { fields: stream.fields, ..Stream::of_frames((4, 4), super::closed::Ratio::ONE) };
     for (words, plain) in arguments(stream).into_iter().zip(arguments(&plain)) {
         assert_eq!(filters(&words), filters(&plain), "{from}: {words:?}");
         for word in words {
@@ -163,7 +170,7 @@ fn no_text_of_a_stream_reaches_ffmpeg() {
 fn no_text_of_a_file_reaches_ffmpeg() {
     let plain = json!({
         "pix_fmt": "yuv420p10le", "avg_frame_rate": "30000/1001", "r_frame_rate": "30000/1001", "nb_frames": "50",
-        "duration": "2.0", "sample_aspect_ratio": "4:3", "color_range": "pc", "color_space": "bt2020nc",
+        "duration": "2.0", "time_base": "1/12800", "field_order": "tb", "codec_name": "vp9", "sample_aspect_ratio": "4:3", "color_range": "pc", "color_space": "bt2020nc",
         "color_transfer": "bt470bg", "color_primaries": "bt470m",
     });
     let (mut chance, known) = (Chance(0x2545_F491_4F6C_DD1D), known());

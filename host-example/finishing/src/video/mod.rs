@@ -7,19 +7,24 @@ mod container;
 mod decode;
 mod encode;
 mod film;
+mod form;
 #[cfg(test)]
 mod hostile;
 mod input;
+mod opaque;
 mod packets;
 mod probe;
 mod process;
 mod recount;
 mod run;
 mod stream;
+mod timed;
+mod tracks;
+mod webp;
 mod y4m;
 
 pub use self::clip::Clip;
-pub use self::container::is_video;
+pub use self::container::{becomes_video, is_video};
 pub use self::decode::OnError;
 pub use self::film::{Film, shown};
 pub use self::run::{VideoJob, run};

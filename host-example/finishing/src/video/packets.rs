@@ -1,4 +1,4 @@
-//! Packets that lie in a video, compared with what its container promises.
+//! Packets that lie in a video, compared with what its container promises, and the times of frames.
 
 use std::path::Path;
 
@@ -10,6 +10,8 @@ use isophote_files::error::Result;
 const FIX: &str = "name an intact video that ffmpeg reads";
 /// Seconds by which times are rounded.
 const ROUNDED: f64 = 0.05;
+/// Share of a frame by which the times of frames that last equally long are off at most, beside what is rounded.
+const UNEVEN: f64 = 0.02;
 
 /// Packets of the first stream of pictures, in the order of the file.
 #[derive(Debug, Default, PartialEq)]
@@ -20,6 +22,8 @@ pub struct Packets {
     shown: Vec<Option<f64>>,
     /// When the last one has been shown, in seconds.
     end: f64,
+    /// When the file begins.
+    start: f64,
     /// Complaint of ffmpeg, also about sound and whatever else lies in the file.
     complaint: Option<String>,
 }
@@ -47,7 +51,7 @@ impl Packets {
     fn understand(text: &str, stream: u32) -> Self {
         let seconds = |text: &str| text.trim().parse::<f64>().ok().filter(|seconds| seconds.is_finite());
         let start = text.lines().find_map(|line| seconds(line.strip_prefix("format,")?)).unwrap_or(0.0);
-        let mut packets = Self::default();
+        let mut packets = Self { start, ..Self::default() };
         for line in text.lines().filter_map(|line| line.strip_prefix("packet,")) {
             let mut fields = line.split(',');
             let mut field = || fields.next().unwrap_or_default();
@@ -70,6 +74,41 @@ impl Packets {
         let mut times = self.shown.iter().copied().collect::<Option<Vec<f64>>>().unwrap_or_default();
         times.sort_unstable_by(f64::total_cmp);
         times
+    }
+
+    /// When the first frame is shown, in seconds from where the file begins.
+    pub fn first(&self) -> f64 {
+        self.shown.iter().flatten().copied().min_by(f64::total_cmp).unwrap_or(0.0)
+    }
+
+    /// Seconds that the last frame lasts; nothing where that is not told.
+    pub fn last_length(&self) -> Option<f64> {
+        let last = self.shown.iter().flatten().copied().max_by(f64::total_cmp)?;
+        Some(self.end - self.start - last).filter(|length| *length > 0.0)
+    }
+
+    /// When frames are shown that do not last equally long, in seconds from the first; nothing for others.
+    ///
+    /// # Errors
+    /// The complaint of ffmpeg.
+    pub fn uneven(&self, path: &Path, stream: &Stream) -> Result<Option<Vec<f64>>> {
+        if !is_uneven(&self.times(), stream) {
+            return Ok(None);
+        }
+        // Some packets show nothing, and there are those that show two frames.
+        let mut command = process::command("ffprobe");
+        command.args(["-v", "quiet", "-select_streams", "V:0", "-of", "csv=p=0"]);
+        command.args(["-show_entries", "frame=best_effort_timestamp_time"]);
+        if let Some(decoder) = stream.decoder {
+            command.args(["-c:v", decoder]);
+        }
+        process::read(&mut command, path);
+        let text = at(Process::output(&mut command), path, FIX)?;
+        let told = text.lines().map(|line| line.trim_end_matches(',').parse().ok());
+        let times: Vec<f64> = told.collect::<Option<_>>().unwrap_or_default();
+        let first = times.first().copied().unwrap_or(0.0);
+        let times: Vec<f64> = times.iter().map(|time| time - first).collect();
+        Ok(Some(times).filter(|times| is_uneven(times, stream)))
     }
 
     /// Part that is missing of what the container promises, in words.
@@ -99,11 +138,19 @@ impl Packets {
     pub fn lacks(&self, stream: &Stream, decoded: u64) -> bool {
         let shown = self.shown.len() as u64;
         let slack = match stream.promise {
-            Promise::Frames { slack, .. } if stream.is_steady => slack,
+            Promise::Frames { slack, .. } => slack,
             _ => return false,
         };
         decoded + slack < shown
     }
+}
+
+/// True for times in order that are not those of frames that last equally long.
+fn is_uneven(times: &[f64], stream: &Stream) -> bool {
+    let length = 1.0 / stream.frames_per_second();
+    let off = 1.1 * stream.tick.value() + UNEVEN * length;
+    let is_even = |(index, time): (usize, &f64)| (time - times[0] - index as f64 * length).abs() <= off;
+    times.windows(2).all(|two| two[0] < two[1]) && !times.iter().enumerate().all(is_even)
 }
 
 #[cfg(test)]
@@ -144,7 +191,19 @@ mod tests {
         assert!(missing(Promise::Seconds(4.1)).is_some_and(|s| s.contains("of about 9 frames")));
         stream.promise = Promise::Frames { count: 4, slack: 0 };
         assert!(packets.lacks(&stream, 2) && !packets.lacks(&stream, 3));
-        stream.is_steady = false;
-        assert!(!packets.lacks(&stream, 2));
+    }
+
+    #[test]
+    fn frames_are_uneven_beyond_what_is_rounded() {
+        let mut stream = Stream::of_frames((4, 4), Ratio::new(30000, 1001).unwrap());
+        stream.tick = Ratio::new(1, 1000).unwrap();
+        let rounded: Vec<f64> = (0..100).map(|i| (f64::from(i) * 1001.0 / 30.0).round() / 1000.0).collect();
+        assert!(!is_uneven(&rounded, &stream) && !is_uneven(&[], &stream));
+        let mut left_out = rounded.clone();
+        left_out.remove(50);
+        assert!(is_uneven(&left_out, &stream));
+        // Times that are there twice tell nothing.
+        left_out[7] = left_out[8];
+        assert!(!is_uneven(&left_out, &stream));
     }
 }

@@ -5,22 +5,25 @@ use std::path::Path;
 use serde_json::Value;
 
 use super::closed::{
-    MATRICES, PIXELS, PRIMARIES, RANGES, Ratio, SPACES, TRANSFERS, second, usual_matrix, word,
+    FIELDS, HIDDEN_ALPHA, MATRICES, PIXELS, PRIMARIES, RANGES, Ratio, SPACES, TRANSFERS, second,
+    usual_matrix, word,
 };
 use super::process::{self, Problem, Process};
-use super::stream::{Promise, Stream};
+use super::stream::{Promise, Stream, is_rgb};
 use isophote_files::error::{Error, Result};
 use isophote_files::output;
 use isophote_pictures::read::check_size;
 
 /// Share by which the mean rate of frames that last equally long may be off.
 const STEADY: f64 = 0.1;
+/// Most frames a second to which others are fitted.
+const MOST_GRID: f64 = 300.0;
 /// Complaint of ffmpeg where a file is of no kind that it may read.
 const REFUSED: &str = "not on whitelist";
 /// Entries that are asked for.
-const WANTED: &str = "stream=index,width,height,pix_fmt,avg_frame_rate,r_frame_rate,nb_frames,duration,\
-    sample_aspect_ratio,color_range,color_space,color_transfer,color_primaries:stream_side_data=rotation:\
-    stream_tags=DURATION:format=format_name,nb_streams,duration";
+const WANTED: &str = "stream=index,codec_name,width,height,pix_fmt,avg_frame_rate,r_frame_rate,nb_frames,duration,\
+    time_base,field_order,sample_aspect_ratio,color_range,color_space,color_transfer,color_primaries:\
+    stream_side_data=rotation:stream_tags=DURATION,alpha_mode,ALPHA_MODE:format=format_name,nb_streams,duration";
 
 /// The first stream of pictures of a file.
 ///
@@ -28,7 +31,7 @@ const WANTED: &str = "stream=index,width,height,pix_fmt,avg_frame_rate,r_frame_r
 /// [`Error::Input`] for files without pictures and for playlists, [`Error::Failure`] where there is no ffmpeg.
 pub fn probe(path: &Path) -> Result<Stream> {
     let mut command = process::command("ffprobe");
-    command.args(["-v", "error", "-select_streams", "v:0", "-show_entries", WANTED, "-of", "json"]);
+    command.args(["-v", "error", "-select_streams", "V:0", "-show_entries", WANTED, "-of", "json"]);
     process::read(&mut command, path);
     let text = Process::output(&mut command).map_err(|problem| match problem {
         Problem::Said(text) if text.contains(REFUSED) => Error::file(
@@ -40,9 +43,7 @@ pub fn probe(path: &Path) -> Result<Stream> {
     })?;
     let (stream, unknown) = understand(path, &serde_json::from_str(&text).unwrap_or_default())?;
     warn_of(path, &unknown);
-    if stream.tags.iter().any(|tag| matches!(tag, ["-color_trc", "smpte2084" | "arib-std-b67"])) {
-        output::warn(format_args!("{}: is HDR and is filtered as it is encoded", path.display()));
-    }
+    warn_of_fields(path, &stream);
     Ok(stream)
 }
 
@@ -52,6 +53,17 @@ pub fn warn_of(path: &Path, unknown: &[&str]) {
         let (path, what) = (path.display(), unknown.join(", "));
         output::warn(format_args!(
             "{path}: says nothing that is known of its {what}, and the usual is taken"
+        ));
+    }
+}
+
+/// Says of frames of two fields that they become whole pictures.
+pub fn warn_of_fields(path: &Path, stream: &Stream) {
+    if stream.fields.is_some() {
+        output::warn(format_args!(
+            "{}: is interlaced; its frames become whole pictures, and the result is not interlaced (for a frame of every \
+             field, pass it through ffmpeg's filter bwdif first)",
+            path.display()
         ));
     }
 }
@@ -77,14 +89,12 @@ pub fn understand(path: &Path, found: &Value) -> Result<(Stream, Vec<&'static st
     // Containers round the times of frames, so that the mean is not what was meant.
     let is_steady = (exact.value() / mean.value() - 1.0).abs() < STEADY;
     let rate = if is_steady { exact } else { mean };
-    let pixels = said(stream, "pix_fmt").and_then(|name| word(&PIXELS, name)).unwrap_or_else(|| {
-        unknown.push("pixels");
-        "yuv420p"
-    });
+    let (pixels, decoder) = pixels(stream, &mut unknown);
     let aspect = said(stream, "sample_aspect_ratio").map(|aspect| Ratio::parse(aspect, ':'));
     if aspect == Some(None) {
         unknown.push("aspect");
     }
+    let aspect = aspect.flatten().unwrap_or(Ratio::ONE);
     let matrix = said(stream, "color_space").map(|name| second(&MATRICES, name));
     if matrix == Some(None) && !is_rgb(pixels) {
         unknown.push("matrix of colours");
@@ -97,16 +107,33 @@ pub fn understand(path: &Path, found: &Value) -> Result<(Stream, Vec<&'static st
         width,
         height,
         rate,
-        is_steady,
+        grid: if exact.value() <= MOST_GRID { exact } else { rate },
+        tick: said(stream, "time_base").and_then(|tick| Ratio::parse(tick, '/')).unwrap_or(rate.inverse()),
+        fields: said(stream, "field_order").and_then(|order| second(&FIELDS, order)),
+        decoder,
+        is_animation: said(stream, "codec_name").is_some_and(|codec| matches!(codec, "gif" | "apng")),
         frames: frames(found, promise, rate),
         promise,
         pixels,
-        aspect: aspect.flatten().unwrap_or(Ratio::ONE),
+        aspect: if is_turned { aspect.inverse() } else { aspect },
         range: if is_full { "pc" } else { "tv" },
         matrix: matrix.flatten().unwrap_or_else(|| usual_matrix(height)),
         tags,
     };
     Ok((stream, unknown))
+}
+
+/// Form of a stream's pixels, and the decoder that sees them so, where the usual one does not.
+fn pixels(stream: &Value, unknown: &mut Vec<&'static str>) -> (&'static str, Option<&'static str>) {
+    let pixels = said(stream, "pix_fmt").and_then(|name| word(&PIXELS, name)).unwrap_or_else(|| {
+        unknown.push("pixels");
+        "yuv420p"
+    });
+    let is_tagged = ["alpha_mode", "ALPHA_MODE"].iter().any(|tag| stream["tags"][tag] == "1");
+    match said(stream, "codec_name").and_then(|codec| second(&HIDDEN_ALPHA, codec)) {
+        Some(decoder) if is_tagged && pixels == "yuv420p" => ("yuva420p", Some(decoder)),
+        _ => (pixels, None),
+    }
 }
 
 /// A property of a stream as text; nothing where it is not said.
@@ -191,11 +218,6 @@ fn clock(text: &str) -> Option<f64> {
     Some(hour * 3600.0 + minute * 60.0 + second).filter(|seconds| *seconds > 0.0)
 }
 
-/// True where pixels of this form are red, green and blue.
-fn is_rgb(pixels: &str) -> bool {
-    pixels.contains("rgb") || pixels.contains("bgr") || pixels.starts_with("gb")
-}
-
 #[cfg(test)]
 mod tests {
     use serde_json::json;
@@ -213,12 +235,13 @@ mod tests {
         let full = json!({
             "width": 64, "height": 48, "pix_fmt": "gbrp", "avg_frame_rate": "30000/1001", "r_frame_rate": "30000/1001",
             "nb_frames": "50", "duration": "2.0", "sample_aspect_ratio": "4:3", "color_range": "pc", "color_space": "gbr",
-            "color_transfer": "bt470bg", "color_primaries": "ebu3213", "side_data_list": [{"rotation": -90}],
+            "color_transfer": "bt470bg", "color_primaries": "ebu3213", "field_order": "tb", "side_data_list": [{"rotation": -90}],
         });
         let (stream, unknown) = understood(full.clone(), mov.clone());
         assert_eq!((stream.width, stream.height, unknown.len()), (48, 64, 0));
-        assert_eq!((stream.rate.to_string().as_str(), stream.is_steady), ("30000/1001", true));
-        assert_eq!((stream.aspect.with('/').as_str(), stream.pixels, stream.range), ("4/3", "gbrp", "pc"));
+        assert_eq!((stream.rate.to_string().as_str(), stream.fields), ("30000/1001", Some("tff")));
+        // A quarter of a turn changes the sides of pixels.
+        assert_eq!((stream.aspect.with('/').as_str(), stream.pixels, stream.range), ("3/4", "gbrp", "pc"));
         let tags = [
             ["-color_range", "pc"],
             ["-colorspace", "rgb"],

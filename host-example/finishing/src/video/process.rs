@@ -10,7 +10,15 @@ use std::thread::{Builder, JoinHandle};
 use isophote_files::error::{Error, Result};
 
 /// Most characters of a complaint.
-const MOST: usize = 400;
+const MOST: usize = 4000;
+/// Beginnings of complaints that follow from others and say no reason.
+const FOLLOWING: [&str; 5] = [
+    "Error initializing output stream",
+    "Error while opening encoder",
+    "Could not write header",
+    "Error opening output file",
+    "Conversion failed",
+];
 /// Most complaints that are kept.
 const MOST_LINES: usize = 1000;
 /// Protocols by which ffmpeg may open what it reads: no network, and no other programs.
@@ -18,7 +26,7 @@ pub const PROTOCOLS: [&str; 2] = ["-protocol_whitelist", "file,pipe"];
 /// Kinds of files that are read, which hold their pictures themselves: no playlists.
 const KINDS: [&str; 2] = [
     "-format_whitelist",
-    "mov,matroska,avi,mxf,mpegts,mpeg,mpegvideo,m4v,h264,hevc,yuv4mpegpipe,flv,asf,ogg,nut,ivf,dv,gif",
+    "mov,matroska,avi,mxf,mpegts,mpeg,mpegvideo,m4v,h264,hevc,yuv4mpegpipe,flv,asf,ogg,nut,ivf,dv,gif,apng",
 ];
 
 /// A command of the ffmpeg that the system finds; `ISOPHOTE_FFMPEG` names another folder.
@@ -65,9 +73,10 @@ impl Problem {
 pub struct Complaints(Arc<Mutex<Vec<String>>>);
 
 impl Complaints {
-    /// The first one, which mostly says why the others follow.
+    /// The first one that says a reason, from which the others follow.
     pub fn first(&self) -> Option<String> {
-        self.find(|_| true)
+        let is_reason = |line: &str| !FOLLOWING.iter().any(|start| line.starts_with(start));
+        self.find(is_reason).or_else(|| self.find(|_| true))
     }
 
     /// The first one that names this.
@@ -94,9 +103,18 @@ impl Complaints {
             }
             let mut lines = self.0.lock().unwrap_or_else(PoisonError::into_inner);
             if lines.len() < MOST_LINES {
-                lines.push(line.trim().to_owned());
+                lines.push(without_address(line.trim()));
             }
         }
+    }
+}
+
+/// A line that begins with the part of ffmpeg that says it, without that part's address: `[mp4 @ 0x55e8] ` is `mp4: `.
+fn without_address(line: &str) -> String {
+    let split = || line.strip_prefix('[')?.split_once("] ");
+    match split().and_then(|(who, said)| Some((who.split_once(" @ 0x")?.0, said))) {
+        Some((who, said)) => format!("{who}: {said}"),
+        None => line.to_owned(),
     }
 }
 
@@ -240,4 +258,24 @@ impl Drop for Process {
 /// A result as the program has it.
 pub fn at<T>(result: std::result::Result<T, Problem>, path: &Path, fix: &str) -> Result<T> {
     result.map_err(|problem| problem.of(path, fix))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn the_cause_is_told_whole() {
+        let complaints = Complaints::default();
+        let long = "x".repeat(1000);
+        let said = format!(
+            "Error initializing output stream 0:0 -- \n[mp4 @ 0x55e8883269c0] {long}\nConversion failed!\n"
+        );
+        complaints.keep(said.as_bytes());
+        assert_eq!(complaints.first(), Some(format!("mp4: {long}")));
+        let complaints = Complaints::default();
+        complaints.keep(&b"Conversion failed!\n"[..]);
+        assert_eq!(complaints.first().as_deref(), Some("Conversion failed!"));
+        assert_eq!(without_address("[in] file.mp4: bad"), "[in] file.mp4: bad");
+    }
 }

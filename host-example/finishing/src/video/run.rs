@@ -6,24 +6,26 @@ use std::path::Path;
 use std::sync::Arc;
 use std::sync::mpsc::{Receiver, SyncSender, sync_channel};
 
-use super::container::is_pipe;
+use super::container::{Y4M, container, is_pipe};
 use super::decode::{self, OnError};
-use super::encode::{Encoder, Encoding};
+use super::encode::{Encoder, Encoding, More};
 use super::input::Input;
 use super::process::{End, Process, at};
 use super::stream::Stream;
+use super::tracks::Tracks;
 use crate::apply::filter::Filter;
 use crate::apply::frame_cache::{CachedFrame, Window};
 use crate::apply::masks::Masks;
 use crate::apply::memory::Budget;
 use crate::apply::report::{Outcome, Report};
+use crate::apply::square;
 use crate::apply::tasks::Task;
 use isophote_files::error::{Error, Result};
 use isophote_files::files::{self, Existing};
 use isophote_files::stop::Stop;
-use isophote_pictures::exr::Picture;
+use isophote_pictures::meaning::Meaning;
 use isophote_pictures::pixels::{Pixels, Precision};
-use isophote_pictures::read::{ImageState, Source};
+use isophote_pictures::read::Source;
 use isophote_pictures::write::Format;
 
 /// Advice about a video that is damaged.
@@ -105,17 +107,21 @@ impl VideoJob<'_> {
         // Frames after a complaint are of no use where the run is to fail.
         let fails = self.on_error == OnError::Fail;
         let is_over = || fails && complaints.first().is_some();
-        let more = input.more();
+        let (more, times) = (input.more(), input.times()?);
+        let container = container(self.output).unwrap_or(Y4M);
+        let tracks = more.map_or(Ok(Tracks::default()), |(path, _)| Tracks::of(path, container))?;
+        tracks.warn(self.input, self.output);
+        let more = more.map(|(path, start)| More { path, tracks: &tracks, start });
         let encoder = |channels| {
-            let (output, options) = (self.output, self.encode);
-            Encoder::start(&Encoding { stream, channels, more, output, options }, place)
+            let (output, options, times) = (self.output, self.encode, times.as_ref());
+            Encoder::start(&Encoding { stream, channels, more, times, output, options }, place)
         };
         let (filtered, cut) = std::thread::scope(|scope| {
             // It ends with the stream, or with the decoder.
             let relaying = input.pipe().zip(into).map(|(pipe, into)| scope.spawn(move || pipe.relay(into)));
             let (send, decoded) = sync_channel(AHEAD);
             let reading = scope.spawn(move || read(stream, &mut from, &send, &is_over));
-            let filtered = self.filter(filter, (decoded, &budget), &encoder, report);
+            let filtered = self.filter(filter, (decoded, &budget, &stream.meaning()), &encoder, report);
             let read = reading.join().map_err(|_| broken("decoding"));
             let cut = relaying.map_or(Ok(None), |relaying| relaying.join().map_err(|_| broken("reading")));
             let filtered = filtered?;
@@ -173,17 +179,17 @@ impl VideoJob<'_> {
     fn filter(
         &self,
         filter: &mut Filter,
-        (decoded, budget): (Receiver<Pixels>, &Budget),
+        (decoded, budget, meaning): (Receiver<Pixels>, &Budget, &Meaning),
         start: &dyn Fn(u32) -> Result<Encoder>,
         report: &Report,
     ) -> Result<Filtered> {
         let name = self.input.display().to_string();
         let [past, future] = filter.frames()?;
+        let library = filter.library();
         let hold = |(pixels, number)| {
-            let picture = Picture::alone(pixels);
-            let state = ImageState::DisplayReferred;
-            let mut source = Source { pictures: vec![picture], state, profile: None, exr: None };
+            let mut source = Source::alone(pixels, meaning.clone());
             self.masks.add(&mut source, Some(number))?;
+            square::make(&library, &name, &mut source)?;
             source.check()?;
             Ok::<_, Error>(Arc::new(CachedFrame::new(Some(number), source, false, budget.share())))
         };

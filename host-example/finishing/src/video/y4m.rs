@@ -127,7 +127,15 @@ impl Header {
             width,
             height,
             rate: self.rate,
-            is_steady: true,
+            grid: self.rate,
+            tick: self.rate.inverse(),
+            fields: match self.fields {
+                Some('t') => Some("tff"),
+                Some('b') => Some("bff"),
+                _ => None,
+            },
+            decoder: None,
+            is_animation: false,
             frames: bytes.map_or(0, |bytes| bytes / frame),
             // Frames are counted on their way.
             promise: Promise::None,

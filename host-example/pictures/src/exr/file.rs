@@ -158,6 +158,14 @@ impl Opened {
         sizes.max_by_key(|(w, h)| u64::from(*w) * u64::from(*h))
     }
 
+    /// Width of a pixel over its height, of the largest picture that tells one that can be.
+    pub fn pixel_aspect(&self) -> f64 {
+        let parts = self.chosen.iter().map(|c| &self.exr.parts()[c.group.part]);
+        let largest = parts.max_by_key(|part| part.window.width * part.window.height);
+        let aspect = largest.and_then(|part| part.pixel_aspect).map_or(1.0, f64::from);
+        if (0.01..=100.0).contains(&aspect) { aspect } else { 1.0 }
+    }
+
     /// Bytes of memory that the file and its pictures take from being decoded to being written, about.
     pub fn weight(&self) -> u64 {
         let mut parts: Vec<usize> = Vec::new();

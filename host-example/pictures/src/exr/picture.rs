@@ -6,10 +6,11 @@ use isophote_exr_edit::{Channel, Decoded, Edit, Error as ExrError, File, Part, P
 
 use super::choose::{Chosen, Selection};
 use super::fault::Fault;
-use super::guides::{GuideSource, Meaning};
-use super::interop;
+use super::guides::{GuideSource, Meaning as GuideMeaning};
+use super::meaning;
 use super::motion::applied;
 use super::names::{Model, components};
+use crate::meaning::Meaning;
 use crate::pixels::{Pixels, Samples};
 use crate::primaries;
 use isophote_files::error::Error;
@@ -24,30 +25,37 @@ pub struct Picture {
     pub pixels: Pixels,
     /// Guides by the name of the graph's input.
     pub guides: Vec<(&'static str, Pixels)>,
-    /// Red, green, blue, white: x and y of each.
-    pub chromaticities: Option<[f32; 8]>,
-    /// Place of its first pixel in the display window's coordinates.
-    pub origin: [i32; 2],
-    /// The display window, where the picture may be a part of it or more.
-    pub display: Option<Window>,
+    /// Meaning of its numbers.
+    pub meaning: Meaning,
     /// Share of results that is used, 0 to 1: a mask for each that was asked for.
     pub masks: Vec<Option<Pixels>>,
+    /// The pixels that it had, where its own are not square and were made so.
+    pub own: Option<OwnPixels>,
     /// Reason why there can be no result of it, for want of masks; neighbouring frames may depend on it all the same.
     pub refused: Option<Error>,
 }
 
+/// Pixels that a picture had before they were made square.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct OwnPixels {
+    /// Columns and rows.
+    pub size: (u32, u32),
+    /// Width of one over its height.
+    pub aspect: f64,
+    /// Scale of the picture in square pixels, as requests have it.
+    pub scale: f32,
+}
+
 impl Picture {
-    /// A picture of which nothing else is known.
-    pub fn alone(pixels: Pixels) -> Self {
-        let (guides, masks) = (Vec::new(), Vec::new());
-        Self { pixels, guides, chromaticities: None, origin: [0; 2], display: None, masks, refused: None }
+    /// A picture of which nothing else is known than what its numbers mean.
+    pub fn alone(pixels: Pixels, meaning: Meaning) -> Self {
+        Self { pixels, guides: Vec::new(), meaning, masks: Vec::new(), own: None, refused: None }
     }
 
     /// The window that its pixels fill.
     pub fn window(&self) -> Window {
-        let [x, y] = self.origin;
         let (width, height) = (self.pixels.width() as usize, self.pixels.height() as usize);
-        Window { x, y, width, height }
+        self.meaning.data.unwrap_or(Window { x: 0, y: 0, width, height })
     }
 }
 
@@ -102,15 +110,8 @@ pub fn read(
         }
     }
     let pixels = interleaved(part.window, &planes).ok_or_else(unequal)?;
-    Ok(Picture {
-        pixels,
-        guides,
-        chromaticities: interop::chromaticities(exr, chosen.group.part),
-        origin: [part.window.x, part.window.y],
-        display: part.display,
-        masks,
-        refused,
-    })
+    let meaning = meaning::of(exr, chosen.group.part, chosen.alpha.is_some());
+    Ok(Picture { pixels, guides, meaning, masks, own: None, refused })
 }
 
 /// Samples a pixel that a result must have to go into the file.
@@ -215,7 +216,7 @@ pub fn guide(
     let part = &exr.parts()[source.part];
     let Some(data) = decoded[source.part].as_ref() else { return Ok(None) };
     let numbers = match source.meaning {
-        Meaning::Hashes => hashes,
+        GuideMeaning::Hashes => hashes,
         _ => numbers,
     };
     let plane = |channel: &usize| Ok::<_, ExrError>(numbers(&data.plane(*channel)?));
@@ -245,10 +246,10 @@ pub fn guide(
         }
     }
     let size = (window.width as u32, window.height as u32);
-    if let Meaning::Vectors(rule) = source.meaning {
+    if let GuideMeaning::Vectors(rule) = source.meaning {
         return Ok(applied(rule, all, size));
     }
-    if let Meaning::Position = source.meaning {
+    if let GuideMeaning::Position = source.meaning {
         let Some(camera) = world_to_camera else { return Ok(None) };
         // Row vectors; the camera looks along -z.
         let depth = all.as_chunks::<3>().0.iter().map(|p| {

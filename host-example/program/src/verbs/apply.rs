@@ -41,9 +41,10 @@ pub struct ApplyArgs {
     /// The id of a node, a look, or a graph file or preset (.json). Left out where --preset or --layered is given.
     #[arg(value_hint = ValueHint::FilePath)]
     pub style: PathBuf,
-    /// The picture: PNG, JPEG, TIFF, WebP, HDR or EXR. A sequence: shot.####.exr, shot.@@@@.exr, shot.%04d.exr, shot.$F4.exr or
-    /// shot.<UDIM>.exr; one # alone for any number of digits. A file that has just this name is meant first. A video
-    /// that ffmpeg reads, such as .mp4, .mov, .mkv or .webm; or - for YUV4MPEG on standard input. With --to a folder as well.
+    /// The picture: PNG, JPEG, TIFF, WebP, HDR or EXR. A sequence: shot.####.exr, shot.@@@@.exr, shot.%04d.exr, shot.$F4.exr
+    /// or shot.<UDIM>.exr; one # alone for any number of digits. A file that has just this name is meant first. A video that
+    /// ffmpeg reads, such as .mp4, .mov, .mkv, .webm or .gif, or an animated .png or .webp; or - for YUV4MPEG on standard
+    /// input. With --to a folder as well.
     #[arg(required_unless_present = "to", value_hint = ValueHint::AnyPath)]
     pub input: Option<PathBuf>,
     /// The result: .png, .jpg, .tif or .exr; the input itself with --in-place only. For a sequence with #### as well. For a
@@ -159,7 +160,8 @@ pub struct ApplyArgs {
     /// scale=NUMBER [default: what the name of their layer says].
     #[arg(long, value_name = "NAME")]
     pub motion_convention: Option<Convention>,
-    /// Options of ffmpeg's encoder for a video, such as "-c:v libx265 -crf 20".
+    /// Options of ffmpeg's encoder for a video, such as "-c:v libx265 -crf 20" [default: what loses little in its container, and
+    /// keeps alpha and exact red, green and blue where that can].
     #[arg(long, value_name = "OPTIONS", allow_hyphen_values = true)]
     pub encode: Option<String>,
     /// Treatment of a video that is damaged or cut short: fail, or write what can be read of it and warn.
@@ -177,7 +179,7 @@ pub struct ApplyArgs {
 /// when the library or the device fails. Each output is written as a whole or not at all.
 pub fn run(args: &ApplyArgs) -> Result<()> {
     let files = args.files()?;
-    if video::is_video(files.input) || video::is_video(&files.output) {
+    if video::is_video(files.input) || video::becomes_video(&files.output) {
         return args.run_on_video(&files);
     }
     if args.on_error == OnError::Skip {

@@ -5,6 +5,7 @@ pub mod apply;
 pub mod bench;
 pub mod documents;
 pub mod farm;
+pub mod info;
 pub mod nodes;
 mod places;
 pub mod preset;

@@ -112,7 +112,7 @@ pub fn run(args: &RenderArgs) -> Result<()> {
         stop.ends_the_process("the picture");
     }
     let report = Report::new(frames.len(), frames.len() > 1, args.json);
-    let result = match video::is_video(&args.out) {
+    let result = match video::becomes_video(&args.out) {
         true => args.film(&mut shot, &stop, &report),
         false => args.pictures(&mut shot, &stop, &report),
     };
@@ -149,7 +149,7 @@ impl RenderArgs {
     fn results(&self) -> Result<Vec<(i64, PathBuf)>> {
         let frames = self.frames.frames();
         let pattern = match Pattern::in_name(&self.out)? {
-            _ if video::is_video(&self.out) => None,
+            _ if video::becomes_video(&self.out) => None,
             None if frames.len() == 1 => None,
             _ => Some(Pattern::or_added(&self.out)?),
         };
@@ -164,7 +164,7 @@ impl RenderArgs {
     /// Refuses results that are there already, or that are files which the command line names.
     fn check_results(&self) -> Result<()> {
         let results = self.results()?;
-        let is_sequence = results.len() > 1 && !video::is_video(&self.out);
+        let is_sequence = results.len() > 1 && !video::becomes_video(&self.out);
         let made: Vec<Made<'_>> = results.iter().map(|(_, file)| Made { from: None, to: file }).collect();
         let read = || {
             let named = [Some(self.scene.scene.clone()), self.scene.reading.texture.clone()];
@@ -229,7 +229,7 @@ impl RenderArgs {
 
     /// Refuses what can be refused without a library, a scene or a device.
     fn check(&self) -> Result<()> {
-        let is_video = video::is_video(&self.out) && self.out != Path::new("-");
+        let is_video = video::becomes_video(&self.out) && self.out != Path::new("-");
         if !is_video {
             floats::check_extension(&self.out)?;
         }

@@ -41,6 +41,17 @@ fn only_looks(extension: &str) -> bool {
         || matches!(extension, "KHR_animation_pointer" | "KHR_texture_basisu" | "EXT_texture_avif")
 }
 
+/// All extensions of a file, each once, and whether it is understood.
+pub fn all(used: &[String], required: &[String]) -> Vec<(String, bool)> {
+    let mut all: Vec<(String, bool)> = Vec::new();
+    for name in used.iter().chain(required) {
+        if all.iter().all(|(known, _)| known != name) {
+            all.push((name.clone(), UNDERSTOOD.contains(&name.as_str())));
+        }
+    }
+    all
+}
+
 /// One warning that names all extensions of a file that are not understood, if there are any.
 ///
 /// # Errors

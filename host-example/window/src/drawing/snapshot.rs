@@ -8,7 +8,6 @@ use crate::state::document::frame::{Frame, GuideImage};
 use isophote_files::error::{Error, Result};
 use isophote_finishing::apply::picture_request::PictureRequest;
 use isophote_pictures::exr::Guide;
-use isophote_pictures::read::ImageState;
 use isophote_pictures::space::Space;
 use isophote_render::gpu::Gpu;
 use isophote_render::readback::decode;
@@ -99,9 +98,10 @@ impl Copied {
             color,
             request: PictureRequest {
                 space: Space::Linear,
-                state: ImageState::SceneReferred,
+                is_premultiplied: true,
                 origin: [0.0; 2],
                 canonical_height: 0,
+                scale: 1.0,
                 frame: 0,
             },
             has_light: false,

@@ -72,7 +72,7 @@ impl ExportJob {
 
     /// True where pictures of a sequence are made first, and a video of them.
     fn is_in_two_steps(&self) -> bool {
-        self.kind == Kind::Sequence && video::is_video(&self.output)
+        self.kind == Kind::Sequence && video::becomes_video(&self.output)
     }
 
     /// The process that does it, with its preset and other files in `folder`.

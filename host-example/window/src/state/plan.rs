@@ -174,7 +174,7 @@ impl Plan {
         if !self.formats().contains(&extension.as_str()) && extension != "jpeg" && extension != "tiff" {
             return Some("The name has another extension than can be made.");
         }
-        if video::is_video(path) && self.kind != Kind::Video && !VIDEOS.contains(&self.format) {
+        if video::becomes_video(path) && self.kind != Kind::Video && !VIDEOS.contains(&self.format) {
             return Some("Choose a video above, or name a picture.");
         }
         if self.what == What::Frames && self.first > self.last {

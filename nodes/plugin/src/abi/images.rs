@@ -53,6 +53,20 @@ impl Checked {
         Self::of(image, what, ImageKind::Color)
     }
 
+    /// Checks an image that is written with pixels of an input: guides are floats.
+    ///
+    /// # Errors
+    /// As [`Checked::source`]; input for guides in other samples, and of another number of channels than they have.
+    pub fn target(image: &IsophoteTarget, input: GraphInput) -> Outcome<Self> {
+        let checked = Self::of(image, "the target image", input.kind())?;
+        let (name, channels) = (input.id(), input.kind().channels());
+        if input != GraphInput::Color && (checked.sample != Sample::F32 || image.channels != channels) {
+            let message = format!("the target image of '{name}' must have {channels} channels of f32");
+            return Err(Failure::new(ISOPHOTE_ERROR_INPUT, message));
+        }
+        Ok(checked)
+    }
+
     fn of(image: &IsophoteTarget, what: &str, kind: ImageKind) -> Outcome<Self> {
         if image.data.is_null() {
             return Err(Failure::argument(format!("{what} has no data")));

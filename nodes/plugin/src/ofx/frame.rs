@@ -2,6 +2,7 @@
 //! rows of the picture downwards from the top.
 
 use super::host::Host;
+use crate::pixel_aspect::is_square;
 use isophote::engine::Rect;
 use isophote::engine::image::MAX_SIDE;
 use isophote_abi::openfx::*;
@@ -28,8 +29,6 @@ pub struct Frame {
 
 /// Share of a pixel below which differences are rounding.
 const ROUNDING: f64 = 1e-3;
-/// Pixels are square up to this factor between their sides: proxies have whole numbers of rows and columns.
-const SQUARE: f64 = 1.01;
 /// A side of a region that lies farther out (canonical) has no bound. Hosts write infinities, the greatest
 /// float, the greatest integer or a million.
 const ENDLESS: f64 = 500_000.0;
@@ -148,10 +147,6 @@ impl Frame {
     pub fn canonical(&self, bounds: Bounds) -> [f64; 4] {
         [0, 1, 2, 3].map(|i| f64::from(bounds[i]) / self.ratio[i % 2])
     }
-}
-
-fn is_square([x, y]: [f64; 2]) -> bool {
-    x.max(y) <= SQUARE * x.min(y)
 }
 
 /// True when `bounds` lie within `picture`, to a pixel.

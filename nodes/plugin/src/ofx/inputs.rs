@@ -10,6 +10,7 @@ use super::host::{Host, Outcome, Properties};
 use super::image::{Alpha, Beyond, Clip, Fetched};
 use super::prepared::Prepared;
 use super::stop::Stop;
+use crate::pixel_aspect::multiply;
 use isophote::Error;
 use isophote::engine::cpu::Threads;
 use isophote::engine::{Image, Rect};
@@ -307,13 +308,5 @@ fn present(read: Outcome<Image>) -> Result<Option<Image>, Stop> {
     match read {
         Err(status) if status != kOfxStatErrMemory => Ok(None),
         read => Ok(Some(read?)),
-    }
-}
-
-/// Colour times alpha.
-fn multiply(image: &mut Image) {
-    for pixel in image.data_mut().chunks_exact_mut(4) {
-        let alpha = pixel[3];
-        pixel[..3].iter_mut().for_each(|v| *v *= alpha);
     }
 }

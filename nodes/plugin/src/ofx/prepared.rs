@@ -2,7 +2,7 @@
 
 use super::frame::Frame;
 use super::known::Known;
-use super::pixel_aspect::SquarePixels;
+use crate::pixel_aspect::SquarePixels;
 use isophote::engine::plan::{LEAST_ROWS, WORKING_MEMORY};
 use isophote::engine::{Plan, Rect};
 use isophote::{ColourSpace, Planned, Request};
@@ -44,12 +44,13 @@ impl Prepared {
                 },
             )
         };
-        let Some(mut square) = SquarePixels::of(frame) else {
+        if frame.is_square() {
             return Ok(Self { planned: plan(frame.size(), frame.scale, premultiplied)?, square: None });
-        };
+        }
+        let mut square = SquarePixels::of(frame.size(), frame.ratio);
         let mut planned = plan(square.size(), square.scale, true)?;
         if least_memory(planned.plan()) > WORKING_MEMORY[1] {
-            square = SquarePixels::as_many(frame);
+            square = SquarePixels::as_many(frame.size(), frame.ratio);
             planned = plan(square.size(), square.scale, true)?;
         }
         Ok(Self { planned, square: Some(square) })

@@ -13,6 +13,7 @@ use super::prepared::Prepared;
 use super::settings::Settings;
 use super::stop::Stop;
 use super::threads::FrameThreads;
+use crate::pixel_aspect::divide;
 use isophote::engine::cpu::{Control, CpuExecutor, Threads};
 use isophote::engine::plan::LEAST_ROWS;
 use isophote::engine::{Error as EngineError, Image, Rect};
@@ -287,14 +288,6 @@ impl Plans {
             self.emissive = Some(self.prepared.emissive(&self.known)?);
         }
         Ok(self.emissive.as_ref().unwrap_or(&self.prepared.planned))
-    }
-}
-
-/// Colour over alpha, where there is any.
-fn divide(image: &mut Image) {
-    for pixel in image.data_mut().chunks_exact_mut(4).filter(|pixel| pixel[3] > 0.0) {
-        let alpha = pixel[3];
-        pixel[..3].iter_mut().for_each(|v| *v /= alpha);
     }
 }
 

@@ -18,9 +18,10 @@ impl ApplyArgs {
     /// Filters a video.
     pub(super) fn run_on_video(&self, files: &Files<'_>) -> Result<()> {
         let wrong = |place: &str, problem: &str, fix: &str| Err(Error::input(place, problem, fix));
-        if !video::is_video(files.input) || !video::is_video(&files.output) {
+        if !video::is_video(files.input) || !video::becomes_video(&files.output) {
             let place = files.output.display().to_string();
-            return wrong(&place, "a video becomes a video, and pictures pictures", "name two of a kind");
+            let fix = "name two of a kind (an animated .png or .webp is a video, and .apng and .webp are written as such)";
+            return wrong(&place, "a video becomes a video, and pictures pictures", fix);
         }
         let others = [
             ("--frames", self.frames.is_some()),

@@ -10,6 +10,7 @@ use isophote_files::error::{Error, Result};
 use isophote_files::files;
 use isophote_files::frames::{self, Pattern};
 use isophote_finishing::apply::tasks::Task;
+use isophote_finishing::video::is_video;
 use isophote_pictures::write::Format;
 
 /// Arguments without an option, by their meaning.
@@ -147,12 +148,14 @@ fn each(path: &Path) -> Result<Vec<PathBuf>> {
     }
 }
 
-/// The result of a file in a folder: of the same name, with another ending where that kind is not written.
+/// The result of a file in a folder: of the same name, with another ending where that kind is not written, and that of an
+/// animated PNG file tells it from a still one.
 fn result(folder: &Path, input: &Path) -> PathBuf {
     let name = Path::new(input.file_name().unwrap_or(input.as_os_str()));
     let name = match Format::of(name) {
+        Ok(_) if is_video(input) => name.with_extension("apng"),
         Ok(_) => name.to_owned(),
-        Err(_) if isophote_finishing::video::is_video(name) => name.to_owned(),
+        Err(_) if is_video(input) => name.to_owned(),
         Err(_) if name.extension().is_some_and(|e| e.eq_ignore_ascii_case("hdr")) => {
             name.with_extension("exr")
         }

@@ -8,8 +8,8 @@ use isophote_files::error::{Error, Result};
 use isophote_files::frames::Pattern;
 use isophote_files::limits;
 use isophote_finishing::video::Clip;
-use isophote_pictures::exr::{Picture, Selection};
-use isophote_pictures::read::{self, ImageState, Opened, Source};
+use isophote_pictures::exr::Selection;
+use isophote_pictures::read::{self, Opened, Source};
 use isophote_pictures::space::Space;
 
 /// Frames before the one that is wanted that are decoded with it where a video plays backward.
@@ -98,8 +98,7 @@ fn decode(
     clip.go_to(first)?;
     while let Some((at, pixels)) = clip.take()? {
         if sink.wants(at) {
-            let state = ImageState::DisplayReferred;
-            let source = Source { pictures: vec![Picture::alone(pixels)], state, profile: None, exr: None };
+            let source = Source::alone(pixels, clip.stream().meaning());
             sink.put(at, Frame::of(&name, source, Some(at), reading.space));
         }
         if at >= number || sink.is_elsewhere(at + 1..=number) {

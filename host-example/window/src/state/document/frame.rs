@@ -6,8 +6,7 @@ use isophote_finishing::apply::picture_request::PictureRequest;
 use isophote_loader::abi::{ISOPHOTE_ALPHA_EMISSIVE, IsophoteRequest};
 use isophote_pictures::exr::Guide;
 use isophote_pictures::pixels::Pixels;
-use isophote_pictures::primaries;
-use isophote_pictures::read::{ImageState, Source};
+use isophote_pictures::read::Source;
 use isophote_pictures::space::Space;
 use isophote_pictures::working::WorkingSpace;
 
@@ -60,8 +59,8 @@ impl Frame {
         let size = u64::from(picture.pixels.width()) * u64::from(picture.pixels.height());
         limits::must_have(size * (16 + picture.guides.len() as u64 * 16), name)?;
         let guides = std::mem::take(&mut picture.guides);
-        let working = WorkingSpace::of(space, source.state, picture);
-        let changed = working.change.map(|(there, _)| primaries::changed(&picture.pixels, &there));
+        let working = WorkingSpace::of(space, picture);
+        let changed = working.there.as_ref().map(|there| there.apply(&picture.pixels));
         let (pixels, bad) = changed.as_ref().map_or((&picture.pixels, 0), |(pixels, bad)| (pixels, *bad));
         let (color, replaced) = colors(pixels);
         let named = guides.into_iter().filter_map(|(name, pixels)| {
@@ -72,8 +71,8 @@ impl Frame {
             number,
             width: pixels.width(),
             height: pixels.height(),
-            has_light: source.state == ImageState::SceneReferred && color.iter().any(is_beyond_coverage),
-            request: PictureRequest::of(picture, source.state, working.space, number),
+            has_light: picture.meaning.is_premultiplied() && color.iter().any(is_beyond_coverage),
+            request: PictureRequest::of(picture, working.space, number),
             guides: named.collect(),
             replaced: replaced + bad,
             color,
@@ -82,7 +81,7 @@ impl Frame {
 
     /// True where colour is multiplied by alpha.
     pub fn is_premultiplied(&self) -> bool {
-        self.request.state == ImageState::SceneReferred
+        self.request.is_premultiplied
     }
 
     /// Request of `apply` to the library for this frame, of its size and with the guides that are wanted.
@@ -141,25 +140,22 @@ fn is_beyond_coverage(pixel: &[f32; 4]) -> bool {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use isophote_pictures::exr::Picture;
+    use isophote_pictures::meaning::Meaning;
     use isophote_pictures::pixels::Samples;
 
-    fn frame(state: ImageState, pixels: Pixels) -> Frame {
-        let source = Source { pictures: vec![Picture::alone(pixels)], state, profile: None, exr: None };
-        Frame::of("a", source, None, None).unwrap()
+    fn frame(meaning: Meaning, pixels: Pixels) -> Frame {
+        Frame::of("a", Source::alone(pixels, meaning), None, None).unwrap()
     }
 
     #[test]
     fn pixels_are_what_the_library_reads() {
         let grey = frame(
-            ImageState::SceneReferred,
+            Meaning::light(),
             Pixels::new(2, 1, 1, Samples::F32(vec![f32::NAN, f32::NEG_INFINITY])).unwrap(),
         );
         assert_eq!(grey.color, [[0.0, 0.0, 0.0, 1.0], [-65504.0, -65504.0, -65504.0, 1.0]]);
-        let straight = frame(
-            ImageState::DisplayReferred,
-            Pixels::new(1, 1, 4, Samples::U8(vec![255, 51, 0, 0])).unwrap(),
-        );
+        let straight =
+            frame(Meaning::display(), Pixels::new(1, 1, 4, Samples::U8(vec![255, 51, 0, 0])).unwrap());
         assert_eq!(straight.color, [[1.0, 0.2, 0.0, 0.0]]);
         assert!(!straight.is_premultiplied() && !straight.has_light, "apart from alpha it is no light");
     }
@@ -167,8 +163,7 @@ mod tests {
     #[test]
     fn light_beyond_coverage_is_found() {
         let light = |pixel: [f32; 4]| {
-            frame(ImageState::SceneReferred, Pixels::new(1, 1, 4, Samples::F32(pixel.to_vec())).unwrap())
-                .has_light
+            frame(Meaning::light(), Pixels::new(1, 1, 4, Samples::F32(pixel.to_vec())).unwrap()).has_light
         };
         assert!(light([0.1, 0.0, 0.0, 0.0]) && light([9.0, 0.0, 0.0, 0.5]));
         assert!(!light([7.9, 7.9, 7.9, 0.5]) && !light([0.0; 4]) && !light([60000.0, 0.0, 0.0, 1.0]));

@@ -86,15 +86,13 @@ fn picked(frame: &Frame, image: &GuideImage, columns: &[Span], rows: &[Span]) ->
 #[cfg(test)]
 mod tests {
     use super::*;
-    use isophote_pictures::exr::Picture;
+    use isophote_pictures::meaning::Meaning;
     use isophote_pictures::pixels::{Pixels, Samples};
-    use isophote_pictures::read::{ImageState, Source};
+    use isophote_pictures::read::Source;
 
     fn frame(width: u32, height: u32, values: Vec<u8>) -> Frame {
         let pixels = Pixels::new(width, height, 4, Samples::U8(values)).unwrap();
-        let state = ImageState::DisplayReferred;
-        let source = Source { pictures: vec![Picture::alone(pixels)], state, profile: None, exr: None };
-        Frame::of("a", source, None, None).unwrap()
+        Frame::of("a", Source::alone(pixels, Meaning::display()), None, None).unwrap()
     }
 
     #[test]

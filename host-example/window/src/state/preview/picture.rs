@@ -7,7 +7,8 @@ use rayon::prelude::*;
 
 use crate::state::document::frame::Frame;
 use isophote_pictures::primaries::{Change, REC709};
-use isophote_pictures::space::{Space, srgb_decode, srgb_encode};
+use isophote_pictures::space::Space;
+use isophote_pictures::transfer::{srgb_decode, srgb_encode};
 
 /// Side of the squares behind transparent pictures, in pixels of the preview.
 const SQUARE: usize = 8;

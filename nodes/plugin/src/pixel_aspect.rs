@@ -11,7 +11,6 @@
 //! stays in 0..=1, and where a whole number of square pixels makes one of the host's, there and back is no
 //! change at all. Which square pixels there are depends on the whole picture alone, never on a tile.
 
-use super::frame::Frame;
 use isophote::engine::cpu::Threads;
 use isophote::engine::image::MAX_SIDE;
 use isophote::engine::{Error, Image, Rect};
@@ -21,6 +20,8 @@ use std::sync::{Mutex, PoisonError};
 
 /// Square pixels in one of the host's along one axis, at most: beyond that the finer axis loses detail instead.
 const MOST: f64 = 8.0;
+/// Pixels are square up to this factor between their sides: proxies have whole numbers of rows and columns.
+const SQUARE: f64 = 1.01;
 /// Share of a pixel below which differences are rounding.
 const ROUNDING: f64 = 1e-6;
 /// A pixel that lies outside the picture for all but this share is left out.
@@ -115,28 +116,33 @@ pub struct SquarePixels {
 }
 
 impl SquarePixels {
-    /// Pixels of a frame, as fine as its finer side; `None` where its own pixels are square.
-    pub fn of(frame: &Frame) -> Option<Self> {
-        let [x, y] = frame.ratio;
-        (!frame.is_square()).then(|| Self::new(frame, x.max(y).min(MOST * x.min(y))))
+    /// Pixels of a picture with so many of its own per canonical unit in x and y, as fine as its finer side.
+    pub fn of(size: [u32; 2], ratio: [f64; 2]) -> Self {
+        let [x, y] = ratio;
+        Self::new(size, ratio, x.max(y).min(MOST * x.min(y)))
     }
 
-    /// As many as the frame has pixels: less detail on its finer side, no more memory.
-    pub fn as_many(frame: &Frame) -> Self {
-        Self::new(frame, (frame.ratio[0] * frame.ratio[1]).sqrt())
+    /// As many as the picture has: less detail on its finer side, no more memory.
+    pub fn as_many(size: [u32; 2], ratio: [f64; 2]) -> Self {
+        Self::new(size, ratio, (ratio[0] * ratio[1]).sqrt())
     }
 
-    fn new(frame: &Frame, density: f64) -> Self {
-        let size = frame.size().map(f64::from);
-        let side = |i: usize| size[i] * density / frame.ratio[i];
+    fn new(size: [u32; 2], ratio: [f64; 2], density: f64) -> Self {
+        let size = size.map(f64::from);
+        let side = |i: usize| size[i] * density / ratio[i];
         let density = density * (f64::from(MAX_SIDE) / side(0).max(side(1))).min(1.0);
-        let axis = |i: usize| Axis::new(size[i] as i32, frame.ratio[i] / density);
+        let axis = |i: usize| Axis::new(size[i] as i32, ratio[i] / density);
         Self { axes: [axis(0), axis(1)], scale: density.clamp(1.0 / 1024.0, 64.0) as f32 }
     }
 
     /// Size of the picture in square pixels.
     pub fn size(&self) -> [u32; 2] {
         self.axes.map(|axis| axis.to as u32)
+    }
+
+    /// Square pixels in the length of one of the picture's own, in x and y.
+    pub fn per_pixel(&self) -> [f64; 2] {
+        self.axes.map(|axis| 1.0 / axis.share)
     }
 
     /// The square pixels that the host's in `window` are made from.
@@ -169,6 +175,27 @@ impl SquarePixels {
     /// Memory.
     pub fn to_host(self, pixels: Image, window: Rect, threads: &dyn Threads) -> Result<Image, Error> {
         resampled(self.axes.map(Axis::reversed), pixels, window, By::Mean, threads)
+    }
+}
+
+/// True where pixels with so many per canonical unit in x and y are square, as far as anyone can see.
+pub fn is_square([x, y]: [f64; 2]) -> bool {
+    x.max(y) <= SQUARE * x.min(y)
+}
+
+/// Colour times alpha.
+pub fn multiply(image: &mut Image) {
+    for pixel in image.data_mut().chunks_exact_mut(4) {
+        let alpha = pixel[3];
+        pixel[..3].iter_mut().for_each(|v| *v *= alpha);
+    }
+}
+
+/// Colour over alpha, where there is any.
+pub fn divide(image: &mut Image) {
+    for pixel in image.data_mut().chunks_exact_mut(4).filter(|pixel| pixel[3] > 0.0) {
+        let alpha = pixel[3];
+        pixel[..3].iter_mut().for_each(|v| *v /= alpha);
     }
 }
 
@@ -346,15 +373,8 @@ mod tests {
     use isophote::engine::cpu::CallingThread;
 
     fn square(size: [i32; 2], ratio: [f64; 2]) -> SquarePixels {
-        let frame = Frame {
-            picture: [0, 0, size[0], size[1]],
-            ratio,
-            scale: 1.0,
-            top: None,
-            number: 0,
-            reference_height: 0,
-        };
-        SquarePixels::of(&frame).unwrap()
+        assert!(!is_square(ratio));
+        SquarePixels::of(size.map(|side| side as u32), ratio)
     }
 
     fn picture(size: [i32; 2], value: impl Fn(i32, i32, usize) -> f32) -> Image {
@@ -379,16 +399,8 @@ mod tests {
         assert_eq!(square([100, 60], [2.0, 1.0]).size(), [100, 120]);
         assert_eq!(square([100, 60], [1.0 / 1.0667, 1.0]).size(), [107, 60]);
         assert!(square([10_000, 10], [0.01, 1.0]).size()[0] <= MAX_SIDE);
-        let frame = Frame {
-            picture: [0, 0, 100, 60],
-            ratio: [0.5, 0.5002],
-            scale: 0.5,
-            top: None,
-            number: 0,
-            reference_height: 0,
-        };
-        assert_eq!(SquarePixels::of(&frame), None);
-        let even = SquarePixels::as_many(&Frame { ratio: [0.5, 1.0], ..frame }).size();
+        assert!(is_square([0.5, 0.5002]));
+        let even = SquarePixels::as_many([100, 60], [0.5, 1.0]).size();
         assert!((i64::from(even[0]) * i64::from(even[1]) - 6000).abs() < 200, "{even:?}");
     }
 

@@ -1,0 +1,41 @@
+//! What is understood of files, as facts for people and for programs.
+
+mod facts;
+mod picture;
+mod scene;
+mod style;
+mod video;
+
+use std::path::Path;
+
+use isophote_files::error::{Error, Result};
+use isophote_finishing::video::is_video;
+
+use self::facts::Facts;
+
+/// Extensions of scenes.
+const SCENES: [&str; 3] = ["gltf", "glb", "obj"];
+
+/// Everything that is understood of a file.
+///
+/// # Errors
+/// [`Error::Input`] for files that are missing, damaged or of no kind that is known; [`Error::Failure`] without a library
+/// or the programs that a video needs.
+pub fn of(path: &Path) -> Result<Facts> {
+    let extension = path.extension().and_then(|e| e.to_str()).unwrap_or_default().to_ascii_lowercase();
+    if path.as_os_str() == "-" {
+        return Err(Error::file(path, "stands for a stream, which is read once", "name a file"));
+    }
+    let mut facts = Facts::default();
+    facts.add("file", path.display().to_string());
+    if SCENES.contains(&extension.as_str()) {
+        scene::add(&mut facts, path)?;
+    } else if extension == "json" {
+        style::add(&mut facts, path)?;
+    } else if is_video(path) {
+        video::add(&mut facts, path)?;
+    } else {
+        picture::add(&mut facts, path)?;
+    }
+    Ok(facts)
+}
