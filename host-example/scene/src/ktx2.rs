@@ -5,6 +5,7 @@
 use basisu::{DecodeFlags, TargetFormat, Transcoder};
 
 use super::budget::Budget;
+use super::guarded::guarded;
 use super::material::Image;
 
 const IDENTIFIER: [u8; 12] = *b"\xabKTX 20\xbb\r\n\x1a\n";
@@ -40,9 +41,12 @@ pub fn decode(name: &str, bytes: &[u8], most: u32, budget: &Budget) -> Result<Im
     let pixels = width as usize * height as usize;
     budget.take(pixels, 4)?;
     budget.take(usize::try_from(inflated).unwrap_or(usize::MAX), 1)?;
-    let damaged = |e: basisu::Error| format!("is a damaged KTX2 file: {e:?}");
-    let transcoder = Transcoder::new(bytes).map_err(damaged)?;
-    let mut rgba = transcoder.transcode(0, TargetFormat::Rgba32, DecodeFlags::NONE).map_err(damaged)?;
+    let bytes = without_keys(bytes, budget)?;
+    let decoded = guarded(|| {
+        let transcoder = Transcoder::new(&bytes).map_err(|e| format!("{e:?}"))?;
+        transcoder.transcode(0, TargetFormat::Rgba32, DecodeFlags::NONE).map_err(|e| format!("{e:?}"))
+    });
+    let mut rgba = decoded.map_err(|problem| format!("is a damaged KTX2 file: {problem}"))?;
     if rgba.len() != pixels * 4 {
         return Err("is a damaged KTX2 file: its picture is of another size".into());
     }
@@ -76,7 +80,6 @@ impl Header {
             return Err(format!("is a KTX2 file of {levels} sizes of its picture, not 1 to 16"));
         }
         let description = part(bytes, u64::from(word(bytes, 48)), u64::from(word(bytes, 52)))?;
-        part(bytes, u64::from(word(bytes, 56)), u64::from(word(bytes, 60)))?;
         let shared = part(bytes, long(bytes, 64), long(bytes, 72))?;
         part(bytes, 80, 24 * u64::from(levels))?;
         for level in 0..levels as usize {
@@ -105,6 +108,16 @@ impl Header {
         }
         Ok(Self { width, height, two_channels, inflated: if scheme == ZSTANDARD { inflated } else { 0 } })
     }
+}
+
+/// The file without its keys and values, which say nothing that is needed: the decoder panics at broken ones.
+fn without_keys(bytes: &[u8], budget: &Budget) -> Result<Vec<u8>, String> {
+    budget.take(bytes.len(), 1)?;
+    let mut bytes = bytes.to_vec();
+    if let Some(place) = bytes.get_mut(56..64) {
+        place.fill(0);
+    }
+    Ok(bytes)
 }
 
 /// The bytes of a part of the file.

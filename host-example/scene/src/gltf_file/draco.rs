@@ -5,6 +5,8 @@ use gltf::accessor::{Accessor, DataType};
 use serde_json::Value;
 
 use super::accessors::{Accessors, Floats, Pick, number, whole};
+#[cfg(feature = "compressed")]
+use crate::guarded::guarded;
 
 /// The extension.
 const EXTENSION: &str = "KHR_draco_mesh_compression";
@@ -62,13 +64,15 @@ fn decode(bytes: &[u8], ids: &[(&str, u32)], accessors: &Accessors) -> Result<Ge
         .with_max_faces(budget.left() / 256)
         .with_max_points(budget.left() / 256)
         .with_max_decoded_bytes(budget.left() / 2);
-    let mut mesh = Mesh::new();
-    let decoded = MeshDecoder::new().decode(&mut DecoderBuffer::new(bytes).with_limits(limits), &mut mesh);
-    match decoded {
-        Ok(()) => {}
-        Err(e) if e.kind() == ErrorKind::LimitExceeded => budget.take(usize::MAX, 1)?,
-        Err(e) => return Err(format!("its data cannot be decoded: {e}")),
-    }
+    let mesh = guarded(|| {
+        let mut mesh = Mesh::new();
+        let mut buffer = DecoderBuffer::new(bytes).with_limits(limits);
+        match MeshDecoder::new().decode(&mut buffer, &mut mesh) {
+            Ok(()) => Ok(mesh),
+            Err(e) if e.kind() == ErrorKind::LimitExceeded => budget.take(usize::MAX, 1).map(|()| mesh),
+            Err(e) => Err(format!("its data cannot be decoded: {e}")),
+        }
+    })?;
     let count = mesh.num_points();
     budget.take(mesh.num_faces(), 3 * size_of::<u32>())?;
     let indices = mesh.faces().iter().flat_map(|face| face.map(|point| point.0)).collect();

@@ -176,8 +176,7 @@ mod tests {
 
     #[test]
     fn numbers_of_seven_bits() {
-        for (bytes, value) in [(&[0x7f][..], 0x7f), (&[0x81, 0x04], 0x201), (&[0xff, 0xa0, 0x05], 0x1_507f)]
-        {
+        for (bytes, value) in [(&[0x7f][..], 0x7f), (&[0x81, 0x04], 0x201), (&[0xff, 0xa0, 0x05], 0x1_507f)] {
             assert_eq!(number(&mut &bytes[..]), Some(value));
         }
         assert_eq!(number(&mut &[0x80; 6][..]), None);
