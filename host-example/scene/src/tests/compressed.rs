@@ -274,7 +274,7 @@ fn geometry_that_cannot_be_decoded_is_named() {
 fn textures_that_cannot_be_decoded_leave_surfaces_plain() {
     let changes: [Change; 2] = [
         ("cut off", |json| json["bufferViews"][5]["byteLength"] = json!(500)),
-        ("Vulkan format 37", |json| json["images"][0] = json!({"uri": rgba()})),
+        ("Vulkan format 97", |json| json["images"][0] = json!({"uri": half_floats()})),
     ];
     for (word, change) in changes {
         let mut b = document("gltf_ktx2/ktx2.glb");
@@ -285,11 +285,11 @@ fn textures_that_cannot_be_decoded_leave_surfaces_plain() {
     }
 }
 
-/// The beginning of a KTX2 file of plain pixels.
+/// A KTX2 file of pixels of half floats.
 #[cfg(feature = "compressed")]
-fn rgba() -> String {
+fn half_floats() -> String {
     let mut bytes = b"\xabKTX 20\xbb\r\n\x1a\n".to_vec();
-    bytes.extend([37u32, 1, 4, 4].map(u32::to_le_bytes).concat());
+    bytes.extend([97u32, 1, 4, 4, 0, 0, 1, 1, 0, 104, 44].map(u32::to_le_bytes).concat());
     bytes.resize(200, 0);
     let data: String = bytes.iter().map(|b| format!("%{b:02x}")).collect();
     format!("data:image/ktx2,{data}")
