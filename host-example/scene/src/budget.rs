@@ -51,6 +51,12 @@ impl Budget {
         Ok(())
     }
 
+    /// Bytes that are left.
+    #[cfg(feature = "compressed")]
+    pub fn left(&self) -> u64 {
+        self.left.get()
+    }
+
     /// Reads a whole file.
     ///
     /// # Errors

@@ -9,7 +9,11 @@ use super::budget::Budget;
 use super::material::Image;
 
 /// Formats that are read, for messages.
-pub const FORMATS: &str = "PNG, JPEG, WebP, TGA, DDS, BMP, GIF and TIFF are";
+pub const FORMATS: &str = if cfg!(feature = "compressed") {
+    "PNG, JPEG, WebP, TGA, DDS, KTX2, BMP, GIF and TIFF are"
+} else {
+    "PNG, JPEG, WebP, TGA, DDS, BMP, GIF and TIFF are"
+};
 
 /// Most pixels across and down.
 const MOST: u32 = 1 << 15;
@@ -49,6 +53,11 @@ pub fn decode(name: &str, bytes: &[u8], budget: &Budget) -> Result<Image, Decode
             raster(name, bytes, ImageFormat::WebP, budget)
         }
         [b'D', b'D', b'S', b' ', ..] => surface(name, bytes, budget),
+        #[cfg(feature = "compressed")]
+        [0xab, b'K', b'T', b'X', b' ', b'2', ..] => {
+            super::ktx2::decode(name, bytes, MOST, budget).map_err(DecodeProblem::Damaged)
+        }
+        #[cfg(not(feature = "compressed"))]
         [0xab, b'K', b'T', b'X', b' ', b'2', ..] => Err(DecodeProblem::Unsupported("KTX2")),
         [0xab, b'K', b'T', b'X', ..] => Err(DecodeProblem::Unsupported("KTX")),
         [_, _, _, _, b'f', b't', b'y', b'p', b'a', b'v', b'i', b'f' | b's', ..] => {
@@ -227,7 +236,7 @@ mod tests {
     #[test]
     fn other_formats_are_named() {
         for (bytes, format) in [
-            (&b"\xabKTX 20\xbb\r\n\x1a\n"[..], "KTX2"),
+            (&b"\xabKTX 11\xbb\r\n\x1a\n"[..], "KTX"),
             (b"\0\0\0\x1cftypavif", "AVIF"),
             (b"8BPS", "PSD"),
             (b"mtllib a.mtl\nv 0 0 0\nv 0 0 0", "unknown"),

@@ -5,12 +5,14 @@
 
 mod accessors;
 mod animations;
+mod draco;
 mod extensions;
 mod glossiness;
 mod images;
 mod instances;
 mod materials;
 mod meshes;
+mod meshopt;
 mod sources;
 mod uses;
 
@@ -41,7 +43,8 @@ pub fn load(path: &Path, budget: &Budget) -> Result<Scene> {
     let malformed = |problem: String| Error::file(path, problem, budget.fix("export the scene again"));
     let Parsed { document, channels, blob, extensions, warnings } = parse(&bytes, budget).map_err(malformed)?;
     let buffers = read_buffers(path, &document, blob, budget)?;
-    let accessors = Accessors { buffers: &buffers, budget };
+    let decoded = meshopt::decode(&document, &buffers, budget).map_err(malformed)?;
+    let accessors = Accessors { buffers: &buffers, decoded: &decoded, budget };
     let mut scene = Scene {
         cameras: read_cameras(&document),
         lights: read_lights(&document),
@@ -145,6 +148,10 @@ fn read_buffers(
     let folders = Folders::of(path);
     let mut buffers = Vec::new();
     for buffer in document.buffers() {
+        if meshopt::is_placeholder(&buffer, document) {
+            buffers.push(Vec::new());
+            continue;
+        }
         let bytes = match buffer.source() {
             gltf::buffer::Source::Uri(uri) => sources::read_uri(&folders, uri, budget)
                 .map_err(|(problem, fix)| Error::file(path, problem, fix))?,

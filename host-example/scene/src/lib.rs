@@ -6,8 +6,8 @@
 //! | [`material`] | materials, textures and images |
 //! | [`geometry`] | normals and tangents where a file has none |
 //! | [`gltf_file`], [`obj_file`] | readers of the two formats |
-//! | `references`, `decode`, `texels` | files that a scene names, and images of textures |
-//! | [`budget`] | bytes that a file may take |
+//! | `references`, `decode`, `ktx2`, `texels` | files that a scene names, and images of textures |
+//! | [`budget`], `guarded` | bytes that a file may take, and decoders that others wrote |
 //! | [`animation`], [`pose`] | animations, and places of all nodes at a time |
 //! | [`camera`] | cameras, framing and orbits |
 //! | [`environment`] | surroundings as a picture, and their light |
@@ -26,6 +26,10 @@ pub mod environment;
 pub mod floor;
 pub mod geometry;
 pub mod gltf_file;
+#[cfg(feature = "compressed")]
+mod guarded;
+#[cfg(feature = "compressed")]
+mod ktx2;
 mod load;
 pub mod material;
 pub mod model;

@@ -1,5 +1,6 @@
 //! Images of textures that are made of others: coverage from a mask, and channels that files keep apart.
 
+use glam::Vec3;
 use image::imageops::FilterType;
 use image::{RgbaImage, imageops};
 
@@ -41,6 +42,51 @@ impl Image {
         };
         Ok(Self { name: self.name.clone(), width, height, rgba })
     }
+}
+
+/// Height of white above black in a map of heights, as a part of the width of the map. Formats leave it open.
+const HIGHEST: f32 = 0.02;
+
+/// Normals of a map of heights, which are taken of its texels by `height` and multiplied by `factor`. Beyond its sides it
+/// repeats itself, or its edge where it is to be clamped.
+///
+/// # Errors
+/// A clause saying that the budget does not allow it.
+pub fn normals_of(
+    image: &Image,
+    factor: f32,
+    clamp: bool,
+    height: impl Fn([u8; 4]) -> u8,
+    budget: &Budget,
+) -> Result<Image, String> {
+    let (across, down) = (image.width as usize, image.height as usize);
+    budget.take(across * down, 4)?;
+    let texels = image.rgba.as_chunks::<4>().0;
+    let scale = factor * HIGHEST * across.max(down) as f32 / 255.0;
+    let beside = |at: usize, count: usize| {
+        if clamp {
+            [at.saturating_sub(1), (at + 1).min(count - 1)]
+        } else {
+            [at + count - 1, at + 1].map(|at| at % count)
+        }
+    };
+    let slope = |places: [usize; 2]| {
+        let [before, after] = places.map(|place| f32::from(height(texels[place])));
+        (after - before) * 0.5 * scale
+    };
+    let mut rgba = Vec::with_capacity(texels.len() * 4);
+    for y in 0..down {
+        let rows = beside(y, down);
+        for x in 0..across {
+            let right = slope(beside(x, across).map(|x| y * across + x));
+            let below = slope(rows.map(|y| y * across + x));
+            // Rows go down, and green points up.
+            let normal = Vec3::new(-right, below, 1.0).normalize_or(Vec3::Z);
+            let [r, g, b] = normal.to_array().map(|n| ((n * 0.5 + 0.5) * 255.0).round() as u8);
+            rgba.extend([r, g, b, 255]);
+        }
+    }
+    Ok(Image { name: image.name.clone(), rgba, ..*image })
 }
 
 /// Combines two images texel by texel, at the size of the larger one.

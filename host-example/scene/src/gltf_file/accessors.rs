@@ -1,6 +1,8 @@
 //! Typed reading of glTF accessors with every range checked: a file that lies about its lengths yields an
 //! error, never a panic. All component types are read, so quantized meshes need no code of their own.
 
+use std::collections::HashMap;
+
 use gltf::accessor::{Accessor, DataType, Dimensions};
 use gltf::buffer::View;
 
@@ -10,6 +12,8 @@ use crate::budget::Budget;
 pub struct Accessors<'a> {
     /// Bytes of each buffer.
     pub buffers: &'a [Vec<u8>],
+    /// Bytes of the views that are compressed, by their index.
+    pub decoded: &'a HashMap<usize, Vec<u8>>,
     /// Counts what is read.
     pub budget: &'a Budget,
 }
@@ -24,7 +28,8 @@ pub enum Pick<'a> {
 }
 
 impl Pick<'_> {
-    fn count(self, count: usize) -> usize {
+    /// Elements that are read of `count`.
+    pub fn count(self, count: usize) -> usize {
         match self {
             Self::All => count,
             Self::These(elements) => elements.len(),
@@ -32,7 +37,7 @@ impl Pick<'_> {
     }
 
     /// Element of the accessor that ends up at `place`.
-    fn element(self, place: usize) -> usize {
+    pub fn element(self, place: usize) -> usize {
         match self {
             Self::All => place,
             Self::These(elements) => elements[place] as usize,
@@ -100,14 +105,7 @@ impl Accessors<'_> {
         if accessor.dimensions().multiplicity() != width {
             return Err(format!("accessor {} does not have {width} numbers per element", accessor.index()));
         }
-        self.read(accessor, pick, |kind, bytes| {
-            Some(match (kind, bytes) {
-                (DataType::U8, [a, ..]) => u32::from(*a),
-                (DataType::U16, [a, b, ..]) => u32::from(u16::from_le_bytes([*a, *b])),
-                (DataType::U32, [a, b, c, d, ..]) => u32::from_le_bytes([*a, *b, *c, *d]),
-                _ => return None,
-            })
-        })
+        self.read(accessor, pick, whole)
     }
 
     /// Reads the components of all picked elements, each by `convert`: first the dense part, then the sparse
@@ -204,6 +202,9 @@ impl Accessors<'_> {
 
     /// The bytes of a buffer view; `None` when its buffer is too short.
     pub fn view(&self, view: &View) -> Option<&[u8]> {
+        if let Some(decoded) = self.decoded.get(&view.index()) {
+            return Some(decoded);
+        }
         let buffer = self.buffers.get(view.buffer().index())?;
         buffer.get(view.offset()..view.offset().checked_add(view.length())?)
     }
@@ -236,7 +237,18 @@ impl Layout {
     }
 }
 
-fn number(kind: DataType, normalized: bool, bytes: &[u8]) -> Option<f32> {
+/// A whole number that is not negative by its type; `None` for others.
+pub fn whole(kind: DataType, bytes: &[u8]) -> Option<u32> {
+    Some(match (kind, bytes) {
+        (DataType::U8, [a, ..]) => u32::from(*a),
+        (DataType::U16, [a, b, ..]) => u32::from(u16::from_le_bytes([*a, *b])),
+        (DataType::U32, [a, b, c, d, ..]) => u32::from_le_bytes([*a, *b, *c, *d]),
+        _ => return None,
+    })
+}
+
+/// A number of any type; normalized integers are mapped to [0, 1] or [-1, 1].
+pub fn number(kind: DataType, normalized: bool, bytes: &[u8]) -> Option<f32> {
     let scaled = |value: f32, most: f32| if normalized { (value / most).max(-1.0) } else { value };
     Some(match (kind, bytes) {
         (DataType::I8, [a, ..]) => scaled(f32::from(i8::from_le_bytes([*a])), 127.0),

@@ -7,8 +7,9 @@ use serde_json::value::RawValue;
 use crate::phrases::list;
 
 /// Extensions that are understood.
-const UNDERSTOOD: [&str; 14] = [
+const UNDERSTOOD: [&str; 16] = [
     "EXT_mesh_gpu_instancing",
+    "EXT_meshopt_compression",
     "EXT_texture_webp",
     "KHR_lights_punctual",
     "KHR_materials_emissive_strength",
@@ -18,11 +19,15 @@ const UNDERSTOOD: [&str; 14] = [
     "KHR_materials_transmission",
     "KHR_materials_unlit",
     "KHR_mesh_quantization",
+    "KHR_meshopt_compression",
     "KHR_node_visibility",
     "KHR_texture_transform",
     "KHR_xmp_json_ld",
     "MSFT_texture_dds",
 ];
+
+/// Extensions that are understood besides, by decoders that the feature `compressed` brings.
+const COMPRESSED: [&str; 2] = ["KHR_draco_mesh_compression", "KHR_texture_basisu"];
 
 /// Extensions that add a layer to a surface, which is shown without that layer.
 const LAYERS: [&str; 7] = [
@@ -60,7 +65,10 @@ pub fn check(used: &[String], required: &[String]) -> Result<Vec<String>, String
     let unknown = |names: &[String]| {
         let mut unknown: Vec<String> = Vec::new();
         for name in names {
-            let known = UNDERSTOOD.contains(&name.as_str()) || LAYERS.contains(&name.as_str());
+            let name = name.as_str();
+            let compressed = cfg!(feature = "compressed") && COMPRESSED.contains(&name);
+            let known = compressed || UNDERSTOOD.contains(&name) || LAYERS.contains(&name);
+            let name = &name.to_owned();
             if !known && !unknown.contains(name) {
                 unknown.push(name.clone());
             }
@@ -154,9 +162,8 @@ mod tests {
             ["the file uses A, which is not supported; it is shown without; \
               of KHR_materials_sheen the surface below is shown"]
         );
-        assert!(
-            check(&[], &["KHR_draco_mesh_compression"]).unwrap_err().contains("KHR_draco_mesh_compression")
-        );
+        assert!(check(&[], &["EXT_mesh_things"]).unwrap_err().contains("EXT_mesh_things"));
+        assert_eq!(check(&[], &["KHR_draco_mesh_compression"]).is_ok(), cfg!(feature = "compressed"));
     }
 
     #[test]

@@ -6,6 +6,7 @@ use gltf::Semantic;
 use gltf::mesh::Mode;
 
 use super::accessors::{Accessors, Pick};
+use super::draco::{self, Geometry};
 use super::materials::label;
 use crate::geometry::{self, Topology};
 use crate::model::{Influence, Mesh, MorphDelta, Primitive, Scene, Vertex};
@@ -30,7 +31,7 @@ pub fn read(document: &gltf::Document, accessors: &Accessors, scene: &mut Scene)
                     continue;
                 }
             };
-            let read = read_primitive(primitive, topology, accessors, scene)
+            let read = read_primitive(document, primitive, topology, accessors, scene)
                 .map_err(|problem| format!("mesh {name}: {problem}"))?;
             if !read.indices.is_empty() {
                 primitives.push(read);
@@ -49,6 +50,8 @@ pub fn read(document: &gltf::Document, accessors: &Accessors, scene: &mut Scene)
 struct Reader<'a> {
     source: gltf::Primitive<'a>,
     accessors: &'a Accessors<'a>,
+    /// Decoded geometry, where the file holds it compressed.
+    draco: Option<Geometry>,
     /// Vertices in the file.
     count: usize,
     /// Vertices that a triangle uses.
@@ -56,17 +59,25 @@ struct Reader<'a> {
 }
 
 fn read_primitive(
+    document: &gltf::Document,
     source: gltf::Primitive,
     topology: Topology,
     accessors: &Accessors,
     scene: &Scene,
 ) -> Result<Primitive, String> {
-    let count = source.get(&Semantic::Positions).ok_or("it has no positions")?.count();
-    let mut indices = read_indices(&source, topology, count, accessors)?;
+    let positions = source.get(&Semantic::Positions).ok_or("it has no positions")?;
+    let mut draco = draco::read(document, &source, accessors)?;
+    let count = draco.as_ref().map_or(positions.count(), |geometry| geometry.count);
+    let mut indices = match &mut draco {
+        Some(geometry) => {
+            triangles(Topology::List, &std::mem::take(&mut geometry.indices), count, accessors)?
+        }
+        None => read_indices(&source, topology, count, accessors)?,
+    };
     let kept = compact(&mut indices, count);
     let used = kept.as_deref().map_or(Pick::All, Pick::These);
     let material = source.material().index().unwrap_or(scene.materials.len() - 1);
-    let reader = Reader { source, accessors, count, used };
+    let reader = Reader { source, accessors, draco, count, used };
     let mut primitive = Primitive { indices, material, ..Primitive::default() };
     let positions = reader.attribute(Semantic::Positions, &[3], [0.0; 3])?.unwrap_or_default();
     let normals = reader.attribute(Semantic::Normals, &[3], [0.0; 3])?;
@@ -107,11 +118,21 @@ fn read_indices(
             (0..count as u32).collect()
         }
     };
+    triangles(topology, &indices, count, accessors)
+}
+
+/// The triangles of checked indices of `count` vertices.
+fn triangles(
+    topology: Topology,
+    indices: &[u32],
+    count: usize,
+    accessors: &Accessors,
+) -> Result<Vec<u32>, String> {
     if let Some(bad) = indices.iter().find(|i| **i as usize >= count) {
         return Err(format!("it has an index {bad} but only {count} vertices"));
     }
     accessors.budget.take(indices.len(), 3 * size_of::<u32>())?;
-    Ok(geometry::triangle_list(topology, &indices))
+    Ok(geometry::triangle_list(topology, indices))
 }
 
 /// Makes indices count only the vertices that they use, and yields these in ascending order; `None` where all
@@ -145,6 +166,12 @@ impl Reader<'_> {
         default: [f32; N],
     ) -> Result<Option<Vec<[f32; N]>>, String> {
         let Some(accessor) = self.source.get(&semantic) else { return Ok(None) };
+        if let Some(geometry) = &self.draco
+            && let Some(floats) =
+                geometry.floats(&semantic.to_string(), &accessor, widths, self.accessors, self.used)?
+        {
+            return Ok(Some(floats.arrays(default)));
+        }
         if accessor.count() != self.count {
             return Err(format!("its {semantic:?} are not as many as its positions"));
         }
@@ -153,16 +180,13 @@ impl Reader<'_> {
 
     fn influences(&self, primitive: &mut Primitive, vertices: usize) -> Result<(), String> {
         let mut sets = Vec::new();
-        let semantics = |set: usize| (Semantic::Joints(set as u32), Semantic::Weights(set as u32));
         loop {
-            let (joints, weights) = semantics(sets.len());
+            let set = sets.len() as u32;
+            let (joints, weights) = (Semantic::Joints(set), Semantic::Weights(set));
             let (Some(joints), Some(_)) = (self.source.get(&joints), self.source.get(&weights)) else {
                 break;
             };
-            if joints.count() != self.count {
-                return Err("its joints or weights are not as many as its positions".into());
-            }
-            let joints = self.accessors.integers(&joints, 4, self.used)?;
+            let joints = self.joints(set, &joints)?;
             sets.push((joints, self.attribute(weights, &[4], [0.0; 4])?.unwrap_or_default()));
         }
         self.accessors.budget.take(vertices, sets.len() * size_of::<Influence>())?;
@@ -183,6 +207,20 @@ impl Reader<'_> {
             }
         }
         Ok(())
+    }
+
+    /// Four joints of every used vertex.
+    fn joints(&self, set: u32, accessor: &gltf::Accessor) -> Result<Vec<u32>, String> {
+        if let Some(geometry) = &self.draco
+            && let Some(joints) =
+                geometry.integers(&Semantic::Joints(set).to_string(), 4, self.accessors, self.used)?
+        {
+            return Ok(joints);
+        }
+        if accessor.count() != self.count {
+            return Err("its joints or weights are not as many as its positions".into());
+        }
+        self.accessors.integers(accessor, 4, self.used)
     }
 
     fn morph_targets(&self, primitive: &mut Primitive, vertices: usize) -> Result<(), String> {

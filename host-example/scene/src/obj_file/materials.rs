@@ -14,7 +14,7 @@ use crate::decode::{DecodeProblem, FORMATS, decode};
 use crate::material::{AlphaMode, Image, Material, Sampler, Texture, TextureUse, Wrap};
 use crate::model::Scene;
 use crate::references::Folders;
-use crate::texels::combined;
+use crate::texels::{combined, normals_of};
 use isophote_files::error::{Error, Result};
 
 /// Colour of surfaces that say nothing about it.
@@ -184,7 +184,8 @@ impl<'a> Loader<'a> {
         Some(self.texture_use(image, &map))
     }
 
-    /// Texture of normals, and what multiplies them. Many exporters name it as that of bumps.
+    /// Texture of normals, and what multiplies them. Many exporters name it as that of bumps, which are heights by the
+    /// format.
     fn normals(&mut self, source: &Definition) -> (Option<TextureUse>, f32) {
         if let Some((image, map)) = self.map(source, Kind::Normals) {
             return (Some(self.texture_use(image, &map)), map.bumps);
@@ -193,11 +194,12 @@ impl<'a> Loader<'a> {
         if holds_normals(&self.scene.images[image]) {
             return (Some(self.texture_use(image, &map)), map.bumps);
         }
-        let name = &source.maps[&Kind::Bumps].name;
-        self.scene
-            .warnings
-            .push(format!("texture '{name}' holds heights, which are not read here; it is left out"));
-        (None, 1.0)
+        let channel = map.channel.map_or('l', |letter| letter.to_ascii_lowercase());
+        let how = format!("heights {} {} {channel}", map.bumps, map.clamp);
+        let made = self.make(Some(image), None, &how, |images, budget| {
+            normals_of(images[0], map.bumps, map.clamp, |texel| single(texel, channel), budget)
+        });
+        (made.map(|image| self.texture_use(image, &map)), 1.0)
     }
 
     fn plain_use(&mut self, source: &Definition, kind: Kind) -> Option<TextureUse> {
@@ -216,13 +218,26 @@ impl<'a> Loader<'a> {
         TextureUse { transform: map.transform(), ..TextureUse::plain(texture) }
     }
 
-    /// An image that is made of one or two others, of which a missing one is white.
+    /// An image that is made of the texels of one or two others, of which a missing one is white.
     fn combine(
         &mut self,
         first: Option<usize>,
         second: Option<usize>,
         how: &str,
         combine: impl Fn([u8; 4], [u8; 4]) -> [u8; 4],
+    ) -> Option<usize> {
+        self.make(first, second, how, |[first, second], budget| {
+            combined(first.name.clone(), first, second, budget, combine)
+        })
+    }
+
+    /// An image that is made of one or two others, of which a missing one is white. It has the name of the first.
+    fn make(
+        &mut self,
+        first: Option<usize>,
+        second: Option<usize>,
+        how: &str,
+        make: impl FnOnce([&Image; 2], &Budget) -> std::result::Result<Image, String>,
     ) -> Option<usize> {
         let key = (first, second, how.to_owned());
         if let Some(made) = self.made.get(&key) {
@@ -231,9 +246,9 @@ impl<'a> Loader<'a> {
         let white = Image::solid("white", [255; 4]);
         let image = |index: Option<usize>| index.map_or(&white, |index| &self.scene.images[index]);
         let name = image(first.or(second)).name.clone();
-        match combined(name, image(first), image(second), self.budget, combine) {
+        match make([image(first), image(second)], self.budget) {
             Ok(image) => {
-                self.scene.images.push(image);
+                self.scene.images.push(Image { name, ..image });
                 self.made.insert(key, self.scene.images.len() - 1);
                 Some(self.scene.images.len() - 1)
             }

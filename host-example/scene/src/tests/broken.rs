@@ -98,8 +98,8 @@ const STRUCTURE: [Change; 12] = [
             "count": 1, "indices": {"bufferView": indices, "componentType": U8}, "values": {"bufferView": values}
         });
     }),
-    ("geometry in an unknown extension", "KHR_draco_mesh_compression", |b| {
-        b.json["extensionsRequired"] = json!(["KHR_draco_mesh_compression"]);
+    ("geometry in an unknown extension", "EXT_mesh_things", |b| {
+        b.json["extensionsRequired"] = json!(["EXT_mesh_things"]);
     }),
     ("version 1", "version 1", |b| b.json["asset"]["version"] = json!("1.0")),
     ("animation of an unknown node", "target that does not exist", |b| animate(b, 0, 7)),

@@ -4,5 +4,6 @@ mod bounds;
 mod broken;
 pub(crate) mod build;
 mod cases;
+mod compressed;
 mod gltf;
 mod obj;

@@ -226,6 +226,33 @@ fn metals_emission_and_normals_come_from_the_mtl() {
 }
 
 #[test]
+fn heights_become_normals() {
+    let obj = format!("mtllib a.mtl\n{TRIANGLE}vt 0 0\nvt 1 0\nvt 0 1\nusemtl wall\nf 1/1 2/2 3/3\n");
+    for (options, [right, up]) in
+        [("", [-1, 1]), ("-bm 0", [0, 0]), ("-bm 8 -mm 0 0.5", [-1, 1]), ("-imfchan b", [1, 0])]
+    {
+        let mtl = format!("newmtl wall\nmap_Bump -clamp on {options} heights.png\n");
+        // It rises to the right and down, but blue falls to the right.
+        let heights = image::RgbImage::from_fn(16, 16, |x, y| {
+            let height = (x * 6 + y * 9) as u8;
+            image::Rgb([height, height, 200 - x as u8 * 8])
+        });
+        let mut bytes = std::io::Cursor::new(Vec::new());
+        heights.write_to(&mut bytes, image::ImageFormat::Png).unwrap();
+        let files: [(&str, &[u8]); 3] =
+            [("a.obj", obj.as_bytes()), ("a.mtl", mtl.as_bytes()), ("heights.png", bytes.get_ref())];
+        let scene = load(&files, None).unwrap();
+        assert!(scene.warnings.is_empty(), "{:?}", scene.warnings);
+        let primitive = scene.primitive(&scene.draws[0]);
+        let use_ = scene.materials[primitive.material].normal_texture.expect("a texture of normals");
+        let image = &scene.images[scene.textures[use_.texture].image.unwrap()];
+        let [r, g, b, a] = image.rgba.as_chunks::<4>().0[8 * 16 + 8].map(i32::from);
+        assert_eq!([(r - 128).signum(), (g - 128).signum()], [right, up], "{options}: {r} {g} {b}");
+        assert!(b > 240 && a == 255, "{options}: {b}");
+    }
+}
+
+#[test]
 fn smoothing_groups_reach_into_other_materials() {
     let roof =
         "v -1 0 0\nv 0 0 0\nv 0 0 1\nv -1 0 1\nv 0 -1 0\nv 0 -1 1\nS\nf 1 4 3 2\nusemtl b\nf 2 3 6 5\n";
