@@ -17,6 +17,8 @@ struct Params {
     epsilon: f32,
     /// Steepness of the ramp, per unit of L.
     phi: f32,
+    /// Share of the paper that shows through lines, which are narrower than a pixel; 0 where they are not.
+    faintness: f32,
     /// Weights at distance 0, 1, ... for standard deviation sigma.
     narrow: array<vec4f, 64>,
     /// Weights for standard deviation k sigma.
@@ -51,7 +53,7 @@ fn main(@builtin(global_invocation_id) id: vec3u) {
     var result = edge_uncovered(params.threshold);
     if min(sum.y, sum.w) > LEAST_COVERAGE {
         let u = dog_of_sums(sum.xy, sum.zw, params.base, params.edge);
-        result = edge_threshold(u, params.threshold, params.epsilon, params.phi);
+        result = edge_of_response(u, params.threshold, params.epsilon, params.phi, params.faintness);
     }
     if !outside(id) {
         textureStore(target_image, vec2i(id.xy), vec4f(result));

@@ -20,6 +20,8 @@ struct Params {
     epsilon: f32,
     /// Steepness of the ramp, per unit of L.
     phi: f32,
+    /// Share of the paper that shows through lines, which are narrower than a pixel; 0 where they are not.
+    faintness: f32,
 }
 
 #params
@@ -74,5 +76,5 @@ fn main(@builtin(global_invocation_id) id: vec3u) {
     if share <= 0.0 {
         result = edge_threshold(own, params.threshold, params.epsilon, params.phi);
     }
-    textureStore(target_image, vec2i(id.xy), vec4f(result));
+    textureStore(target_image, vec2i(id.xy), vec4f(fainter(result, params.faintness)));
 }

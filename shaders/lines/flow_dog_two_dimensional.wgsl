@@ -28,6 +28,8 @@ struct Params {
     epsilon: f32,
     /// Steepness of the ramp, per unit of L.
     phi: f32,
+    /// Share of the paper that shows through lines, which are narrower than a pixel; 0 where they are not.
+    faintness: f32,
 }
 
 #params
@@ -101,6 +103,6 @@ fn main(@builtin(global_invocation_id) id: vec3u) {
             sum += exp2(falloff * u * u) * across(line.position, stream_tangent(field, 1u, line.position));
         }
     }
-    let edge = edge_of_sum(sum, params.threshold, params.epsilon, params.phi);
+    let edge = edge_of_sum(sum, params.threshold, params.epsilon, params.phi, params.faintness);
     textureStore(target_image, vec2i(id.xy), vec4f(edge));
 }

@@ -27,6 +27,17 @@ fn edge_threshold(u: f32, kind: u32, epsilon: f32, phi: f32) -> f32 {
     return 2.0 * t * t * (3.0 - 2.0 * t);
 }
 
+// An edge image through whose lines a share of the paper shows; the same to the bit for none.
+fn fainter(edge: f32, faintness: f32) -> f32 {
+    return edge + (1.0 - edge) * faintness;
+}
+
+// The edge image of response u, its lines as faint as they are to be.
+fn edge_of_response(u: f32, kind: u32, epsilon: f32, phi: f32, faintness: f32) -> f32 {
+    let edge = edge_threshold(u, kind, epsilon, phi);
+    return select(fainter(edge, faintness), edge, kind == 0u || kind == 4u);
+}
+
 // The edge image where no covered pixel contributes: paper.
 fn edge_uncovered(kind: u32) -> f32 {
     if kind == 4u {
@@ -36,9 +47,9 @@ fn edge_uncovered(kind: u32) -> f32 {
 }
 
 // The edge image of a weighted sum of (u alpha, alpha); paper where no covered pixel contributes.
-fn edge_of_sum(sum: vec2f, kind: u32, epsilon: f32, phi: f32) -> f32 {
+fn edge_of_sum(sum: vec2f, kind: u32, epsilon: f32, phi: f32, faintness: f32) -> f32 {
     if sum.y > LEAST_COVERAGE {
-        return edge_threshold(sum.x / sum.y, kind, epsilon, phi);
+        return edge_of_response(sum.x / sum.y, kind, epsilon, phi, faintness);
     }
     return edge_uncovered(kind);
 }

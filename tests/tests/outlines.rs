@@ -1,11 +1,13 @@
 //! Lines where geometry breaks: silhouettes and creases that a renderer knows of are drawn, whatever lies behind them, and
-//! on plain forms nothing else is.
+//! on plain forms nothing else is. At every size of the picture they are all there, as are those that colours draw.
 
 use isophote::Request;
 use isophote::request::Guides;
-use isophote_engine::Image;
+use isophote_engine::cpu::Control;
+use isophote_engine::{Image, Plan, Rect};
+use isophote_tests::pictures::from_fn;
 use isophote_tests::scenery::forms;
-use isophote_tests::{png, run};
+use isophote_tests::{device, png, run};
 
 /// A style, its parameters without tones, and whether a luma is of a line.
 type Style = (&'static str, &'static [(&'static str, &'static str)], fn(f32) -> bool);
@@ -107,5 +109,216 @@ fn no_line_is_without_cause() {
         let caused = all.iter().filter(|p| is_near(&causes, width, height, **p, 3.0)).count();
         let precision = caused as f32 / all.len() as f32;
         assert!(precision >= 0.95, "{}: {precision:.3} of {} line pixels", style.0, all.len());
+    }
+}
+
+/// Line filter, and how it is told to draw no lines.
+#[derive(Clone, Copy)]
+struct Lines {
+    id: &'static str,
+    params: &'static [(&'static str, &'static str)],
+    none: &'static [(&'static str, &'static str)],
+}
+
+const GUIDES_OFF: &[(&str, &str)] = &[("outline_width", "0"), ("crease_width", "0")];
+
+/// Paper without marks and grain, which would hide lines.
+const BARE: (&str, &str) = ("shading", "0");
+const SMOOTH: (&str, &str) = ("grain", "0");
+
+/// All that draw lines by guides.
+const GUIDED: [Lines; 10] = [
+    Lines { id: "cartoon", params: &[], none: GUIDES_OFF },
+    Lines { id: "blueprint", params: &[], none: GUIDES_OFF },
+    Lines { id: "ink", params: &[("style", "ink"), BARE, SMOOTH], none: GUIDES_OFF },
+    Lines { id: "ink", params: &[("style", "pencil"), BARE, SMOOTH], none: GUIDES_OFF },
+    Lines { id: "ink", params: &[("style", "charcoal"), BARE, SMOOTH], none: GUIDES_OFF },
+    Lines { id: "ink", params: &[("style", "woodcut"), BARE, SMOOTH], none: GUIDES_OFF },
+    Lines { id: "ink", params: &[("style", "pastel"), BARE, SMOOTH], none: GUIDES_OFF },
+    Lines { id: "flow_dog", params: &[("guide_weight", "1")], none: &[("guide_weight", "0")] },
+    Lines {
+        id: "flow_dog",
+        params: &[("guide_weight", "1"), ("integrator", "cabral_leedom")],
+        none: &[("guide_weight", "0")],
+    },
+    Lines {
+        id: "flow_dog",
+        params: &[("guide_weight", "1"), ("kernel", "two_dimensional"), ("iterations", "2")],
+        none: &[("guide_weight", "0")],
+    },
+];
+
+const COLOURS_OFF: &[(&str, &str)] = &[("texture_lines", "0")];
+const EDGES_OFF: &[(&str, &str)] = &[("tau", "0")];
+const HEIGHTS_OFF: &[(&str, &str)] = &[("low", "200"), ("high", "200")];
+
+/// All that draw lines where colours differ.
+const COLOURED: [Lines; 12] = [
+    Lines { id: "cartoon", params: &[], none: COLOURS_OFF },
+    Lines { id: "cartoon", params: &[("line_filter", "isotropic")], none: &[("line_amount", "0")] },
+    Lines { id: "blueprint", params: &[], none: COLOURS_OFF },
+    Lines { id: "ink", params: &[("style", "ink"), BARE, SMOOTH], none: COLOURS_OFF },
+    Lines { id: "ink", params: &[("style", "pencil"), BARE, SMOOTH], none: COLOURS_OFF },
+    Lines { id: "ink", params: &[("style", "charcoal"), BARE, SMOOTH], none: COLOURS_OFF },
+    Lines { id: "ink", params: &[("style", "woodcut"), BARE, SMOOTH], none: COLOURS_OFF },
+    Lines { id: "flow_dog", params: &[], none: EDGES_OFF },
+    Lines { id: "difference_of_gaussians", params: &[], none: EDGES_OFF },
+    Lines { id: "edge_detector", params: &[], none: HEIGHTS_OFF },
+    Lines { id: "edge_detector", params: &[("method", "sobel")], none: HEIGHTS_OFF },
+    Lines { id: "edge_detector", params: &[("method", "log_zero_crossing")], none: HEIGHTS_OFF },
+];
+
+/// A disc in a picture whose lengths are those of one 1080 lines high, cut to what lies around it. Tall pictures show a
+/// smaller disc: lines do not know how far they go.
+#[derive(Clone, Copy)]
+struct Disc {
+    scale: f32,
+    side: u32,
+    centre: [f32; 2],
+    radius: f32,
+}
+
+impl Disc {
+    fn of(height: u32) -> Self {
+        let radius = (0.31 * height as f32).min(if height > 1080 { 90.0 } else { 45.0 });
+        let side = 2 * (1.2 * radius + 6.0) as u32;
+        let centre = [0.5 * side as f32 + 0.3, 0.5 * side as f32 + 0.2];
+        Self { scale: height as f32 / 1080.0, side, centre, radius }
+    }
+
+    fn has(&self, x: i32, y: i32) -> bool {
+        self.distance(x, y) < self.radius
+    }
+
+    fn distance(&self, x: i32, y: i32) -> f32 {
+        (x as f32 + 0.5 - self.centre[0]).hypot(y as f32 + 0.5 - self.centre[1])
+    }
+
+    /// The disc as `guide` tells of it, or the colours alone.
+    fn inputs(&self, guide: &str) -> Vec<(&'static str, Image)> {
+        let scalar = |inside, outside| {
+            from_fn(self.side, self.side, move |x, y| [if self.has(x, y) { inside } else { outside }])
+        };
+        let grey = |inside: f32, outside: f32| {
+            from_fn(self.side, self.side, move |x, y| {
+                let v = if self.has(x, y) { inside } else { outside };
+                [v, v, v, 1.0]
+            })
+        };
+        match guide {
+            "depth" => vec![("color", grey(0.5, 0.5)), ("depth", scalar(5.0, 0.0))],
+            "object_id" => vec![("color", grey(0.8, 0.8)), ("object_id", scalar(3.0, 1.0))],
+            "normal" => {
+                let tilted = |x, y| [if self.has(x, y) { 0.6 } else { -0.6 }, 0.0, 0.8, 1.0];
+                vec![("color", grey(0.5, 0.5)), ("normal", from_fn(self.side, self.side, tilted))]
+            }
+            _ => vec![("color", grey(0.9, 0.4))],
+        }
+    }
+
+    /// Share of the outline at which something differs visibly within a pixel and a half, and how much differs per pixel
+    /// of the outline.
+    fn drawn(&self, with: &Image, without: &Image) -> [f32; 2] {
+        let channels = with.channels() as usize;
+        let luma = |image: &Image, x, y| match channels {
+            1 => image.pixel(x, y)[0],
+            _ => image.pixel(x, y)[..3].iter().sum::<f32>() / 3.0,
+        };
+        let differs = |x, y| (luma(with, x, y) - luma(without, x, y)).abs();
+        const POINTS: usize = 360;
+        let is_drawn = |point: &usize| {
+            let (sin, cos) = (*point as f32 / POINTS as f32 * std::f32::consts::TAU).sin_cos();
+            let (px, py) =
+                (self.radius.mul_add(cos, self.centre[0]), self.radius.mul_add(sin, self.centre[1]));
+            (-2..=2).any(|dy| {
+                (-2..=2).any(|dx| {
+                    let (x, y) = (px.floor() as i32 + dx, py.floor() as i32 + dy);
+                    (x as f32 + 0.5 - px).hypot(y as f32 + 0.5 - py) <= 1.5 && differs(x, y) >= 12.0 / 255.0
+                })
+            })
+        };
+        let drawn = (0..POINTS).filter(is_drawn).count();
+        let side = self.side as i32;
+        let all = (0..side).flat_map(|y| (0..side).map(move |x| differs(x, y))).sum::<f32>();
+        [drawn as f32 / POINTS as f32, all / (std::f32::consts::TAU * self.radius)]
+    }
+
+    /// The plan of a filter for what enters.
+    fn plan(&self, lines: Lines, inputs: &[(&'static str, Image)], off: bool) -> Plan {
+        let has = |name: &str| inputs.iter().any(|(input, _)| *input == name);
+        let guides = Guides {
+            normal: has("normal"),
+            depth: has("depth"),
+            object_id: has("object_id"),
+            ..Guides::default()
+        };
+        let request = Request { guides, scale: self.scale, ..Request::new(self.side, self.side) };
+        let params: Vec<_> = lines.params.iter().chain(lines.none.iter().filter(|_| off)).copied().collect();
+        run::planned(&run::single(lines.id, &params), request).plan().clone()
+    }
+}
+
+/// What `run` gives for a disc at a height, of which all must be drawn.
+fn all_drawn(
+    lines: Lines,
+    guide: &str,
+    height: u32,
+    run: &mut dyn FnMut(&Plan, &[(&str, Image)]) -> Image,
+) -> f32 {
+    let disc = Disc::of(height);
+    let inputs = disc.inputs(guide);
+    let [with, without] = [false, true].map(|off| run(&disc.plan(lines, &inputs, off), &inputs));
+    let [drawn, ink] = disc.drawn(&with, &without);
+    let name = format!("{} {:?}, {guide}, {height} lines", lines.id, lines.params);
+    println!("{name}: {:.0} %, {ink:.2}", 100.0 * drawn);
+    assert!(drawn >= 1.0, "{name}: {:.1} % drawn", 100.0 * drawn);
+    ink
+}
+
+/// Heights of pictures from thumbnails to 8K; the largest are left to the filters themselves.
+const HEIGHTS: [u32; 10] = [90, 180, 270, 360, 480, 540, 720, 1080, 2160, 4320];
+
+fn heights(id: &str) -> impl Iterator<Item = u32> + use<'_> {
+    let is_style = ["cartoon", "blueprint", "ink"].contains(&id);
+    HEIGHTS.into_iter().filter(move |height| *height <= 1080 || !is_style)
+}
+
+#[test]
+fn lines_of_guides_are_drawn_at_every_size() {
+    for lines in GUIDED {
+        for guide in ["depth", "object_id", "normal"] {
+            let run = &mut |plan: &Plan, inputs: &[(&str, Image)]| run::whole(plan, inputs);
+            let ink: Vec<f32> =
+                heights(lines.id).map(|height| all_drawn(lines, guide, height, run)).collect();
+            // Lines that are narrower than a pixel are the lighter the narrower they are to be.
+            assert!(ink[0] <= ink[1] * 1.02 && ink[1] < ink[3], "{} {guide}: {ink:?}", lines.id);
+        }
+    }
+}
+
+#[test]
+fn lines_of_colours_are_drawn_at_every_size() {
+    for lines in COLOURED {
+        for height in heights(lines.id) {
+            all_drawn(lines, "", height, &mut |plan, inputs| run::whole(plan, inputs));
+        }
+    }
+}
+
+#[test]
+fn devices_draw_all_lines_of_small_pictures() {
+    let Some(mut gpu) = device::executor("outlines") else { return };
+    let mut run = |plan: &Plan, inputs: &[(&str, Image)]| {
+        let inputs: Vec<(&str, &Image)> = inputs.iter().map(|(name, image)| (*name, image)).collect();
+        let [width, height] = plan.size();
+        gpu.run_images(plan, &inputs, Rect::of_size(width, height), Control::default()).unwrap().remove(0)
+    };
+    for height in [90, 240] {
+        for lines in [GUIDED[0], GUIDED[1], GUIDED[2], GUIDED[8], GUIDED[9]] {
+            all_drawn(lines, "depth", height, &mut run);
+        }
+        for lines in [COLOURED[1], COLOURED[9]] {
+            all_drawn(lines, "", height, &mut run);
+        }
     }
 }

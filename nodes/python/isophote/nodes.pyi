@@ -72,7 +72,8 @@ def blueprint(
 
     Parameters:
         line_width: Width of lines: scales `sigma_e` by width / 2 and, above 2, `sigma_m` by its
-            root, so that wide lines do not break. 0.2 to 40 px.
+            root, so that wide lines do not break. None is narrower than a pixel of the picture: it
+            is lighter instead. 0.2 to 40 px.
         line_amount: How many lines: 0 draws none, 1 draws them at faint edges too; scales 1 -
             `tau`. 0 to 1.
         suppress_small: Drops short and weak lines: lengthens `sigma_m` by up to 0.8 of it and
@@ -98,7 +99,8 @@ def blueprint(
             to 16.
         sigma_d: Spatial standard deviation of the bilateral filter. 0.1 to 20 px.
         sigma_r: Standard deviation of the bilateral filter in range, CIELAB units. 0.1 to 200.
-        sigma_e: Standard deviation of the narrower Gaussian; sets the width of lines (4.5). 0.1 to
+        sigma_e: Standard deviation of the narrower Gaussian; sets the width of lines (4.5). Half a
+            pixel of the picture at least: lines that are to be narrower are lighter instead. 0.1 to
             20 px.
         k: Ratio of the two standard deviations (4.5); 1.6 after Marr and Hildreth. 1.01 to 4.
         sigma_m: Standard deviation of the smoothing along the edges; longer lines and less noise. 0
@@ -196,7 +198,8 @@ def cartoon(
 
     Parameters:
         line_width: Width of lines: scales `sigma_e` by width / 2 and, above 2, `sigma_m` by its
-            root, so that wide lines do not break. 0.2 to 40 px.
+            root, so that wide lines do not break. None is narrower than a pixel of the picture: it
+            is lighter instead. 0.2 to 40 px.
         line_amount: How many lines: 0 draws none, 1 draws them at faint edges too; scales 1 -
             `tau`. 0 to 1.
         suppress_small: Drops short and weak lines: lengthens `sigma_m` by up to 0.8 of it and
@@ -226,7 +229,8 @@ def cartoon(
         n_a: Bilateral iterations behind the colours (n_a). 0 to 16.
         sigma_d: Spatial standard deviation of the bilateral filter. 0.1 to 20 px.
         sigma_r: Standard deviation of the bilateral filter in range, CIELAB units. 0.1 to 200.
-        sigma_e: Standard deviation of the narrower Gaussian; sets the width of lines (4.5). 0.1 to
+        sigma_e: Standard deviation of the narrower Gaussian; sets the width of lines (4.5). Half a
+            pixel of the picture at least: lines that are to be narrower are lighter instead. 0.1 to
             20 px.
         k: Ratio of the two standard deviations (4.5); 1.6 after Marr and Hildreth. 1.01 to 4.
         sigma_m: Standard deviation of the smoothing along the edges; longer lines and less noise. 0
@@ -637,7 +641,8 @@ def ink(
 
     Parameters:
         style: What is drawn with; sets every technical value.
-        line_width: Width of lines; 2 is the style's own. 0.2 to 40 px.
+        line_width: Width of lines; 2 is the style's own. None is narrower than a pixel of the
+            picture: it is lighter instead. 0.2 to 40 px.
         line_amount: How many lines: 0 leaves masses and shading alone, 1 draws faint edges too;
             scales p (4.10). 0 to 1.
         suppress_small: Drops short and weak lines: lengthens the smoothing along lines by up to 0.8
@@ -1237,11 +1242,13 @@ def difference_of_gaussians(
         image: The picture.
 
     Parameters:
-        sigma_e: Standard deviation of the narrower Gaussian; sets the width of lines (4.5). 0.1 to
+        sigma_e: Standard deviation of the narrower Gaussian; sets the width of lines (4.5). Half a
+            pixel of the picture at least: lines that are to be narrower are lighter instead. 0.1 to
             20 px.
         k: Ratio of the two standard deviations (4.5); 1.6 after Marr and Hildreth. 1.01 to 4.
         form: Which parameters count: `tau`, `epsilon`, `phi` (4.7, 4.8), or `p`, `epsilon_p`,
-            `phi_p` (4.10).
+            `phi_p` (4.10). In the latter, which has areas of ink, lines narrower than a pixel do
+            not get lighter.
         tau: Weight of the wider Gaussian (4.7); the nearer to 1, the weaker the edges that draw a
             line. 0 to 1.
         epsilon: Response, in units of L, from which on there is no line (4.8). -100 to 100.
@@ -1271,9 +1278,9 @@ def edge_detector(
 ) -> Array:
     """Edge detector. Edges of the lightness by classical detectors: Canny's (maxima of the gradient,
     joined by hysteresis), the thresholded Sobel operator, or zero crossings of the Laplacian of
-    Gaussian. 1 is paper, 0 is line. Lines are one pixel of the full-size picture wide. Thresholds
-    are heights: a step between two pixels counts by the L that it rises, whatever `sigma` makes of
-    it. (thesis § 4.1, 4.2.1)
+    Gaussian. 1 is paper, 0 is line. Lines are one pixel of the full-size picture wide; smaller
+    renderings show them lighter, three tenths dark at least. Thresholds are heights: a step between
+    two pixels counts by the L that it rises, whatever `sigma` makes of it. (thesis § 4.1, 4.2.1)
 
     Inputs:
         image: The picture.
@@ -1341,13 +1348,15 @@ def flow_dog(
             it the frames that follow count for nothing.
 
     Parameters:
-        sigma_e: Standard deviation of the narrower Gaussian; sets the width of lines (4.5). 0.1 to
+        sigma_e: Standard deviation of the narrower Gaussian; sets the width of lines (4.5). Half a
+            pixel of the picture at least: lines that are to be narrower are lighter instead. 0.1 to
             20 px.
         k: Ratio of the two standard deviations (4.5); 1.6 after Marr and Hildreth. 1.01 to 4.
         sigma_m: Standard deviation of the smoothing along the edges; longer lines and less noise. 0
             to 60 px.
         form: Which parameters count: `tau`, `epsilon`, `phi` (4.7, 4.8), or `p`, `epsilon_p`,
-            `phi_p` (4.10).
+            `phi_p` (4.10). In the latter, which has areas of ink, lines narrower than a pixel do
+            not get lighter.
         tau: Weight of the wider Gaussian (4.7); the nearer to 1, the weaker the edges that draw a
             line. 0 to 1.
         epsilon: Response, in units of L, from which on there is no line (4.8). -100 to 100.

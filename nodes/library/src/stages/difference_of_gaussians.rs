@@ -14,13 +14,13 @@ pub(crate) const EDGES: Port = Port {
 
 pub(crate) const SIGMA_E: Param = Param::length("sigma_e", "Sigma e", 1.0, [0.1, 20.0])
     .slider(0.3, 5.0)
-    .doc("Standard deviation of the narrower Gaussian; sets the width of lines (4.5).");
+    .doc("Standard deviation of the narrower Gaussian; sets the width of lines (4.5). Half a pixel of the picture at least: lines that are to be narrower are lighter instead.");
 pub(crate) const K: Param = Param::float("k", "k", 1.6, [1.01, 4.0])
     .slider(1.1, 3.0)
     .doc("Ratio of the two standard deviations (4.5); 1.6 after Marr and Hildreth.");
 pub(crate) const FORM: Param = Param::choice("form", "Form", Form::Tau.selected())
     .uniform()
-    .doc("Which parameters count: `tau`, `epsilon`, `phi` (4.7, 4.8), or `p`, `epsilon_p`, `phi_p` (4.10).");
+    .doc("Which parameters count: `tau`, `epsilon`, `phi` (4.7, 4.8), or `p`, `epsilon_p`, `phi_p` (4.10). In the latter, which has areas of ink, lines narrower than a pixel do not get lighter.");
 pub(crate) const TAU: Param = Param::float("tau", "Tau", 0.99, [0.0, 1.0])
     .slider(0.9, 1.0)
     .doc("Weight of the wider Gaussian (4.7); the nearer to 1, the weaker the edges that draw a line.");
@@ -51,6 +51,12 @@ choice! {
         /// `p`, `epsilon_p` and `phi_p` (4.10).
         Sharpen ("sharpen", "Sharpen"),
     }
+}
+
+/// True where lines narrower than a pixel are fainter: the sharpening form has areas of ink beside them, which nothing tells
+/// from lines.
+pub(crate) fn fades(scope: &Scope<'_>) -> bool {
+    matches!(scope.option("form"), Form::Tau)
 }
 
 /// Weights and threshold as the parameters above say.

@@ -9,6 +9,7 @@ use crate::kernels::lines::{
 };
 use crate::kernels::shared::edge_threshold::{Threshold, Xdog};
 use crate::kernels::structure::orientation_field;
+use crate::stages::line_width;
 use crate::stages::structure_tensor::of_color_and_guides;
 use crate::stages::tensor_options::{Guides, TensorOptions};
 use isophote_engine::{ImageId, PlanBuilder};
@@ -45,7 +46,8 @@ choice! {
     }
 }
 
-/// Options of lines along the flow; lengths in pixels of the picture that is rendered.
+/// Options of lines along the flow; lengths in pixels of the picture that is rendered. Those of a node pass through
+/// [`FlowDog::on_pixels`].
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct FlowDog {
     pub sigma_e: f32,
@@ -58,11 +60,51 @@ pub(crate) struct FlowDog {
     pub guide_weight: f32,
     /// Weight of the picture's own edges, 0..=1.
     pub texture: f32,
-    /// Widths of creases and of outlines against those of the picture's own lines.
-    pub widths: [f32; 2],
+    /// Creases and outlines.
+    pub guided: [Guided; 2],
+    /// Lines narrower than a pixel are fainter.
+    pub fades: bool,
+}
+
+/// Kind of lines that guides draw.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Guided {
+    /// Standard deviation across them, as `sigma_e` is for the picture's own; 0 draws none.
+    pub sigma: f32,
+    /// Share of the guides' weight.
+    pub strength: f32,
+}
+
+impl Guided {
+    /// Lines of a standard deviation that count in full.
+    pub(crate) const fn new(sigma: f32) -> Self {
+        Self { sigma, strength: 1.0 }
+    }
 }
 
 impl FlowDog {
+    /// The lines as the grid of pixels shows them: none narrower than a pixel, but fainter, as faint as the widest kind of
+    /// them that there is in the picture of `scope`.
+    pub(crate) fn on_pixels(self, scope: &Scope<'_>) -> Self {
+        let guides = guides(scope, self.guide_weight);
+        let own = if self.texture > 0.0 { self.sigma_e } else { 0.0 };
+        let there = [guides.normal.is_some(), guides != Guides::default()];
+        let kinds = self.guided.iter().zip(there).filter(|(_, there)| *there);
+        let widest = kinds.fold(own, |widest, (kind, _)| kind.sigma.max(widest));
+        let widest = if widest > 0.0 { widest } else { self.sigma_e };
+        let faintness = if self.fades { line_width::faintness(widest) } else { 0.0 };
+        let guided = self.guided.map(|Guided { sigma, strength }| Guided {
+            sigma: line_width::drawable(sigma),
+            strength: strength * line_width::strength(sigma, widest),
+        });
+        Self {
+            sigma_e: line_width::drawable(self.sigma_e),
+            xdog: Xdog { faintness, ..self.xdog },
+            guided,
+            ..self
+        }
+    }
+
     /// The edge image of (L alpha, alpha) along the stream lines of `tensor`.
     pub(crate) fn edges(
         &self,
@@ -142,12 +184,13 @@ impl FlowDog {
         self.with_guides(plan, response, field, guides)
     }
 
-    /// Thresholds that give an edge image, which alone can darken the input of the next iteration.
+    /// Thresholds that give an edge image, which alone can darken the input of the next iteration; its lines are not faint.
     fn deciding(&self) -> Xdog {
-        match self.xdog.threshold {
-            Threshold::None => Xdog { threshold: Threshold::Tanh, ..self.xdog },
-            _ => self.xdog,
-        }
+        let threshold = match self.xdog.threshold {
+            Threshold::None => Threshold::Tanh,
+            threshold => threshold,
+        };
+        Xdog { threshold, faintness: 0.0, ..self.xdog }
     }
 
     /// The edge image of (L alpha, alpha) by the difference of Gaussians in all directions alike (§ 4.2).
@@ -189,8 +232,8 @@ impl FlowDog {
             return response;
         }
         let options = guide_lines::Options {
-            sigmas: self.widths.map(|width| self.sigma_e * width),
-            weight: self.guide_weight,
+            sigmas: self.guided.map(|kind| kind.sigma),
+            weights: self.guided.map(|kind| self.guide_weight * kind.strength),
             edge: self.xdog.edge,
         };
         guide_lines::pass(plan, response, field, guides, &options)

@@ -4,13 +4,13 @@ use crate::declare::spec::{Param, Scope};
 use crate::kernels::lines::flow_dog_two_dimensional::Stepping;
 use crate::kernels::shared::edge_threshold::{Threshold, Xdog};
 use crate::kernels::shared::stream::Integrator;
-use crate::stages::flow_dog::{FlowDog, Kernel};
+use crate::stages::flow_dog::{FlowDog, Guided, Kernel};
 use crate::stages::{ADVANCED, LOOK};
 
 pub(crate) const LINE_WIDTH: Param = Param::length("line_width", "Line width", 2.0, [0.2, 40.0])
     .slider(0.8, 10.0)
     .group(LOOK)
-    .doc("Width of lines: scales `sigma_e` by width / 2 and, above 2, `sigma_m` by its root, so that wide lines do not break.");
+    .doc("Width of lines: scales `sigma_e` by width / 2 and, above 2, `sigma_m` by its root, so that wide lines do not break. None is narrower than a pixel of the picture: it is lighter instead.");
 pub(crate) const LINE_AMOUNT: Param = Param::float("line_amount", "Line amount", 0.5, [0.0, 1.0])
     .group(LOOK)
     .doc("How many lines: 0 draws none, 1 draws them at faint edges too; scales 1 - `tau`.");
@@ -95,13 +95,15 @@ pub(crate) fn flow_dog(scope: &Scope<'_>, guide_weight: f32) -> FlowDog {
         kernel: Kernel::Separable,
         guide_weight,
         texture: scope.float(TEXTURE_LINES.id),
-        widths: guide_widths(scope),
+        guided: guided(scope, lines.sigma_e),
+        fades: true,
     }
+    .on_pixels(scope)
 }
 
-/// Widths of creases and of outlines against those of the picture's own lines.
-pub(crate) fn guide_widths(scope: &Scope<'_>) -> [f32; 2] {
-    [scope.float(CREASE_WIDTH.id), scope.float(OUTLINE_WIDTH.id)]
+/// Creases and outlines beside lines of standard deviation `sigma_e`.
+pub(crate) fn guided(scope: &Scope<'_>, sigma_e: f32) -> [Guided; 2] {
+    [CREASE_WIDTH.id, OUTLINE_WIDTH.id].map(|width| Guided::new(sigma_e * scope.float(width)))
 }
 
 /// Factor on the scale of edges for lines `width` pixels of the full picture wide.

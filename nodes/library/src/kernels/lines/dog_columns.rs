@@ -7,7 +7,7 @@
 
 use crate::kernels::lines::dog_rows;
 pub use crate::kernels::shaders::dog_columns::Params;
-use crate::kernels::shared::edge_threshold::{Xdog, dog_of_sums, edge_threshold, edge_uncovered};
+use crate::kernels::shared::edge_threshold::{Xdog, dog_of_sums, edge_of_response, edge_uncovered};
 use crate::kernels::simd::pixels::{BLOCK, read, write};
 use crate::kernels::simd::window_sum::{RUN, flat, sum};
 use isophote_engine::fearless_simd::{Simd, f32x8, f32x16, prelude::*};
@@ -49,6 +49,7 @@ pub fn pass(plan: &mut PlanBuilder, lightness: ImageId, options: &Options) -> Im
         edge: xdog.edge,
         epsilon: xdog.epsilon,
         phi: xdog.phi,
+        faintness: xdog.faintness,
         padding: Default::default(),
         narrow,
         wide,
@@ -101,6 +102,6 @@ fn columns<S: Simd>(simd: S, pass: &CpuPass<'_>, params: &Params, band: &mut Ban
 #[inline(always)]
 fn edge<S: Simd>(simd: S, params: &Params, uncovered: f32, [nl, na, wl, wa]: [f32x8<S>; 4]) -> f32x8<S> {
     let (u, covered) = dog_of_sums([nl, na], [wl, wa], params.base, params.edge);
-    let line = edge_threshold(u, params.threshold, params.epsilon, params.phi);
+    let line = edge_of_response(u, params.threshold, params.epsilon, params.phi, params.faintness);
     covered.select(line, f32x8::splat(simd, uncovered))
 }

@@ -5,7 +5,7 @@
 //! Cost: nine reads and up to 16 exponentials per pixel; few where neither line nor paper is in doubt.
 
 pub use crate::kernels::shaders::edge_area::Params;
-use crate::kernels::shared::edge_threshold::{NOT_COVERED, Xdog, edge_threshold};
+use crate::kernels::shared::edge_threshold::{NOT_COVERED, Xdog, edge_threshold, fainter};
 use crate::kernels::simd::around::rows;
 use crate::kernels::simd::pixels::{BLOCK, Block, read, write};
 use isophote_engine::fearless_simd::{Simd, f32x8, prelude::*};
@@ -50,6 +50,7 @@ pub fn pass(plan: &mut PlanBuilder, response: ImageId, shares: Shares, xdog: &Xd
         threshold: xdog.threshold as u32,
         epsilon: xdog.epsilon,
         phi: xdog.phi,
+        faintness: xdog.faintness,
     };
     plan.pass(&KERNEL, &[response, shares.image, shares.motion], &params, Class::Field, Support::Pixels(1))
 }
@@ -74,7 +75,7 @@ fn areas<S: Simd>(simd: S, pass: &CpuPass<'_>, params: &Params, band: &mut Band<
             let [u, v]: [f32x8<S>; 2] = block.read(simd, &pass.inputs[2]);
             let speed = (u.mul_add(u, v * v).sqrt() * params.inverse_moving).at_most(1.0);
             let share = ((total - 1.0) * params.inverse_most).within(0.0, 1.0) * speed;
-            write([area(params, around, share)], &mut row[at..at + block.len]);
+            write([fainter(area(params, around, share), params.faintness)], &mut row[at..at + block.len]);
         }
     }
 }

@@ -29,7 +29,13 @@ crate::kernel!(flow_dog_cabral_leedom {
 /// The edge image of a `response` (u alpha, alpha): smoothed along the stream lines of `field` (E - G, F) by
 /// standard deviation `sigma` pixels, thresholded as `xdog` says.
 pub fn pass(plan: &mut PlanBuilder, response: ImageId, field: ImageId, sigma: f32, xdog: &Xdog) -> ImageId {
-    let params = Params { sigma, threshold: xdog.threshold as u32, epsilon: xdog.epsilon, phi: xdog.phi };
+    let params = Params {
+        sigma,
+        threshold: xdog.threshold as u32,
+        epsilon: xdog.epsilon,
+        phi: xdog.phi,
+        faintness: xdog.faintness,
+    };
     // No pixel lies farther than the line is long.
     let support = Support::Pixels(half_length(sigma) as u32 + 1);
     plan.pass(&KERNEL, &[response, field], &params, Class::Field, support)
@@ -64,7 +70,8 @@ fn smooth<S: Simd>(simd: S, pass: &CpuPass<'_>, params: &Params, band: &mut Band
                     },
                 );
             }
-            write([edge_of_sums([sum, norm], params.threshold, params.epsilon, params.phi)], target);
+            let Params { threshold, epsilon, phi, faintness, .. } = *params;
+            write([edge_of_sums([sum, norm], threshold, epsilon, phi, faintness)], target);
         },
     );
 }

@@ -68,8 +68,14 @@ fn planned(
     threshold: u32,
 ) -> ImageId {
     let Options { sigma, integrator, xdog } = *options;
-    let params =
-        Params { sigma, integrator: integrator as u32, threshold, epsilon: xdog.epsilon, phi: xdog.phi };
+    let params = Params {
+        sigma,
+        integrator: integrator as u32,
+        threshold,
+        epsilon: xdog.epsilon,
+        phi: xdog.phi,
+        faintness: xdog.faintness,
+    };
     plan.pass(&KERNEL, &[response, field], &params, Class::Field, Support::Pixels(reach(&params) as u32))
 }
 
@@ -186,7 +192,7 @@ impl Smooth<'_> {
     /// The edge image of weighted sums of (u alpha, alpha).
     #[inline(always)]
     fn edge<S: Simd>(&self, sums: [f32x8<S>; 2]) -> f32x8<S> {
-        let Params { threshold, epsilon, phi, .. } = self.params;
-        edge_of_sums(sums, threshold, epsilon, phi)
+        let Params { threshold, epsilon, phi, faintness, .. } = self.params;
+        edge_of_sums(sums, threshold, epsilon, phi, faintness)
     }
 }

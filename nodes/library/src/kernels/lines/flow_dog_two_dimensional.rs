@@ -86,6 +86,7 @@ pub fn pass(plan: &mut PlanBuilder, [lightness, field, marked]: [ImageId; 3], op
         threshold: xdog.threshold as u32,
         epsilon: xdog.epsilon,
         phi: xdog.phi,
+        faintness: xdog.faintness,
     };
     // Along the line, across it, and one pixel for the bilinear sample.
     let support = Support::Pixels(half_length(sigma_m) as u32 + halfwidth as u32 + 2);
@@ -102,7 +103,8 @@ fn run(pass: &CpuPass<'_>, band: &mut Band<'_>) {
     };
     dispatch!(pass.level, simd => for_blocks::<1>(band, #[inline(always)] |block, target| {
         let sums = filter.along(simd, &block);
-        write([edge_of_sums(sums, params.threshold, params.epsilon, params.phi)], target);
+        let edge = edge_of_sums(sums, params.threshold, params.epsilon, params.phi, params.faintness);
+        write([edge], target);
     }));
 }
 

@@ -42,25 +42,22 @@ const AMOUNT: f32 = 22.0;
 const NARROW: f32 = 1.2;
 const WIDE: f32 = 3.0;
 
-/// Narrowest Gaussian, pixels: of a narrower one no tap but the two next to the pixel would have any weight. Lines that
-/// are to be narrower are fainter instead.
-const NARROWEST: f32 = 0.4;
-
 /// Cut-off in standard deviations of the wider Gaussian.
 const PRECISION: f32 = 2.0;
 
 /// Options of lines that guides draw.
 #[derive(Clone, Copy, Debug)]
 pub struct Options {
-    /// Standard deviation of the narrower Gaussian across lines of creases and of outlines, pixels; 0 draws none of them.
+    /// Standard deviation of the narrower Gaussian across lines of creases and of outlines, pixels: half of one at least,
+    /// since of a much narrower one no tap but the two next to the pixel has any weight.
     pub sigmas: [f32; 2],
-    /// Strength of the lines.
-    pub weight: f32,
+    /// Strength of the lines of creases and of outlines; 0 draws none of them.
+    pub weights: [f32; 2],
     /// Weight of the difference of Gaussians in the response, tau or p.
     pub edge: f32,
 }
 
-/// `response` (u alpha, alpha) with lines of strength `weight` where the guides, that is normal, depth
+/// `response` (u alpha, alpha) with lines of strength `weights` where the guides, that is normal, depth
 /// and object id as far as there are any, break; `edge` is the weight of the difference of Gaussians
 /// in the response.
 pub fn pass(
@@ -70,12 +67,11 @@ pub fn pass(
     guides: [Option<ImageId>; 3],
     options: &Options,
 ) -> ImageId {
-    let Options { sigmas, weight, edge } = *options;
+    let Options { sigmas, weights, edge } = *options;
     // A lone break is the fainter the wider it is smoothed.
     let evened = |sigma: f32| if sigma < 1.0 { sigma.sqrt() } else { sigma };
-    let strength = |sigma: f32| (sigma / NARROWEST).clamp(0.0, 1.0) * evened(sigma.clamp(NARROWEST, 100.0));
-    let amount = sigmas.map(|sigma| AMOUNT * weight * edge * strength(sigma));
-    let sigmas = sigmas.map(|sigma| sigma.clamp(NARROWEST, 100.0));
+    let sigmas = sigmas.map(|sigma| sigma.min(100.0));
+    let amount = [0, 1].map(|kind| AMOUNT * weights[kind] * edge * evened(sigmas[kind]));
     let falloff = |factor: f32| sigmas.map(|sigma| -0.5 / (factor * sigma * factor * sigma));
     let halfwidth = sigmas.map(|sigma| PRECISION * WIDE * sigma);
     let steps = (halfwidth[0].max(halfwidth[1]) + 0.5) as i32;

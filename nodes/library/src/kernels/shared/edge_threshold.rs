@@ -33,18 +33,20 @@ pub struct Xdog {
     pub phi: f32,
     /// The curve.
     pub threshold: Threshold,
+    /// Share of the paper that shows through lines, 0..1: those that are to be narrower than a pixel are so much fainter.
+    pub faintness: f32,
 }
 
 impl Xdog {
     /// The original parameters: inhibition `tau` 0..=1 (4.7), level `epsilon`, steepness `phi` (4.8).
     pub fn tau(tau: f32, epsilon: f32, phi: f32, threshold: Threshold) -> Self {
-        Self { base: 1.0 - tau, edge: tau, epsilon, phi, threshold }
+        Self { base: 1.0 - tau, edge: tau, epsilon, phi, threshold, faintness: 0.0 }
     }
 
     /// The sharpening form (4.10): strength `p` = tau / (1 - tau), level and steepness on the scale
     /// of the image.
     pub fn sharpen(p: f32, epsilon: f32, phi: f32, threshold: Threshold) -> Self {
-        Self { base: 1.0, edge: p, epsilon, phi, threshold }
+        Self { base: 1.0, edge: p, epsilon, phi, threshold, faintness: 0.0 }
     }
 }
 
@@ -79,6 +81,19 @@ pub fn edge_threshold<S: Simd>(u: f32x8<S>, kind: u32, epsilon: f32, phi: f32) -
     paper.select(one, below)
 }
 
+/// An edge image through whose lines a share of the paper shows; the same to the bit for none.
+#[inline(always)]
+pub fn fainter<S: Simd>(edge: f32x8<S>, faintness: f32) -> f32x8<S> {
+    edge + (f32x8::splat(edge.simd, 1.0) - edge) * faintness
+}
+
+/// The edge image of response `u`, its lines as faint as they are to be; the response itself where there is no threshold.
+#[inline(always)]
+pub fn edge_of_response<S: Simd>(u: f32x8<S>, kind: u32, epsilon: f32, phi: f32, faintness: f32) -> f32x8<S> {
+    let edge = edge_threshold(u, kind, epsilon, phi);
+    if kind == Threshold::None as u32 || kind == UNDECIDED { edge } else { fainter(edge, faintness) }
+}
+
 /// The edge image where no covered pixel contributes: paper.
 #[inline(always)]
 pub fn edge_uncovered(kind: u32) -> f32 {
@@ -91,10 +106,16 @@ pub fn edge_uncovered(kind: u32) -> f32 {
 
 /// The edge image of weighted sums of (u alpha, alpha); paper where no covered pixel contributes.
 #[inline(always)]
-pub fn edge_of_sums<S: Simd>([sum, norm]: [f32x8<S>; 2], kind: u32, epsilon: f32, phi: f32) -> f32x8<S> {
+pub fn edge_of_sums<S: Simd>(
+    [sum, norm]: [f32x8<S>; 2],
+    kind: u32,
+    epsilon: f32,
+    phi: f32,
+    faintness: f32,
+) -> f32x8<S> {
     let covered = norm.simd_gt(LEAST_COVERAGE);
     let u = sum / covered.select(norm, f32x8::splat(sum.simd, 1.0));
-    let edge = edge_threshold(u, kind, epsilon, phi);
+    let edge = edge_of_response(u, kind, epsilon, phi, faintness);
     covered.select(edge, f32x8::splat(sum.simd, edge_uncovered(kind)))
 }
 

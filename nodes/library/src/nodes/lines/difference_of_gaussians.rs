@@ -4,9 +4,11 @@ use crate::declare::ports;
 use crate::declare::spec::{NodeSpec, Scope};
 use crate::kernels::colour::lightness;
 use crate::kernels::lines::dog_columns::{self, Options};
+use crate::kernels::shared::edge_threshold::Xdog;
 use crate::stages::difference_of_gaussians::{
-    EDGES, EPSILON, EPSILON_P, FORM, K, P, PHI, PHI_P, SIGMA_E, TAU, THRESHOLD, xdog,
+    EDGES, EPSILON, EPSILON_P, FORM, K, P, PHI, PHI_P, SIGMA_E, TAU, THRESHOLD, fades, xdog,
 };
+use crate::stages::line_width;
 use isophote_engine::ImageId;
 
 /// The node.
@@ -25,7 +27,13 @@ pub static NODE: NodeSpec = NodeSpec {
 
 fn build(scope: &mut Scope<'_>) -> ImageId {
     let color = scope.required("color");
-    let options = Options { sigma: scope.float("sigma_e"), k: scope.float("k"), xdog: xdog(scope) };
+    let sigma = scope.float("sigma_e");
+    let faintness = if fades(scope) { line_width::faintness(sigma) } else { 0.0 };
+    let options = Options {
+        sigma: line_width::drawable(sigma),
+        k: scope.float("k"),
+        xdog: Xdog { faintness, ..xdog(scope) },
+    };
     let lightness = lightness::pass(scope.plan, color);
     dog_columns::pass(scope.plan, lightness, &options)
 }

@@ -6,6 +6,7 @@ use crate::kernels::colour::rgb_to_lab;
 use crate::kernels::lines::edge_candidates::{self, Method, Options};
 use crate::kernels::lines::{edge_gradient, edge_hysteresis};
 use crate::stages::difference_of_gaussians as dog;
+use crate::stages::line_width;
 use isophote_engine::ImageId;
 
 /// The node.
@@ -15,7 +16,8 @@ pub static NODE: NodeSpec = NodeSpec {
     group: "lines",
     doc: "Edges of the lightness by classical detectors: Canny's (maxima of the gradient, joined by \
           hysteresis), the thresholded Sobel operator, or zero crossings of the Laplacian of Gaussian. 1 is \
-          paper, 0 is line. Lines are one pixel of the full-size picture wide. Thresholds are heights: a \
+          paper, 0 is line. Lines are one pixel of the full-size picture wide; smaller renderings show them lighter, \
+          three tenths dark at least. Thresholds are heights: a \
           step between two pixels counts by the L that it rises, whatever `sigma` makes of it.",
     section: "4.1, 4.2.1",
     inputs: &[ports::COLOR],
@@ -57,8 +59,8 @@ fn build(scope: &mut Scope<'_>) -> ImageId {
     if method == Method::Magnitude {
         return candidates;
     }
-    // A line of one pixel covers that share of a pixel of a smaller rendering.
-    let darkness = scope.scale().min(1.0);
+    // Lines are a pixel of the full-size picture wide.
+    let darkness = line_width::darkness(scope.scale());
     let reach = scope.float("reach").ceil().max(0.0) as u32;
     edge_hysteresis::pass(scope.plan, candidates, reach, darkness)
 }

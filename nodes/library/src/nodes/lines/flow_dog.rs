@@ -8,7 +8,7 @@ use crate::kernels::colour::lightness;
 use crate::kernels::lines::flow_dog_two_dimensional::Stepping;
 use crate::kernels::shared::stream::Integrator;
 use crate::stages::difference_of_gaussians as dog;
-use crate::stages::flow_dog::{DEPTH, FlowDog, Kernel, NORMAL, OBJECT_ID, SIGMA_M, guides, tensor};
+use crate::stages::flow_dog::{DEPTH, FlowDog, Guided, Kernel, NORMAL, OBJECT_ID, SIGMA_M, guides, tensor};
 use crate::stages::steady::{Agreement, COLOUR_AGREEMENT, Steadied, compared, steadied};
 use isophote_engine::ImageId;
 
@@ -75,8 +75,9 @@ choice! {
 }
 
 fn build(scope: &mut Scope<'_>) -> ImageId {
+    let sigma_e = scope.float("sigma_e");
     let lines = FlowDog {
-        sigma_e: scope.float("sigma_e"),
+        sigma_e,
         k: scope.float("k"),
         sigma_m: scope.float("sigma_m"),
         xdog: dog::xdog(scope),
@@ -90,8 +91,10 @@ fn build(scope: &mut Scope<'_>) -> ImageId {
         kernel: scope.option("kernel"),
         guide_weight: scope.float("guide_weight"),
         texture: 1.0,
-        widths: [1.0; 2],
-    };
+        guided: [Guided::new(sigma_e); 2],
+        fades: dog::fades(scope),
+    }
+    .on_pixels(scope);
     let guides_of = |scope: &Scope<'_>| guides(scope, lines.guide_weight);
     let guides = guides_of(scope);
     let by = Agreement::rgb(COLOUR_AGREEMENT);

@@ -114,8 +114,12 @@ fn build(scope: &mut Scope<'_>) -> ImageId {
     let guide_weight = scope.float("guide_weight");
     let abstraction = Abstraction::of(scope);
     let (n_e, n_a) = (scope.int("n_e"), scope.int("n_a"));
-    let flow = lines::flow_dog(scope, guide_weight);
     let line_filter = scope.option("line_filter");
+    let flow = match line_filter {
+        LineFilter::Flow => lines::flow_dog(scope, guide_weight),
+        // Guides draw no lines.
+        LineFilter::Isotropic => lines::flow_dog(scope, 0.0),
+    };
     let by = Agreement::lab(COLOUR_AGREEMENT);
     let Steadied { stages: [mut flat, tensor, undecided], shares } = steadied(scope, by, |scope| {
         let color = scope.required("color");

@@ -44,7 +44,7 @@ pub static NODE: NodeSpec = NodeSpec {
         Param::choice("style", "Style", Style::Ink.selected())
             .group(LOOK)
             .doc("What is drawn with; sets every technical value."),
-        lines::LINE_WIDTH.doc("Width of lines; 2 is the style's own."),
+        lines::LINE_WIDTH.doc("Width of lines; 2 is the style's own. None is narrower than a pixel of the picture: it is lighter instead."),
         lines::LINE_AMOUNT.doc(
             "How many lines: 0 leaves masses and shading alone, 1 draws faint edges too; scales p (4.10).",
         ),
@@ -148,8 +148,9 @@ fn lines_on_white(
 /// The lines of a drawing.
 fn flow(scope: &Scope<'_>, drawing: &Preset, guide_weight: f32) -> FlowDog {
     let scale = scope.scale();
+    let sigma_e = drawing.sigma_e * scale;
     FlowDog {
-        sigma_e: drawing.sigma_e * scale,
+        sigma_e,
         k: scope.float("k"),
         sigma_m: drawing.sigma_m * scale,
         xdog: Xdog::sharpen(drawing.p, drawing.epsilon, drawing.phi, Threshold::Tanh),
@@ -158,8 +159,10 @@ fn flow(scope: &Scope<'_>, drawing: &Preset, guide_weight: f32) -> FlowDog {
         kernel: Kernel::Separable,
         guide_weight: guide_weight * GUIDES,
         texture: scope.float(lines::TEXTURE_LINES.id),
-        widths: lines::guide_widths(scope),
+        guided: lines::guided(scope, sigma_e),
+        fades: true,
     }
+    .on_pixels(scope)
 }
 
 /// The paper of a drawing, and how its lines lie on it.
