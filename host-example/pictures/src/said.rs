@@ -39,8 +39,8 @@ mod tests {
     use std::io::Cursor;
     use std::path::Path;
 
-    use tiff::encoder::{TiffEncoder, colortype};
-    use tiff::tags::{ExtraSamples, Tag};
+    use ::tiff::encoder::{TiffEncoder, colortype};
+    use ::tiff::tags::{ExtraSamples, Tag};
 
     use super::*;
     use crate::exr::Selection;
