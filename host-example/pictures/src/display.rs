@@ -24,16 +24,12 @@ pub fn shown(pixels: Pixels, meaning: &Meaning) -> Pixels {
     Pixels::new(display.width as u32, display.height as u32, channels, samples).unwrap_or(pixels)
 }
 
-/// Pixels in a length across and down by which files tell the shape of pixels: as many as are exact to a thousandth, each at most
-/// 65535.
+/// Pixels in a length across and down by which files tell the shape of pixels, each from 1 to 65535.
 pub fn densities(pixel_aspect: f32) -> [u32; 2] {
-    const MANY: f32 = 1000.0;
-    let number = |density: f32| density.round().clamp(1.0, 65535.0) as u32;
-    match pixel_aspect {
-        1.0 => [1, 1],
-        wide if wide > 1.0 => [number(MANY), number(MANY * wide)],
-        high => [number(MANY / high), number(MANY)],
-    }
+    // As many as can be, so that the ratio is near.
+    let across = if pixel_aspect <= 6.0 { 10_000.0 } else { 600.0 };
+    let down = (across * pixel_aspect).round().clamp(1.0, 65535.0) as u32;
+    if pixel_aspect == 1.0 { [1, 1] } else { [across as u32, down.max(1)] }
 }
 
 /// Samples of one window as those of another, 0 where there are none.
@@ -80,9 +76,10 @@ mod tests {
     #[test]
     fn shapes_of_pixels_are_ratios() {
         assert_eq!(densities(1.0), [1, 1]);
-        assert_eq!(densities(2.0), [1000, 2000]);
-        assert_eq!(densities(0.5), [2000, 1000]);
-        assert_eq!(densities(f32::NAN), [1, 1000]);
+        assert_eq!(densities(2.0), [10_000, 20_000]);
+        assert_eq!(densities(0.75), [10_000, 7500]);
+        assert_eq!(densities(100.0), [600, 60_000]);
+        assert_eq!(densities(f32::NAN), [600, 1]);
     }
 
     #[test]

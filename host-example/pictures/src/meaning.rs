@@ -125,8 +125,8 @@ impl Meaning {
     #[must_use]
     pub fn named(self, space: Option<Space>) -> Self {
         let Some(space) = space else { return self };
-        let (primaries, transfer) = (space.primaries().unwrap_or(REC709), space.transfer());
-        Self { primaries, transfer, said_by: Some("--space"), profile: None, ..self }
+        let (primaries, transfer) = (space.primaries(), space.transfer());
+        Self { primaries, transfer, said_by: Some("the command line"), profile: None, ..self }
     }
 
     /// Meaning of results in files of a state: the same in the same, the usual in another. Results are colours, to which a

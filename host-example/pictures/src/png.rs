@@ -208,7 +208,9 @@ mod tests {
             assert_eq!(pixel_aspect(&bytes).unwrap_or(1.0), aspect);
             // The checksum is right.
             assert_eq!(image::load_from_memory(&bytes).unwrap().width(), 24);
-            (0..bytes.len()).for_each(|length| drop(pixel_aspect(&bytes[..length])));
+            // Beginnings of files are no reason to fail.
+            let told = (0..bytes.len()).filter_map(|length| pixel_aspect(&bytes[..length])).count();
+            assert!(aspect == 1.0 || told > 0);
         }
     }
 

@@ -39,8 +39,8 @@ mod tests {
     use std::io::Cursor;
     use std::path::Path;
 
-    use tiff::encoder::{TiffEncoder, colortype};
-    use tiff::tags::{ExtraSamples, Tag};
+    use ::tiff::encoder::{TiffEncoder, colortype};
+    use ::tiff::tags::{ExtraSamples, Tag};
 
     use super::*;
     use crate::exr::Selection;
@@ -82,7 +82,7 @@ mod tests {
     #[test]
     fn floats_may_have_alpha_apart_from_colour() {
         let folder = tempfile::tempdir().unwrap();
-        for (kind, alpha) in [(1, Alpha::Premultiplied), (2, Alpha::Straight)] {
+        for (kind, alpha) in [(1_u16, Alpha::Premultiplied), (2, Alpha::Straight)] {
             let mut bytes = Cursor::new(Vec::new());
             let mut encoder = TiffEncoder::new(&mut bytes).unwrap();
             let mut image = encoder.new_image::<colortype::RGBA32Float>(1, 1).unwrap();

@@ -33,16 +33,16 @@ impl WorkingSpace {
             Transfer::Linear if !is_rec709 && source.has_primaries(AP1) => Space::Acescg,
             _ => Space::Linear,
         };
-        let (primaries, transfer) = (space.primaries().unwrap_or(REC709), space.transfer());
+        let (primaries, transfer) = (space.primaries(), space.transfer());
         // Grey has the white of its file.
         let primaries = if is_grey { source.primaries } else { primaries };
         let working = Meaning { primaries, transfer, ..source.clone() };
         Self { space, there: Conversion::between(&source, &working), source, working }
     }
 
-    /// Meaning of results in files of a state.
-    pub fn of_results(&self, state: ImageState) -> Meaning {
-        self.source.of_results(state)
+    /// Meaning of results in files of a state, in the space that somebody names for them.
+    pub fn of_results(&self, state: ImageState, space: Option<Space>) -> Meaning {
+        self.source.of_results(state).named(space)
     }
 
     /// Numbers of the working space in another meaning.
@@ -73,11 +73,11 @@ mod tests {
         let working = WorkingSpace::of(None, &picture);
         assert_eq!(working.space, Space::Linear);
         let (color, _) = working.there.as_ref().unwrap().apply(&picture.pixels);
-        let same = working.of_results(ImageState::DisplayReferred);
+        let same = working.of_results(ImageState::DisplayReferred, None);
         let back = working.leave(color.clone(), &same).converted(Precision::U8);
         assert_eq!(back, picture.pixels);
         // In an EXR file it is light of Rec.709, multiplied by alpha.
-        let light = working.of_results(ImageState::SceneReferred);
+        let light = working.of_results(ImageState::SceneReferred, None);
         assert!(light.is_usual() && light.alpha == Alpha::Premultiplied);
         let [first, .., alpha] = working.leave(color.clone(), &light).to_f32()[4 * 200..][..4] else {
             panic!()

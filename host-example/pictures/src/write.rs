@@ -12,6 +12,8 @@ use crate::meaning::{Alpha, ImageState, Meaning};
 use crate::pixels::{Pixels, Precision, Samples};
 use crate::primaries::REC709;
 use crate::read::Source;
+use crate::space::Space;
+use crate::transfer::Transfer;
 use crate::{display, icc, png, tiff_write};
 use isophote_files::error::{Error, Result};
 use isophote_files::files::{self, Existing};
@@ -50,6 +52,21 @@ impl Format {
                 "is not a kind of picture that is written",
                 "name a .png, .jpg, .tif or .exr file",
             )),
+        }
+    }
+
+    /// Makes sure that results can be in a space that somebody names for them.
+    ///
+    /// # Errors
+    /// [`Error::Input`] for encoded ones in EXR files, which are of light.
+    pub fn check_space(self, space: Option<Space>) -> Result<()> {
+        match space.filter(|space| self == Self::Exr && !space.is_linear()) {
+            Some(space) => Err(Error::input(
+                "--output-space",
+                format!("{} is encoded, and EXR files are of light", space.name()),
+                "name linear, acescg, aces2065-1, p3 or rec2020",
+            )),
+            None => Ok(()),
         }
     }
 
@@ -101,9 +118,10 @@ pub fn write(
     match format {
         Format::Exr => write_exr(path, existing, &pixels, (picture.pixels.precision(), meaning)),
         Format::Png => {
-            // A float result holds more than 8 bits can.
+            // A float result holds more than 8 bits can, and so does light of 8 bits.
+            let is_wide = matches!(meaning.transfer, Transfer::Linear | Transfer::Pq | Transfer::Hlg);
             let precision = match picture.pixels.precision() {
-                Precision::U8 => Precision::U8,
+                Precision::U8 if !is_wide || pixels.precision() == Precision::U8 => Precision::U8,
                 _ => Precision::U16,
             };
             let pixels = pixels.converted(precision);
