@@ -33,6 +33,10 @@
  *   const struct IsophoteGuidesApi *guides = api->extension("isophote.guides/1");
  *   const struct IsophotePresetsApi *presets = api->extension("isophote.presets/1");
  *
+ * Pixels that are not square, as those of anamorphic pictures, are made so and back by
+ *
+ *   const struct IsophotePixelAspectApi *aspects = api->extension("isophote.pixel_aspect/1");
+ *
  * A host that renders with Vulkan records the filter into its command buffers, from and to its images:
  *
  *   const struct IsophoteVulkanApi *vulkans = api->extension("isophote.vulkan/1");
@@ -1076,6 +1080,52 @@ typedef struct IsophoteGuidesApi {
   // [any-thread] All pictures that may enter a graph beside the colour.
   IsophoteStatus (ISOPHOTE_ABI *guides)(const struct IsophoteGuide **guides, uint32_t *count);
 } IsophoteGuidesApi;
+
+// Size of a picture in square pixels.
+typedef struct IsophoteSquareSize {
+  // Columns.
+  uint32_t width;
+  // Rows.
+  uint32_t height;
+  // Scale of a request for them. Full size is that of the picture's rows where pixels are wider than high, and its
+  // `origin_x` counts in that unit too.
+  float scale;
+} IsophoteSquareSize;
+
+// The functions of the extension "isophote.pixel_aspect/1". Tags and ownership are those of `IsophoteApi`.
+//
+// Nodes know lengths in pixels, the same in every direction. A host whose pixels are not square makes its images so, asks for
+// the result of them, and makes that its own pixels again. Both ways take a pixel for the mean over its area; where a whole
+// number of square pixels makes one of the host's, there and back is no change. `aspect` is the width of a pixel over its
+// height, 0.01 to 100.
+typedef struct IsophotePixelAspectApi {
+  // Bytes of this struct.
+  uint32_t struct_size;
+  // [any-thread] Size in square pixels, which are as fine as the finer side of the picture's own. The picture's own size
+  // where those are square as far as anyone can see.
+  IsophoteStatus (ISOPHOTE_ABI *square_size)(uint32_t width,
+                                uint32_t height,
+                                double aspect,
+                                struct IsophoteSquareSize *size);
+  // [any-thread] Makes square pixels of the whole picture `image`, which is the input of this name: "color", or a guide,
+  // whose target holds 32-bit floats. Vectors of motion are counted in square pixels then. `alpha` is that of the
+  // colour. `threads` are as in `IsophoteControl`. `replaced` receives how many samples were not finite, and may be null.
+  IsophoteStatus (ISOPHOTE_ABI *to_square)(const char *input,
+                              const struct IsophoteImage *image,
+                              double aspect,
+                              IsophoteAlpha alpha,
+                              uint32_t threads,
+                              const struct IsophoteTarget *target,
+                              uint64_t *replaced,
+                              struct IsophoteText *error);
+  // [any-thread] Makes the host's pixels of a result in square ones; the size of `target` is the picture's.
+  IsophoteStatus (ISOPHOTE_ABI *from_square)(const struct IsophoteImage *image,
+                                double aspect,
+                                IsophoteAlpha alpha,
+                                uint32_t threads,
+                                const struct IsophoteTarget *target,
+                                struct IsophoteText *error);
+} IsophotePixelAspectApi;
 
 // A look that ships with the library.
 typedef struct IsophoteLook {

@@ -10,6 +10,8 @@ mod dist;
 mod docs;
 mod error;
 mod experiments;
+#[cfg(test)]
+mod formats;
 mod gallery;
 mod gpu_cost;
 mod header;

@@ -41,8 +41,10 @@ pub enum Precision {
 pub fn save(path: &Path, existing: Existing, picture: &Picture) -> Result<()> {
     match extension(path).as_str() {
         "png" => save_png(path, existing, picture),
-        "exr" if picture.channels == 1 => save_exr(path, existing, picture, &["Y"], Precision::Float, None),
-        "exr" => save_exr(path, existing, picture, &["R", "G", "B", "A"], Precision::Half, None),
+        "exr" if picture.channels == 1 => {
+            save_exr(path, existing, picture, &["Y"], Precision::Float, (None, None))
+        }
+        "exr" => save_exr(path, existing, picture, &["R", "G", "B", "A"], Precision::Half, (None, None)),
         _ => Err(unknown_extension(path)),
     }
 }
@@ -102,8 +104,8 @@ fn save_png(path: &Path, existing: Existing, picture: &Picture) -> Result<()> {
     })
 }
 
-/// Saves all channels under the given names as linear EXR of these primaries, compressed without loss; Rec.709 need not be
-/// named.
+/// Saves all channels under the given names as linear EXR of these primaries and pixels of this shape, compressed without loss;
+/// Rec.709 and square ones need not be named.
 ///
 /// # Errors
 /// As [`files::write()`].
@@ -113,9 +115,10 @@ pub fn save_exr(
     picture: &Picture,
     names: &[&str],
     precision: Precision,
-    chromaticities: Option<Chromaticities>,
+    (chromaticities, pixel_aspect): (Option<Chromaticities>, Option<f32>),
 ) -> Result<()> {
-    let image = create::Picture { chromaticities, ..created(&[Layer { picture, names, precision }]) };
+    let image =
+        create::Picture { chromaticities, pixel_aspect, ..created(&[Layer { picture, names, precision }]) };
     write_exr(path, existing, &image)
 }
 
@@ -199,7 +202,8 @@ mod tests {
         let folder = tempfile::tempdir().unwrap();
         let path = folder.path().join("a.exr");
         let picture = Picture { width: 2, height: 1, channels: 2, data: vec![1e-7, -3.5, 70000.0, 0.1] };
-        save_exr(&path, Existing::Keep, &picture, &["motion.X", "motion.Y"], Precision::Float, None).unwrap();
+        save_exr(&path, Existing::Keep, &picture, &["motion.X", "motion.Y"], Precision::Float, (None, None))
+            .unwrap();
         let read = exr::prelude::read_first_flat_layer_from_file(&path).unwrap();
         let channels = &read.layer_data.channel_data.list;
         assert_eq!(channels[0].name.to_string(), "motion.X");

@@ -1,36 +1,58 @@
-//! Checks that a JPEG file is whole. Decoders fill what is missing with grey and say nothing.
+//! Markers of JPEG files (ISO/IEC 10918-1, annex B): whether all are there, and whose they are.
 
-/// Walks the markers of a JPEG file (ISO/IEC 10918-1, annex B) to the end-of-image marker, and says whether
-/// there is one.
+const START_OF_SCAN: u8 = 0xda;
+const END_OF_IMAGE: u8 = 0xd9;
+const ADOBE: u8 = 0xee;
+
+/// Walks the markers to the end-of-image marker, and says whether there is one. Decoders fill what is missing with grey and
+/// say nothing.
 pub fn is_whole(bytes: &[u8]) -> bool {
-    const START_OF_SCAN: u8 = 0xda;
-    const END_OF_IMAGE: u8 = 0xd9;
-    let mut at = 2;
-    loop {
+    Markers { bytes, at: 2 }.any(|(marker, _)| marker == END_OF_IMAGE)
+}
+
+/// True where a marker says that a program of Adobe's, or one that writes as they do, made the file.
+pub fn is_of_adobe(bytes: &[u8]) -> bool {
+    let mut before = Markers { bytes, at: 2 }.take_while(|(marker, _)| *marker != START_OF_SCAN);
+    before.any(|(marker, data)| marker == ADOBE && data.starts_with(b"Adobe"))
+}
+
+/// Markers with the data of their segments.
+struct Markers<'a> {
+    bytes: &'a [u8],
+    at: usize,
+}
+
+impl<'a> Iterator for Markers<'a> {
+    type Item = (u8, &'a [u8]);
+
+    fn next(&mut self) -> Option<Self::Item> {
+        let Self { bytes, at } = self;
         // Any number of fill bytes may precede a marker.
-        while bytes.get(at) == Some(&0xff) && bytes.get(at + 1) == Some(&0xff) {
-            at += 1;
+        while bytes.get(*at) == Some(&0xff) && bytes.get(*at + 1) == Some(&0xff) {
+            *at += 1;
         }
-        let (Some(0xff), Some(&marker)) = (bytes.get(at), bytes.get(at + 1)) else { return false };
-        at += 2;
+        let (Some(0xff), Some(&marker)) = (bytes.get(*at), bytes.get(*at + 1)) else { return None };
+        *at += 2;
+        let mut data: &[u8] = &[];
         match marker {
-            END_OF_IMAGE => return true,
-            // Restart markers, start of image and the temporary marker stand alone.
-            0xd0..=0xd8 | 0x01 => {}
+            // Restart markers, start and end of image and the temporary marker stand alone.
+            0xd0..=0xd9 | 0x01 => {}
             _ => {
-                let Some(length) = bytes.get(at..at + 2) else { return false };
-                at += usize::from(u16::from_be_bytes([length[0], length[1]]));
+                let length = usize::from(u16::from_be_bytes(*bytes.get(*at..)?.first_chunk()?));
+                data = bytes.get(*at + 2..*at + length).unwrap_or_default();
+                *at += length;
             }
         }
         if matches!(marker, START_OF_SCAN | 0xd0..=0xd7) {
             // Coded data: a zero after 0xff is stuffed, not a marker.
-            while let Some(&[first, second]) = bytes.get(at..at + 2).and_then(|b| b.first_chunk()) {
+            while let Some(&[first, second]) = bytes.get(*at..*at + 2).and_then(|b| b.first_chunk()) {
                 if first == 0xff && second != 0 {
                     break;
                 }
-                at += 1;
+                *at += 1;
             }
         }
+        Some((marker, data))
     }
 }
 

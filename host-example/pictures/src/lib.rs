@@ -7,6 +7,7 @@
 //! | [`space`], [`primaries`] | colour spaces and their primaries |
 //! | [`meaning`] | meaning of the numbers of a picture |
 //! | [`transfer`] | relation of numbers to light |
+//! | [`cicp`] | primaries, transfers and matrices by their numbers in video and PNG |
 //! | [`convert`] | changes from one meaning to another |
 //! | [`working`] | space in which a picture is filtered |
 //! | [`read`] | PNG, JPEG, TIFF, WebP, HDR and EXR files to pictures |
@@ -16,11 +17,15 @@
 
 #![forbid(unsafe_code)]
 
+pub mod cicp;
+mod colours;
 pub mod convert;
 mod display;
 pub mod exr;
 pub mod floats;
 mod hdr;
+mod icc;
+mod inks;
 mod jpeg;
 pub mod meaning;
 pub mod mix;

@@ -1,11 +1,12 @@
 //! Meaning of the numbers of a picture. Each reader decides once what its file says; every writer is handed it.
 
 use std::collections::BTreeSet;
+
 use std::sync::{Arc, Mutex, PoisonError};
 
 pub use isophote_exr_edit::Window;
 
-use crate::primaries::{Chromaticities, REC709, same};
+use crate::primaries::{ADOBE, AP0, AP1, Chromaticities, P3, REC709, REC2020, same};
 use crate::space::Space;
 use crate::transfer::Transfer;
 use isophote_files::output;
@@ -124,13 +125,15 @@ impl Meaning {
     #[must_use]
     pub fn named(self, space: Option<Space>) -> Self {
         let Some(space) = space else { return self };
-        let (primaries, transfer) = (space.primaries().unwrap_or(REC709), space.transfer());
-        Self { primaries, transfer, said_by: Some("--space"), profile: None, ..self }
+        let (primaries, transfer) = (space.primaries(), space.transfer());
+        Self { primaries, transfer, said_by: Some("the command line"), profile: None, ..self }
     }
 
-    /// Meaning of results in files of a state: the same in the same, the usual in another.
+    /// Meaning of results in files of a state: the same in the same, the usual in another. Results are colours, to which a
+    /// profile of grey says nothing.
     pub fn of_results(&self, state: ImageState) -> Self {
-        if state == self.state {
+        let is_of_grey = self.profile.is_some() && self.profile_of(3).is_none();
+        if state == self.state && !is_of_grey {
             return self.clone();
         }
         let alpha = match (self.alpha, state) {
@@ -140,6 +143,16 @@ impl Meaning {
         };
         let Self { pixel_aspect, data, display, .. } = *self;
         Self { alpha, pixel_aspect, data, display, ..Self::usual(state) }
+    }
+
+    /// The profile, where it is one of pictures with so many channels.
+    pub fn profile_of(&self, channels: u32) -> Option<&[u8]> {
+        self.profile.as_deref().filter(|profile| profile_is_of(profile, channels))
+    }
+
+    /// True where primaries and transfer are those that files of this state have when they say nothing.
+    pub fn is_usual(&self) -> bool {
+        self.transfer == Self::usual(self.state).transfer && self.has_primaries(REC709)
     }
 
     /// True where colour is multiplied by alpha, or would be if there were any.
@@ -166,8 +179,41 @@ impl Meaning {
         }
     }
 
-    /// True where numbers are sRGB, as those of most files are.
-    pub fn is_srgb(&self) -> bool {
-        self.transfer == Transfer::Srgb && self.has_primaries(REC709)
+    /// Primaries and transfer in words.
+    pub fn words(&self) -> String {
+        let known = [
+            (REC709, "Rec.709"),
+            (P3, "P3 D65"),
+            (REC2020, "Rec.2020"),
+            (AP1, "ACES AP1"),
+            (AP0, "ACES AP0"),
+            (ADOBE, "Adobe RGB"),
+        ];
+        let primaries = match known.iter().find(|(known, _)| self.has_primaries(*known)) {
+            Some((_, name)) => (*name).to_owned(),
+            None => {
+                let [rx, ry, gx, gy, bx, by, wx, wy] = self.primaries;
+                format!("R {rx:.3} {ry:.3} G {gx:.3} {gy:.3} B {bx:.3} {by:.3} W {wx:.4} {wy:.4}")
+            }
+        };
+        let transfer = match &self.transfer {
+            Transfer::Linear => "linear".to_owned(),
+            Transfer::Srgb => "sRGB curve".to_owned(),
+            Transfer::Rec709 => "Rec.709 curve".to_owned(),
+            Transfer::Gamma(gamma) => format!("gamma {gamma:.2}"),
+            Transfer::Pq => "PQ".to_owned(),
+            Transfer::Hlg => "HLG".to_owned(),
+            Transfer::Curves(_) => "curves of a profile".to_owned(),
+        };
+        format!("{primaries}, {transfer}")
     }
+}
+
+/// Place in an ICC profile of the colour space of its pictures.
+const PROFILE_SPACE: std::ops::Range<usize> = 16..20;
+
+/// True for an ICC profile of pictures with so many channels: grey, or red, green and blue.
+pub fn profile_is_of(profile: &[u8], channels: u32) -> bool {
+    let wanted: &[u8] = if channels == 1 { b"GRAY" } else { b"RGB " };
+    profile.get(PROFILE_SPACE) == Some(wanted)
 }

@@ -70,6 +70,11 @@ impl Pixels {
         &self.samples
     }
 
+    /// The samples alone.
+    pub fn into_samples(self) -> Samples {
+        self.samples
+    }
+
     /// Precision in which samples are stored.
     pub fn precision(&self) -> Precision {
         match self.samples {

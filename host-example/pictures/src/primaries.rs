@@ -29,13 +29,8 @@ impl Change {
     /// From light of some primaries to light of others, adapted to the other white by the Bradford method;
     /// nothing for primaries that span no colours.
     pub fn new(from: Chromaticities, to: Chromaticities) -> Option<Self> {
-        const BRADFORD: Matrix =
-            [[0.8951, 0.2664, -0.1614], [-0.7502, 1.7135, 0.0367], [0.0389, -0.0685, 1.0296]];
         let (into, out) = (xyz_from_rgb(from)?, inverse(&xyz_from_rgb(to)?)?);
-        let white = |m: &Matrix| apply(&BRADFORD, apply(m, [1.0; 3]));
-        let (old, new) = (white(&into), white(&xyz_from_rgb(to)?));
-        let scaled = [0, 1, 2].map(|r: usize| BRADFORD[r].map(|v| v * new[r] / old[r]));
-        let adapt = product(&inverse(&BRADFORD)?, &scaled);
+        let adapt = adaptation(apply(&into, [1.0; 3]), apply(&xyz_from_rgb(to)?, [1.0; 3]))?;
         let matrix = product(&out, &product(&adapt, &into));
         matrix.iter().flatten().all(|v| v.is_finite()).then(|| Self(matrix.map(|row| row.map(|v| v as f32))))
     }
@@ -53,6 +48,31 @@ pub fn same(a: Chromaticities, b: Chromaticities) -> bool {
 
 /// ITU-R BT.709, also what an EXR file without chromaticities means.
 pub const REC709: Chromaticities = [0.64, 0.33, 0.30, 0.60, 0.15, 0.06, 0.3127, 0.3290];
+
+/// Primaries of a device whose red, green and blue are these CIE XYZ beside a white of D50, and are shown beside `white`;
+/// nothing where they span no colours.
+pub fn of_colorants(colorants: [[f64; 3]; 3], white: [f64; 3]) -> Option<Chromaticities> {
+    let matrix = [0, 1, 2].map(|row: usize| colorants.map(|colorant| colorant[row]));
+    let adapt = adaptation(apply(&matrix, [1.0; 3]), white)?;
+    let point = |rgb: [f64; 3]| {
+        let xyz = apply(&adapt, apply(&matrix, rgb));
+        let sum: f64 = xyz.iter().sum();
+        [(xyz[0] / sum) as f32, (xyz[1] / sum) as f32]
+    };
+    let [[rx, ry], [gx, gy], [bx, by]] = [[1.0, 0.0, 0.0], [0.0, 1.0, 0.0], [0.0, 0.0, 1.0]].map(point);
+    let [white_x, white_y] = point([1.0; 3]);
+    let found = [rx, ry, gx, gy, bx, by, white_x, white_y];
+    Change::new(found, REC709).map(|_| found)
+}
+
+/// Bradford's change from CIE XYZ beside one white to those beside another.
+fn adaptation(from: [f64; 3], to: [f64; 3]) -> Option<Matrix> {
+    const BRADFORD: Matrix =
+        [[0.8951, 0.2664, -0.1614], [-0.7502, 1.7135, 0.0367], [0.0389, -0.0685, 1.0296]];
+    let (old, new) = (apply(&BRADFORD, from), apply(&BRADFORD, to));
+    let scaled = [0, 1, 2].map(|r: usize| BRADFORD[r].map(|v| v * new[r] / old[r]));
+    Some(product(&inverse(&BRADFORD)?, &scaled))
+}
 
 /// Weights of red, green and blue in luminance.
 pub fn luminance(chromaticities: Option<Chromaticities>) -> [f32; 3] {

@@ -12,11 +12,11 @@ use image::{DynamicImage, ImageDecoder, ImageError, ImageResult, Limits};
 
 use crate::convert::Conversion;
 use crate::exr::{self, ExrFile, Offers, Picture, Selection};
-use crate::meaning::{Alpha, ImageState, Meaning};
-use crate::pixels::{MOST_PIXELS, Pixels, Precision, Samples};
+use crate::meaning::{ImageState, Meaning};
+use crate::pixels::{MOST_PIXELS, Pixels, Samples};
 use crate::primaries::{Change, REC709};
 use crate::tiff::Wide;
-use crate::{hdr, jpeg, png, said};
+use crate::{colours, hdr, jpeg, png, said};
 use isophote_files::error::{Error, Result};
 use isophote_files::frames;
 use isophote_files::input;
@@ -282,7 +282,7 @@ fn decode(path: &Path, bytes: &[u8]) -> Result<Source> {
     if !is_whole {
         return Err(Error::malformed(path, kind, "it ends before the picture does"));
     }
-    let mut source = picture(path, decoder, kind)?;
+    let mut source = picture(path, decoder, (kind, bytes))?;
     for picture in &mut source.pictures {
         said::add(kind, bytes, picture);
     }
@@ -372,17 +372,24 @@ pub fn check_size(path: &Path, width: u64, height: u64) -> Result<()> {
     }
 }
 
-fn picture(path: &Path, mut decoder: impl ImageDecoder, kind: &str) -> Result<Source> {
+fn picture(path: &Path, mut decoder: impl ImageDecoder, (kind, bytes): (&str, &[u8])) -> Result<Source> {
     let (width, height) = decoder.dimensions();
     check_size(path, width.into(), height.into())?;
     // Before the limits of the picture, which are too small for the profile of a small one; decoders have others until then.
     let profile = decoder.icc_profile().unwrap_or_default();
     // The size bounds the picture; what decoders need meanwhile is bounded by several times that.
     let mut limits = Limits::no_limits();
-    limits.max_alloc = Some(decoder.total_bytes().saturating_mul(4).saturating_add(LEAST));
+    let most = decoder.total_bytes().saturating_mul(4).saturating_add(LEAST);
+    limits.max_alloc = Some(most);
     decoder.set_limits(limits).map_err(|e| refused(path, kind, &e))?;
     let orientation = decoder.orientation().map_err(|e| refused(path, kind, &e))?;
-    let mut decoded = DynamicImage::from_decoder(decoder).map_err(|e| refused(path, kind, &e))?;
+    let is_grey = !decoder.color_type().has_color();
+    let of_inks = colours::of_inks(kind, bytes, profile.as_deref(), most);
+    let is_converted = of_inks.is_some();
+    let mut decoded = match of_inks {
+        Some(converted) => converted,
+        None => DynamicImage::from_decoder(decoder).map_err(|e| refused(path, kind, &e))?,
+    };
     // Nothing but the pixels is kept, so what the camera noted of its attitude is done here.
     decoded.apply_orientation(orientation);
     let (width, height) = (decoded.width(), decoded.height());
@@ -397,22 +404,16 @@ fn picture(path: &Path, mut decoder: impl ImageDecoder, kind: &str) -> Result<So
         DynamicImage::ImageLumaA16(_) => (4, Samples::U16(decoded.into_rgba16().into_raw())),
         other => (4, Samples::U8(other.into_rgba8().into_raw())),
     };
-    let pixels = Pixels::new(width, height, channels, samples)
+    let mut pixels = Pixels::new(width, height, channels, samples)
         .ok_or_else(|| Error::malformed(path, kind, "it does not hold as many pixels as it says"))?;
-    let mut meaning = match pixels.precision() {
-        Precision::F16 | Precision::F32 => Meaning::light(),
-        Precision::U8 | Precision::U16 => Meaning::display(),
-    };
-    if pixels.channels() < 4 {
-        meaning.alpha = Alpha::None;
-    }
-    meaning.profile = profile.map(Into::into);
+    let meaning = colours::meant((kind, bytes), profile, &mut pixels, (is_grey, is_converted));
     Ok(Source::alone(pixels, meaning))
 }
 
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::pixels::Precision;
 
     /// A TIFF or BigTIFF file of floats (red, green, blue, alpha), all of them 0.
     fn tiff(is_big: bool, size: u32) -> Vec<u8> {

@@ -2,8 +2,8 @@
 
 use crate::exr::Picture;
 use crate::meaning::Alpha;
-use crate::tiff::{Fourth, said};
-use crate::{png, tiff};
+use crate::png;
+use crate::tiff::{self, Fourth};
 
 /// Width of a pixel over its height, where a file of this kind says that they differ.
 pub fn pixel_aspect(kind: &str, bytes: &[u8]) -> Option<f32> {
@@ -22,7 +22,7 @@ pub fn add(kind: &str, bytes: &[u8], picture: &mut Picture) {
         return;
     }
     let has_alpha = picture.pixels.channels() == 4;
-    match said(bytes).fourth {
+    match tiff::said(bytes).fourth {
         Some(Fourth::Associated) if has_alpha => meaning.alpha = Alpha::Premultiplied,
         Some(Fourth::Unassociated) if has_alpha => meaning.alpha = Alpha::Straight,
         Some(Fourth::Other) => {
@@ -39,14 +39,15 @@ mod tests {
     use std::io::Cursor;
     use std::path::Path;
 
-    use tiff::encoder::{TiffEncoder, colortype};
-    use tiff::tags::{ExtraSamples, Tag};
+    use ::tiff::encoder::{TiffEncoder, colortype};
+    use ::tiff::tags::{ExtraSamples, Tag};
 
     use super::*;
     use crate::exr::Selection;
     use crate::meaning::Meaning;
-    use crate::pixels::Samples;
+    use crate::pixels::{Pixels, Samples};
     use crate::read;
+    use crate::tiff_write;
 
     fn read(folder: &Path, bytes: &[u8]) -> Picture {
         let path = folder.join("a.tif");
@@ -91,5 +92,29 @@ mod tests {
             assert_eq!(picture.meaning.alpha, alpha);
             assert_eq!(picture.meaning.state, Meaning::light().state);
         }
+    }
+
+    fn written(pixels: &Pixels, meaning: &Meaning) -> Vec<u8> {
+        let mut file = Cursor::new(Vec::new());
+        tiff_write::write(&mut file, pixels, meaning, None).unwrap();
+        file.into_inner()
+    }
+
+    #[test]
+    fn the_kind_of_alpha_and_the_shape_of_pixels_are_said() {
+        let pixels = Pixels::new(2, 1, 4, Samples::U8(vec![200, 100, 0, 255, 50, 25, 0, 64])).unwrap();
+        for (alpha, fourth) in
+            [(Alpha::Premultiplied, Fourth::Associated), (Alpha::Straight, Fourth::Unassociated)]
+        {
+            let meaning = Meaning { alpha, pixel_aspect: 1.5, ..Meaning::display() };
+            let said = tiff::said(&written(&pixels, &meaning));
+            assert_eq!((said.fourth, said.pixel_aspect), (Some(fourth), Some(1.5)));
+        }
+        let grey = Pixels::new(2, 1, 1, Samples::U16(vec![0, 65535])).unwrap();
+        let said = tiff::said(&written(&grey, &Meaning::display()));
+        assert_eq!((said.fourth, said.pixel_aspect), (None, None));
+        let floats = Pixels::new(1, 1, 1, Samples::F32(vec![0.0])).unwrap();
+        let refused = tiff_write::write(&mut Cursor::new(Vec::new()), &floats, &Meaning::light(), None);
+        assert!(refused.unwrap_err().contains("1 channels"));
     }
 }

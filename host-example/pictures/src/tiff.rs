@@ -120,10 +120,9 @@ impl ImageDecoder for Wide<'_> {
         if samples.len() < pixels * channels {
             return Err(ImageError::Limits(LimitError::from_kind(LimitErrorKind::InsufficientMemory)));
         }
-        for (at, to) in buffer.as_chunks_mut::<2>().0.iter_mut().enumerate() {
-            // Planes follow each other where they are apart.
-            let from = if layout.planes > 1 { at % channels * pixels + at / channels } else { at };
-            *to = narrow(samples[from]).to_ne_bytes();
+        let samples = interleaved(samples, layout.planes > 1, channels);
+        for (to, sample) in buffer.as_chunks_mut::<2>().0.iter_mut().zip(samples) {
+            *to = narrow(sample).to_ne_bytes();
         }
         Ok(())
     }
@@ -131,6 +130,15 @@ impl ImageDecoder for Wide<'_> {
     fn read_image_boxed(self: Box<Self>, buffer: &mut [u8]) -> ImageResult<()> {
         (*self).read_image(buffer)
     }
+}
+
+/// Samples pixel by pixel: planes follow each other where they are apart.
+pub fn interleaved<T: Copy>(samples: Vec<T>, is_planar: bool, channels: usize) -> Vec<T> {
+    if !is_planar {
+        return samples;
+    }
+    let pixels = samples.len() / channels;
+    (0..pixels * channels).map(|at| samples[at % channels * pixels + at / channels]).collect()
 }
 
 /// The nearest number of 16 bits for the same share of the range.

@@ -79,36 +79,3 @@ impl Tags<'_> {
         image.write_data(samples)
     }
 }
-
-#[cfg(test)]
-mod tests {
-    use std::io::Cursor;
-
-    use super::*;
-    use crate::meaning::Alpha;
-    use crate::tiff::{Fourth, said};
-
-    fn written(pixels: &Pixels, meaning: &Meaning) -> Vec<u8> {
-        let mut file = Cursor::new(Vec::new());
-        write(&mut file, pixels, meaning, None).unwrap();
-        file.into_inner()
-    }
-
-    #[test]
-    fn the_kind_of_alpha_and_the_shape_of_pixels_are_said() {
-        let pixels = Pixels::new(2, 1, 4, Samples::U8(vec![200, 100, 0, 255, 50, 25, 0, 64])).unwrap();
-        for (alpha, fourth) in
-            [(Alpha::Premultiplied, Fourth::Associated), (Alpha::Straight, Fourth::Unassociated)]
-        {
-            let meaning = Meaning { alpha, pixel_aspect: 1.5, ..Meaning::display() };
-            let said = said(&written(&pixels, &meaning));
-            assert_eq!((said.fourth, said.pixel_aspect), (Some(fourth), Some(1.5)));
-        }
-        let grey = Pixels::new(2, 1, 1, Samples::U16(vec![0, 65535])).unwrap();
-        let said = said(&written(&grey, &Meaning::display()));
-        assert_eq!((said.fourth, said.pixel_aspect), (None, None));
-        let floats = Pixels::new(1, 1, 1, Samples::F32(vec![0.0])).unwrap();
-        let refused = write(&mut Cursor::new(Vec::new()), &floats, &Meaning::light(), None);
-        assert!(refused.unwrap_err().contains("1 channels"));
-    }
-}

@@ -33,16 +33,16 @@ impl WorkingSpace {
             Transfer::Linear if !is_rec709 && source.has_primaries(AP1) => Space::Acescg,
             _ => Space::Linear,
         };
-        let (primaries, transfer) = (space.primaries().unwrap_or(REC709), space.transfer());
+        let (primaries, transfer) = (space.primaries(), space.transfer());
         // Grey has the white of its file.
         let primaries = if is_grey { source.primaries } else { primaries };
         let working = Meaning { primaries, transfer, ..source.clone() };
         Self { space, there: Conversion::between(&source, &working), source, working }
     }
 
-    /// Meaning of results in files of a state.
-    pub fn of_results(&self, state: ImageState) -> Meaning {
-        self.source.of_results(state)
+    /// Meaning of results in files of a state, in the space that somebody names for them.
+    pub fn of_results(&self, state: ImageState, space: Option<Space>) -> Meaning {
+        self.source.of_results(state).named(space)
     }
 
     /// Numbers of the working space in another meaning.
@@ -50,6 +50,49 @@ impl WorkingSpace {
         match Conversion::between(&self.working, to) {
             Some(conversion) => conversion.apply(&pixels).0,
             None => pixels,
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::meaning::Alpha;
+    use crate::pixels::{Precision, Samples};
+    use crate::primaries::P3;
+
+    fn picture(meaning: Meaning, samples: Vec<u8>) -> Picture {
+        Picture::alone(Pixels::new(samples.len() as u32 / 4, 1, 4, Samples::U8(samples)).unwrap(), meaning)
+    }
+
+    #[test]
+    fn display_p3_is_filtered_as_light_and_comes_back_as_it_was() {
+        let samples: Vec<u8> = (0..=255).flat_map(|v| [v, 255 - v, v / 2, v.max(1)]).collect();
+        let meaning = Meaning { primaries: P3, ..Meaning::display() };
+        let picture = picture(meaning, samples);
+        let working = WorkingSpace::of(None, &picture);
+        assert_eq!(working.space, Space::Linear);
+        let (color, _) = working.there.as_ref().unwrap().apply(&picture.pixels);
+        let same = working.of_results(ImageState::DisplayReferred, None);
+        let back = working.leave(color.clone(), &same).converted(Precision::U8);
+        assert_eq!(back, picture.pixels);
+        // In an EXR file it is light of Rec.709, multiplied by alpha.
+        let light = working.of_results(ImageState::SceneReferred, None);
+        assert!(light.is_usual() && light.alpha == Alpha::Premultiplied);
+        let [first, .., alpha] = working.leave(color.clone(), &light).to_f32()[4 * 200..][..4] else {
+            panic!()
+        };
+        assert!((first - color.to_f32()[4 * 200] * alpha).abs() < 1e-6);
+    }
+
+    #[test]
+    fn usual_numbers_are_not_touched() {
+        let picture = picture(Meaning::display(), vec![1, 2, 3, 4]);
+        for (named, space) in
+            [(None, Space::Srgb), (Some(Space::Linear), Space::Linear), (Some(Space::Acescg), Space::Acescg)]
+        {
+            let working = WorkingSpace::of(named, &picture);
+            assert_eq!((working.space, working.there), (space, None));
         }
     }
 }

@@ -1,26 +1,24 @@
 //! Results to files, as the extension says.
 
-use std::ops::Range;
+use std::io::Write;
 use std::path::Path;
 
 use image::codecs::jpeg::{PixelDensity, PixelDensityUnit};
 use image::{ExtendedColorType, ImageEncoder, ImageResult};
 
-use crate::display;
 use crate::exr::{ExrFile, components};
 use crate::floats;
 use crate::meaning::{Alpha, ImageState, Meaning};
 use crate::pixels::{Pixels, Precision, Samples};
-use crate::png;
 use crate::primaries::REC709;
 use crate::read::Source;
-use crate::tiff_write;
+use crate::space::Space;
+use crate::transfer::Transfer;
+use crate::{display, icc, png, tiff_write};
 use isophote_files::error::{Error, Result};
 use isophote_files::files::{self, Existing};
 use isophote_files::output;
 
-/// Place in an ICC profile of the colour space of its pictures.
-const PROFILE_SPACE: Range<usize> = 16..20;
 /// Quality of JPEG files, 1 to 100.
 const JPEG_QUALITY: u8 = 95;
 
@@ -54,6 +52,21 @@ impl Format {
                 "is not a kind of picture that is written",
                 "name a .png, .jpg, .tif or .exr file",
             )),
+        }
+    }
+
+    /// Makes sure that results can be in a space that somebody names for them.
+    ///
+    /// # Errors
+    /// [`Error::Input`] for encoded ones in EXR files, which are of light.
+    pub fn check_space(self, space: Option<Space>) -> Result<()> {
+        match space.filter(|space| self == Self::Exr && !space.is_linear()) {
+            Some(space) => Err(Error::input(
+                "--output-space",
+                format!("{} is encoded, and EXR files are of light", space.name()),
+                "name linear, acescg, aces2065-1, p3 or rec2020",
+            )),
+            None => Ok(()),
         }
     }
 
@@ -105,19 +118,26 @@ pub fn write(
     match format {
         Format::Exr => write_exr(path, existing, &pixels, (picture.pixels.precision(), meaning)),
         Format::Png => {
-            // A float result holds more than 8 bits can.
+            // A float result holds more than 8 bits can, and so does light of 8 bits.
+            let is_wide = matches!(meaning.transfer, Transfer::Linear | Transfer::Pq | Transfer::Hlg);
             let precision = match picture.pixels.precision() {
-                Precision::U8 => Precision::U8,
+                Precision::U8 if !is_wide || pixels.precision() == Precision::U8 => Precision::U8,
                 _ => Precision::U16,
             };
             let pixels = pixels.converted(precision);
             let color = color_type(&pixels);
             // PNG wants the larger byte first; the encoder takes the machine's order.
             files::write(path, existing, |file| {
-                let mut file = png::Shaped::new(file, meaning.pixel_aspect);
-                let mut encoder = image::codecs::png::PngEncoder::new(&mut file);
-                keep_profile(&mut encoder, meaning.profile.as_deref(), pixels.channels());
-                as_text(encoder.write_image(pixels.bytes(), pixels.width(), pixels.height(), color))
+                let mut bytes = Vec::new();
+                let mut encoder = image::codecs::png::PngEncoder::new(&mut bytes);
+                let is_said = match meaning.profile_of(pixels.channels()) {
+                    Some(profile) => encoder.set_icc_profile(profile.to_vec()).is_ok(),
+                    None => false,
+                };
+                as_text(encoder.write_image(pixels.bytes(), pixels.width(), pixels.height(), color))?;
+                let bytes = if is_said { bytes } else { png::with_meaning(bytes, meaning) };
+                let bytes = png::with_shape(bytes, meaning.pixel_aspect);
+                file.write_all(&bytes).map_err(|e| e.to_string())
             })
         }
         Format::Tiff => {
@@ -127,8 +147,8 @@ pub fn write(
                 (ImageState::DisplayReferred, _) => Precision::U16,
             };
             let pixels = grey_as_rgb(pixels.converted(precision));
-            let profile = fitting(meaning.profile.as_deref(), pixels.channels());
-            files::write(path, existing, |file| tiff_write::write(file, &pixels, meaning, profile))
+            let profile = profile(meaning, pixels.channels());
+            files::write(path, existing, |file| tiff_write::write(file, &pixels, meaning, profile.as_deref()))
         }
         Format::Jpeg => {
             let pixels = opaque(path, pixels.converted(Precision::U8));
@@ -138,7 +158,7 @@ pub fn write(
                 let [across, down] = display::densities(meaning.pixel_aspect);
                 let density = (across as u16, down as u16);
                 encoder.set_pixel_density(PixelDensity { density, unit: PixelDensityUnit::PixelAspectRatio });
-                keep_profile(&mut encoder, meaning.profile.as_deref(), pixels.channels());
+                say(&mut encoder, meaning, pixels.channels());
                 as_text(encoder.write_image(pixels.bytes(), pixels.width(), pixels.height(), color))
             })
         }
@@ -173,22 +193,24 @@ fn write_exr(
         channels: channels as usize,
         data: pixels.to_f32(),
     };
+    let aspect = Some(meaning.pixel_aspect).filter(|aspect| *aspect != 1.0);
     let chromaticities = Some(meaning.primaries).filter(|_| !meaning.has_primaries(REC709));
-    floats::save_exr(path, existing, &data, components(channels), precision, chromaticities)
+    floats::save_exr(path, existing, &data, components(channels), precision, (chromaticities, aspect))
 }
 
-/// Keeps a colour profile where it is one of pictures with these channels.
-fn keep_profile(encoder: &mut impl ImageEncoder, profile: Option<&[u8]>, channels: u32) {
-    if let Some(profile) = fitting(profile, channels) {
-        // An encoder that cannot keep it leaves a picture that is taken for sRGB, as most are.
-        let _ = encoder.set_icc_profile(profile.to_vec());
+/// Says by a colour profile what numbers mean.
+fn say(encoder: &mut impl ImageEncoder, meaning: &Meaning, channels: u32) {
+    if let Some(profile) = profile(meaning, channels) {
+        // All encoders that are used keep profiles.
+        let _ = encoder.set_icc_profile(profile);
     }
 }
 
-/// The profile where it is one of pictures with these channels.
-fn fitting(profile: Option<&[u8]>, channels: u32) -> Option<&[u8]> {
-    let wanted: &[u8] = if channels == 1 { b"GRAY" } else { b"RGB " };
-    profile.filter(|profile| profile.get(PROFILE_SPACE) == Some(wanted))
+/// The colour profile that says what numbers mean: the one of the source where it is one of pictures with these channels, else one
+/// that is made where the numbers are not what is assumed without.
+fn profile(meaning: &Meaning, channels: u32) -> Option<Vec<u8>> {
+    let made = || icc::made(meaning).filter(|_| !meaning.is_usual() && channels > 1);
+    meaning.profile_of(channels).map(<[u8]>::to_vec).or_else(made)
 }
 
 fn as_text(result: ImageResult<()>) -> std::result::Result<(), String> {

@@ -5,11 +5,13 @@ use std::path::{Path, PathBuf};
 
 use isophote_files::files::Existing;
 use isophote_files::frames::Pattern;
+use isophote_pictures::convert::Conversion;
 use isophote_pictures::exr::{Guide, GuideChoice, Selection};
 use isophote_pictures::meaning::Meaning;
-use isophote_pictures::pixels::Pixels;
+use isophote_pictures::pixels::{Pixels, Precision};
 use isophote_pictures::primaries;
 use isophote_pictures::read::{self, Source};
+use isophote_pictures::transfer::Transfer;
 use isophote_pictures::write::{self, Format};
 
 fn case(name: &str) -> PathBuf {
@@ -248,4 +250,100 @@ fn profiles_are_kept_where_they_fit() {
     )
     .expect("it can be written");
     assert_eq!(source(&out).pictures[0].meaning.profile, None);
+}
+
+/// The first pixel of a case as light, by what its reader says of its numbers.
+fn light(name: &str) -> [f32; 3] {
+    let picture = source(&case(name)).pictures.remove(0);
+    let change = Conversion::between(&picture.meaning, &Meaning::light()).expect("it is encoded");
+    let numbers = change.apply(&picture.pixels).0.to_f32();
+    if picture.pixels.channels() == 1 { [numbers[0]; 3] } else { [numbers[0], numbers[1], numbers[2]] }
+}
+
+#[test]
+fn profiles_say_what_numbers_mean() {
+    // The note's numbers are of 8 bits; JPEG changes red by one.
+    for (name, near) in [("p3.png", 4e-3), ("p3.tif", 4e-3), ("p3.jpg", 2e-2), ("p3.webp", 4e-3)] {
+        let found = light(&format!("icc_profiles/{name}"));
+        let is_right = found.iter().zip([0.694, 0.023, 0.0086]).all(|(a, b)| (a - b).abs() < near);
+        assert!(is_right, "{name}: {found:?}");
+    }
+    let meaning = source(&case("icc_profiles/p3.png")).pictures.remove(0).meaning;
+    assert!(meaning.has_primaries(primaries::P3) && meaning.transfer == Transfer::Srgb, "{meaning:?}");
+    assert_eq!(meaning.said_by, Some("ICC profile"));
+    // The profile of grey has a gamma of 1.8, and results of colours are sRGB.
+    let grey = source(&case("icc_profiles/gicc.png")).pictures.remove(0).meaning;
+    assert!(matches!(grey.transfer, Transfer::Gamma(gamma) if (gamma - 1.8).abs() < 1e-2), "{grey:?}");
+    let results = grey.of_results(grey.state);
+    assert!(grey.profile.is_some() && grey.warnings.is_empty() && results.is_usual());
+    assert_eq!(results.profile, None);
+}
+
+#[test]
+fn inks_become_colours_by_their_profile() {
+    for name in ["icc_profiles/cmyk_icc.jpg", "icc_profiles/cmyk_icc.tif"] {
+        let picture = source(&case(name)).pictures.remove(0);
+        let [r, g, b] = [0, 1, 2].map(|channel: usize| picture.pixels.bytes()[channel]);
+        // Little CMS gives 202, 102, 76 by the same tables.
+        let is_right = [(r, 202), (g, 102), (b, 76)].iter().all(|(found, right)| found.abs_diff(*right) <= 2);
+        assert!(is_right, "{name}: {r} {g} {b}");
+        assert_eq!((picture.meaning.is_usual(), picture.meaning.profile), (true, None));
+        assert_eq!(picture.pixels.precision(), Precision::U8);
+    }
+}
+
+#[test]
+fn numbers_mean_the_same_in_all_files_that_are_written() {
+    let folder = tempfile::tempdir().expect("a folder");
+    let read = source(&case("icc_profiles/p3.png"));
+    let pixels = read.pictures[0].pixels.clone();
+    for (primaries, transfer) in [
+        (primaries::P3, Transfer::Srgb),
+        (primaries::REC2020, Transfer::Pq),
+        (primaries::REC2020, Transfer::Hlg),
+        (primaries::REC2020, Transfer::Rec709),
+        (primaries::ADOBE, Transfer::Gamma(2.2)),
+        (primaries::AP1, Transfer::Linear),
+        (primaries::AP0, Transfer::Linear),
+    ] {
+        let meaning = Meaning { primaries, transfer, ..Meaning::display() };
+        for name in ["a.png", "a.tif", "a.jpg"] {
+            let path = folder.path().join(name);
+            let format = Format::of(&path).expect("a kind of file");
+            write::write(&path, Existing::Replace, format, vec![pixels.clone()], &meaning, &read, None)
+                .expect("it can be written");
+            let found = source(&path).pictures.remove(0).meaning;
+            let said = format!("{name}: {} as {}", meaning.words(), found.words());
+            assert!(found.warnings.is_empty(), "{said}: {:?}", found.warnings);
+            // Negative chromaticities cannot be said in PNG.
+            assert!(found.has_primaries(primaries) || primaries[5] < 0.0 && name == "a.png", "{said}");
+            match (&found.transfer, &meaning.transfer) {
+                (Transfer::Gamma(a), Transfer::Gamma(b)) => assert!((a - b).abs() < 1e-3, "{said}"),
+                (a, b) => assert_eq!(a, b, "{said}"),
+            }
+        }
+    }
+    // The usual is not said.
+    let path = folder.path().join("usual.png");
+    write::write(&path, Existing::Keep, Format::Png, vec![pixels], &Meaning::display(), &read, None)
+        .expect("it can be written");
+    let bytes = fs::read(&path).expect("it is there");
+    for chunk in [b"cICP", b"gAMA", b"cHRM", b"iCCP", b"sRGB"] {
+        assert!(bytes.windows(4).all(|window| window != chunk));
+    }
+}
+
+#[test]
+fn light_of_other_primaries_is_written_with_them() {
+    let folder = tempfile::tempdir().expect("a folder");
+    let read = source(&case("exr_color_interop/c_2020id.exr"));
+    let picture = &read.pictures[0];
+    for name in ["a.tif", "a.exr"] {
+        let path = folder.path().join(name);
+        let (format, pixels) = (Format::of(&path).expect("a kind"), picture.pixels.clone());
+        write::write(&path, Existing::Keep, format, vec![pixels], &picture.meaning, &read, None)
+            .expect("it can be written");
+        let found = source(&path).pictures.remove(0).meaning;
+        assert!(found.has_primaries(primaries::REC2020) && found.transfer == Transfer::Linear, "{found:?}");
+    }
 }

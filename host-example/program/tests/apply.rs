@@ -10,7 +10,7 @@ use exr::prelude::{FlatSamples, ReadChannels, ReadLayers, WritableImage};
 use image::{GenericImageView, Rgba, RgbaImage};
 use serde_json::Value;
 
-use support::{IN_PIXELS, folder, isophote, listing, picture, succeeds};
+use support::{IN_PIXELS, fails, folder, isophote, listing, picture, root, succeeds};
 
 fn apply(folder: &Path, style: &str, input: &str, output: &str, more: &[&str]) -> String {
     let mut command = isophote();
@@ -141,6 +141,51 @@ fn nothing_is_lost_where_a_node_changes_nothing() {
     apply(folder.path(), "gaussian", "one.png", "one.png", &["--in-place"]);
     let one = image::open(at("one.png")).expect("a picture was written").into_rgba8();
     assert_eq!(one.get_pixel(0, 0), &Rgba([10, 200, 30, 255]));
+}
+
+#[test]
+fn colours_mean_the_same_in_every_file() {
+    use isophote_pictures::convert::Conversion;
+    use isophote_pictures::exr::Selection;
+    use isophote_pictures::meaning::Meaning;
+    let folder = folder();
+    let light = |name: &str| {
+        let read = isophote_pictures::read::read(&folder.path().join(name), &Selection::default());
+        let picture = read.expect("a picture").pictures.remove(0);
+        let change = Conversion::between(&picture.meaning, &Meaning::light());
+        let pixels = change.map_or_else(|| picture.pixels.clone(), |change| change.apply(&picture.pixels).0);
+        ([0, 1, 2].map(|at: usize| pixels.to_f32()[at]), picture.meaning)
+    };
+    let case = root().join("tests/data/cases/icc_profiles/p3.png");
+    fs::copy(case, folder.path().join("p3.png")).expect("the case can be copied");
+    let nothing = ["--set", "mix=0", "--backend", "cpu"];
+    let (wanted, p3) = light("p3.png");
+    let names =
+        ["srgb", "linear", "acescg", "p3", "aces2065-1", "display-p3", "encoded-rec2020", "rec2100-pq"];
+    for (output, space) in [("a.exr", ""), ("a.png", ""), ("a.tif", "")]
+        .into_iter()
+        .chain(names.into_iter().flat_map(|space| [("b.png", space), ("b.tif", space), ("b.exr", space)]))
+    {
+        let more: &[&str] = if space.is_empty() { &[] } else { &["--output-space", space] };
+        let is_encoded = matches!(space, "srgb" | "display-p3" | "encoded-rec2020" | "rec2100-pq");
+        let more = [&nothing, more].concat();
+        if output == "b.exr" && is_encoded {
+            let mut command = isophote();
+            command.current_dir(folder.path()).args(["apply", "gaussian", "p3.png", "c.exr"]).args(more);
+            fails(&mut command, 2, &["--output-space", space, "EXR files are of light"]);
+            continue;
+        }
+        apply(folder.path(), "gaussian", "p3.png", output, &more);
+        let (found, meaning) = light(output);
+        // 8 bits hold steps of this in light; sRGB holds no negative ones.
+        let is_near = found.iter().zip(wanted).all(|(a, b)| (a - b).abs() < 8e-3);
+        assert!(is_near, "{output} {space}: {found:?}, not {wanted:?}; {}", meaning.words());
+    }
+    // A picture of the same kind keeps its profile and its very numbers.
+    assert_eq!(light("a.png").1.profile, p3.profile);
+    let bytes = |name: &str| image::open(folder.path().join(name)).expect("a picture").into_bytes();
+    assert_eq!(bytes("a.png"), bytes("p3.png"));
+    assert_eq!(bytes("a.tif"), bytes("p3.png"));
 }
 
 #[test]

@@ -99,8 +99,13 @@ fn layer(
 }
 
 fn save(path: &Path, layers: Vec<Layer<AnyChannels<FlatSamples>>>) {
+    save_shaped(path, 1.5, layers);
+}
+
+/// With pixels of this width over height; those that are not square pass through others.
+fn save_shaped(path: &Path, pixel_aspect: f32, layers: Vec<Layer<AnyChannels<FlatSamples>>>) {
     let mut attributes = ImageAttributes::new(IntegerBounds::new((-20, 3), (90, 80)));
-    attributes.pixel_aspect = 1.5;
+    attributes.pixel_aspect = pixel_aspect;
     let image: FlatImage = Image { attributes, layer_data: layers.into() };
     image.write().to_file(path).expect("the picture can be written");
 }
@@ -280,7 +285,7 @@ fn the_result_is_the_librarys() {
     channels.push(("N.X", half(0.3)));
     channels.push(("N.Y", half(0.1)));
     channels.push(("N.Z", half(0.8)));
-    save(&at("in.exr"), vec![layer("", Encoding::SMALL_LOSSLESS, channels.clone())]);
+    save_shaped(&at("in.exr"), 1.0, vec![layer("", Encoding::SMALL_LOSSLESS, channels.clone())]);
     let interleaved = |names: &[&str]| -> Vec<f16> {
         let plane = |name: &&str| match &channels.iter().find(|(n, _)| n == name).expect("a channel").1 {
             FlatSamples::F16(v) => v.clone(),
@@ -322,7 +327,7 @@ fn primaries_of_files_are_kept_and_converted() {
     let at = |name: &str| folder.path().join(name);
     let grey = || FlatSamples::F32(vec![0.25; SIZE.0 * SIZE.1]);
     let channels = vec![("R", FlatSamples::F32(wave(2.0))), ("G", grey()), ("B", grey())];
-    save(&at("in.exr"), vec![layer("", Encoding::SMALL_LOSSLESS, channels)]);
+    save_shaped(&at("in.exr"), 1.0, vec![layer("", Encoding::SMALL_LOSSLESS, channels)]);
     for space in ["p3", "rec2020", "acescg", "linear"] {
         apply(folder.path(), "gaussian", "in.exr", "out.exr", &["--space", space, "--set", "mix=0"]);
         for ((name, old), (_, new)) in parts(&at("in.exr"))[0].3.iter().zip(&parts(&at("out.exr"))[0].3) {

@@ -49,7 +49,7 @@ def blueprint(
     steadiness: float = 0.0,
     window: int = 2,
     mix: float = 1.0,
-    out: Array | None = None,
+    out: Any = None,
     frame: int = 0,
     **picture: Unpack[Picture],
 ) -> Array:
@@ -170,7 +170,7 @@ def cartoon(
     steadiness: float = 0.0,
     window: int = 2,
     mix: float = 1.0,
-    out: Array | None = None,
+    out: Any = None,
     frame: int = 0,
     **picture: Unpack[Picture],
 ) -> Array:
@@ -295,7 +295,7 @@ def coherent(
     steadiness: float = 0.0,
     window: int = 2,
     mix: float = 1.0,
-    out: Array | None = None,
+    out: Any = None,
     frame: int = 0,
     **picture: Unpack[Picture],
 ) -> Array:
@@ -398,7 +398,7 @@ def oil_paint(
     hold: int = 0,
     renewal: int = 8,
     mix: float = 1.0,
-    out: Array | None = None,
+    out: Any = None,
     frame: int = 0,
     **picture: Unpack[Picture],
 ) -> Array:
@@ -500,7 +500,7 @@ def watercolor(
     window: int = 2,
     renewal: int = 8,
     mix: float = 1.0,
-    out: Array | None = None,
+    out: Any = None,
     frame: int = 0,
     **picture: Unpack[Picture],
 ) -> Array:
@@ -609,7 +609,7 @@ def ink(
     hold: int = 0,
     renewal: int = 8,
     mix: float = 1.0,
-    out: Array | None = None,
+    out: Any = None,
     frame: int = 0,
     **picture: Unpack[Picture],
 ) -> Array:
@@ -727,7 +727,7 @@ def painting(
     steadiness: float = 0.0,
     window: int = 2,
     mix: float = 1.0,
-    out: Array | None = None,
+    out: Any = None,
     frame: int = 0,
     **picture: Unpack[Picture],
 ) -> Array:
@@ -809,7 +809,7 @@ def structure_tensor(
     levels: int = 1,
     oversample: bool = False,
     guide_weight: float = 1.0,
-    out: Array | None = None,
+    out: Any = None,
     frame: int = 0,
     **picture: Unpack[Picture],
 ) -> Array:
@@ -856,7 +856,7 @@ def edge_tangent_flow(
     kernel: Literal['box', 'gaussian'] = 'box',
     iterations: int = 3,
     separable: bool = False,
-    out: Array | None = None,
+    out: Any = None,
     frame: int = 0,
     **picture: Unpack[Picture],
 ) -> Array:
@@ -885,7 +885,7 @@ def flow_map(
     strength: float = 1.0,
     softness: float = 8.0,
     invert_y: bool = False,
-    out: Array | None = None,
+    out: Any = None,
     frame: int = 0,
     **picture: Unpack[Picture],
 ) -> Array:
@@ -915,7 +915,7 @@ def tensor_view(
     k: float = 0.04,
     alpha: float = 0.05,
     rho: float = 2.0,
-    out: Array | None = None,
+    out: Any = None,
     frame: int = 0,
     **picture: Unpack[Picture],
 ) -> Array:
@@ -971,7 +971,7 @@ def anisotropic_kuwahara(
     steadiness: float = 0.0,
     window: int = 2,
     mix: float = 1.0,
-    out: Array | None = None,
+    out: Any = None,
     frame: int = 0,
     **picture: Unpack[Picture],
 ) -> Array:
@@ -1042,7 +1042,7 @@ def generalized_kuwahara(
     threshold: float = 0.0627,
     method: Literal['spatial', 'fft'] = 'spatial',
     mix: float = 1.0,
-    out: Array | None = None,
+    out: Any = None,
     frame: int = 0,
     **picture: Unpack[Picture],
 ) -> Array:
@@ -1078,7 +1078,7 @@ def kuwahara(
     radius: float = 3.0,
     regions: Literal['squares', 'gaussian'] = 'squares',
     mix: float = 1.0,
-    out: Array | None = None,
+    out: Any = None,
     frame: int = 0,
     **picture: Unpack[Picture],
 ) -> Array:
@@ -1112,7 +1112,7 @@ def composite_lines(
     opacity: float = 1.0,
     paper: Color = (1.0, 1.0, 1.0, 0.0),
     mix: float = 1.0,
-    out: Array | None = None,
+    out: Any = None,
     frame: int = 0,
     **picture: Unpack[Picture],
 ) -> Array:
@@ -1149,7 +1149,7 @@ def quantize_luminance(
     omega_phi: float = 1.6,
     least_gradient: float = 0.0,
     mix: float = 1.0,
-    out: Array | None = None,
+    out: Any = None,
     frame: int = 0,
     **picture: Unpack[Picture],
 ) -> Array:
@@ -1188,7 +1188,7 @@ def warp_sharpen(
     sigma_w: float = 1.5,
     phi_w: float = 2.7,
     mix: float = 1.0,
-    out: Array | None = None,
+    out: Any = None,
     frame: int = 0,
     **picture: Unpack[Picture],
 ) -> Array:
@@ -1225,7 +1225,7 @@ def difference_of_gaussians(
     epsilon_p: float = 79.5,
     phi_p: float = 0.017,
     threshold: Literal['none', 'binary', 'tanh', 'smoothstep'] = 'tanh',
-    out: Array | None = None,
+    out: Any = None,
     frame: int = 0,
     **picture: Unpack[Picture],
 ) -> Array:
@@ -1265,7 +1265,7 @@ def edge_detector(
     low: float = 10.0,
     high: float = 30.0,
     reach: float = 120.0,
-    out: Array | None = None,
+    out: Any = None,
     frame: int = 0,
     **picture: Unpack[Picture],
 ) -> Array:
@@ -1318,7 +1318,7 @@ def flow_dog(
     guide_weight: float = 0.0,
     steadiness: float = 0.0,
     window: int = 2,
-    out: Array | None = None,
+    out: Any = None,
     frame: int = 0,
     **picture: Unpack[Picture],
 ) -> Array:
@@ -1393,7 +1393,7 @@ def shock(
     time_step: float = 0.4,
     rho: float = 2.0,
     mix: float = 1.0,
-    out: Array | None = None,
+    out: Any = None,
     frame: int = 0,
     **picture: Unpack[Picture],
 ) -> Array:
@@ -1455,7 +1455,7 @@ def coherence_enhancing(
     steadiness: float = 0.0,
     window: int = 2,
     mix: float = 1.0,
-    out: Array | None = None,
+    out: Any = None,
     frame: int = 0,
     **picture: Unpack[Picture],
 ) -> Array:
@@ -1518,7 +1518,7 @@ def optical_flow(
     *,
     direction: Literal['backward', 'forward'] = 'backward',
     quality: Literal['fast', 'medium', 'fine'] = 'medium',
-    out: Array | None = None,
+    out: Any = None,
     frame: int = 0,
     **picture: Unpack[Picture],
 ) -> Array:
@@ -1549,7 +1549,7 @@ def steady(
     window: int = 2,
     color_agreement: float = 8.0,
     mix: float = 1.0,
-    out: Array | None = None,
+    out: Any = None,
     frame: int = 0,
     **picture: Unpack[Picture],
 ) -> Array:
@@ -1589,7 +1589,7 @@ def gaussian(
     flow: Any = None,
     sigma: float = 2.0,
     mix: float = 1.0,
-    out: Array | None = None,
+    out: Any = None,
     frame: int = 0,
     **picture: Unpack[Picture],
 ) -> Array:
@@ -1621,7 +1621,7 @@ def bilateral(
     space: Literal['lab', 'rgb'] = 'lab',
     cutoff: float = 3.0,
     mix: float = 1.0,
-    out: Array | None = None,
+    out: Any = None,
     frame: int = 0,
     **picture: Unpack[Picture],
 ) -> Array:
@@ -1663,7 +1663,7 @@ def line_integral_convolution(
     max_angle: float = 0.0,
     step: float = 1.0,
     mix: float = 1.0,
-    out: Array | None = None,
+    out: Any = None,
     frame: int = 0,
     **picture: Unpack[Picture],
 ) -> Array:
@@ -1720,7 +1720,7 @@ def oriented_bilateral(
     steadiness: float = 0.0,
     window: int = 2,
     mix: float = 1.0,
-    out: Array | None = None,
+    out: Any = None,
     frame: int = 0,
     **picture: Unpack[Picture],
 ) -> Array:
@@ -1779,7 +1779,7 @@ def flow_bilateral(
     integrator: Literal['euler', 'rk2'] = 'rk2',
     placement: Literal['equidistant', 'pixel_centres'] = 'pixel_centres',
     mix: float = 1.0,
-    out: Array | None = None,
+    out: Any = None,
     frame: int = 0,
     **picture: Unpack[Picture],
 ) -> Array:
@@ -1829,7 +1829,7 @@ def anisotropic_diffusion(
     sigma: float = 1.0,
     rho: float = 3.0,
     mix: float = 1.0,
-    out: Array | None = None,
+    out: Any = None,
     frame: int = 0,
     **picture: Unpack[Picture],
 ) -> Array:
@@ -1875,7 +1875,7 @@ def mean_curvature_flow(
     shock_every: int = 0,
     rho: float = 2.0,
     mix: float = 1.0,
-    out: Array | None = None,
+    out: Any = None,
     frame: int = 0,
     **picture: Unpack[Picture],
 ) -> Array:
@@ -1916,7 +1916,7 @@ def morphology(
     operator: Literal['dilate', 'erode', 'open', 'close', 'open_close', 'close_open'] = 'open_close',
     radius: float = 3.0,
     mix: float = 1.0,
-    out: Array | None = None,
+    out: Any = None,
     frame: int = 0,
     **picture: Unpack[Picture],
 ) -> Array:
@@ -1952,7 +1952,7 @@ def flow_dilation(
     seed: int = 1,
     hold: int = 0,
     mix: float = 1.0,
-    out: Array | None = None,
+    out: Any = None,
     frame: int = 0,
     **picture: Unpack[Picture],
 ) -> Array:

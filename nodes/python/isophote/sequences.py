@@ -56,7 +56,7 @@ class Sequence:
         self._sequence = native.Sequence(memory, max_motion)
         self._lock = threading.RLock()
 
-    def frame(self, number: int, out: Array | None = None) -> Array:
+    def frame(self, number: int, out: Any = None) -> Array:
         """The stylized picture of a frame, in `out` where that is given."""
         picture = self._source("color", number)
         if picture is None:

@@ -36,7 +36,7 @@ def stub(node: isophote.Node) -> str:
     for param in node.params:
         default = tuple(round(v, 4) for v in param.default) if isinstance(param.default, tuple) else param.default
         lines.append(f"    {param.id}: {type_of(param)} = {default!r},")
-    lines += ["    out: Array | None = None,", "    frame: int = 0,", "    **picture: Unpack[Picture],"]
+    lines += ["    out: Any = None,", "    frame: int = 0,", "    **picture: Unpack[Picture],"]
     text = docstring(node).replace("\\", "\\\\").replace('"""', "'''")
     lines.append(") -> Array:")
     lines.append(textwrap.indent(f'"""{text}\n"""', "    ", lambda line: bool(line.strip())))

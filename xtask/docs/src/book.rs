@@ -7,7 +7,7 @@ use isophote::registry;
 use std::path::Path;
 
 /// Pages written for the site: part, place, title.
-const WRITTEN: [(&str, &str, &str); 24] = [
+const WRITTEN: [(&str, &str, &str); 25] = [
     ("", "index", "Isophote"),
     ("", "install", "Install"),
     ("For artists", "artists/first-look", "First look in five minutes"),
@@ -25,6 +25,7 @@ const WRITTEN: [(&str, &str, &str); 24] = [
     ("For render TDs", "farms/sequences", "Sequences"),
     ("For render TDs", "farms/masks", "Masks and layered looks"),
     ("For render TDs", "farms/scenes", "Scenes"),
+    ("For render TDs", "farms/formats", "Formats"),
     ("For render TDs", "farms/memory", "Memory and threads"),
     ("For Python programmers", "python/arrays", "Arrays, looks, sequences"),
     ("For Blender users", "blender/extension", "The Blender extension"),

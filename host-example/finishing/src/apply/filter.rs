@@ -8,12 +8,12 @@ use super::frame_cache::Window;
 use super::memory::Needs;
 use super::picture_request::PictureRequest;
 use super::square;
+use super::stages::{history, stages};
 use crate::stylize::style::Style;
-use isophote_example::history::{is_stage, split};
 use isophote_files::error::{AtPlace, Error, Result};
-use isophote_loader::abi::{IsophoteHistory, IsophoteRequest};
+use isophote_loader::abi::IsophoteRequest;
 use isophote_loader::catalogue::Kind;
-use isophote_loader::plan::{Role, Texture};
+use isophote_loader::plan::Texture;
 use isophote_loader::{Control, Device, Input, Library, Sequence};
 use isophote_pictures::convert::Conversion;
 use isophote_pictures::exr::{ExrFile, Guide};
@@ -49,6 +49,7 @@ pub struct Filter {
     layers: Vec<Layer>,
     device: Option<Arc<Device>>,
     space: Option<Space>,
+    output_space: Option<Space>,
     threads: u32,
 }
 
@@ -193,7 +194,13 @@ impl Filter {
         threads: u32,
     ) -> Result<Self> {
         let device = backend.device(&library)?.map(Arc::new);
-        Ok(Self { library, layers: layers(looks)?, device, space, threads })
+        Ok(Self { library, layers: layers(looks)?, device, space, output_space: None, threads })
+    }
+
+    /// The same with results in a space of their own.
+    #[must_use]
+    pub fn into_space(self, output_space: Option<Space>) -> Self {
+        Self { output_space, ..self }
     }
 
     /// The library that it runs.
@@ -207,7 +214,8 @@ impl Filter {
     /// As [`Filter::new`].
     pub fn beside(&self, looks: Vec<MaskedStyle>) -> Result<Self> {
         let (library, device) = (self.library.clone(), self.device.clone());
-        Ok(Self { library, layers: layers(looks)?, device, space: self.space, threads: self.threads })
+        let Self { space, output_space, threads, .. } = *self;
+        Ok(Self { library, layers: layers(looks)?, device, space, output_space, threads })
     }
 
     /// Number of them that should work on the frames of a sequence. Two on a graphics device: while it computes one
@@ -247,6 +255,11 @@ impl Filter {
         }
         let in_place = exr.filter(|_| format == Format::Exr);
         let count = if in_place.is_some() { source.pictures.len() } else { source.pictures.len().min(1) };
+        if in_place.is_some() && self.output_space.is_some() {
+            let problem =
+                "cannot be of one layer of an EXR file, whose header says what the numbers of all mean";
+            return Err(Error::input("--output-space", problem, "leave it out, or write a new kind of file"));
+        }
         let to = format.state(source.state());
         let scalar = self.layers.iter().all(|layer| layer.look.style.kind != Kind::Color);
         let mut filtered =
@@ -261,7 +274,8 @@ impl Filter {
             let there = working.there.as_ref();
             let (color, bad) = own.working(at, there).unwrap_or((&picture.pixels, 0));
             filtered.replaced += bad;
-            let precision = if to == source.state() { color.precision() } else { Precision::F32 };
+            let is_same = to == source.state() && self.output_space.is_none();
+            let precision = if is_same { color.precision() } else { Precision::F32 };
             let size = (color.width(), color.height());
             let usual = self.library.request(size).map_err(|e| e.at(name, "use a smaller picture"))?;
             let request = PictureRequest::of(picture, working.space, own.number).request(usual);
@@ -275,7 +289,7 @@ impl Filter {
             filtered.replaced += replaced;
             result = square::unmake(&self.library, name, picture, result)?;
             if !scalar {
-                let meaning = format.kept(working.of_results(to));
+                let meaning = format.kept(working.of_results(to, self.output_space));
                 result = working.leave(result, &meaning);
                 if at == 0 {
                     filtered.meaning = meaning;
@@ -446,31 +460,6 @@ struct LayerJob<'a> {
     /// The picture in its working space.
     color: &'a Pixels,
     window: &'a Window<'a>,
-}
-
-/// Plans for so many frames before the one that is computed.
-fn history(past: u32) -> IsophoteHistory {
-    IsophoteHistory { past, max_motion: 0.0 }
-}
-
-/// Bytes of the stages that a frame reads of those before and after it, which are at most so many, and of its own.
-fn stages(
-    library: &Library,
-    style: &Style,
-    request: &IsophoteRequest,
-    frames: [u32; 2],
-) -> isophote_loader::Result<u64> {
-    let [past, future] = frames;
-    if past + future == 0 {
-        return Ok(0);
-    }
-    let plan = library.plan_in_order(&style.graph, request, &history(past))?;
-    let textures = plan.textures()?;
-    let kept = textures.iter().filter(|t| t.role == Role::Output && is_stage(t.name));
-    // Of farther frames only inputs are read.
-    let read = textures.iter().filter_map(|t| split(t.name)).filter(|(name, _)| is_stage(name));
-    let past = read.map(|(_, before)| before as u64).max().unwrap_or(0);
-    Ok(kept.map(Texture::bytes).sum::<u64>() * (past + u64::from(future) + 1))
 }
 
 /// Guides that a style can use, whether or not they are connected.

@@ -13,4 +13,5 @@ pub mod reader;
 pub mod report;
 pub mod sequence;
 pub mod square;
+mod stages;
 pub mod tasks;

@@ -111,7 +111,14 @@ fn save(path: &Path, picture: &Pixels) -> Result<()> {
         channels: picture.channels() as usize,
         data: picture.to_f32(),
     };
-    floats::save_exr(path, Existing::Keep, &data, components(picture.channels()), Precision::Half, None)
+    floats::save_exr(
+        path,
+        Existing::Keep,
+        &data,
+        components(picture.channels()),
+        Precision::Half,
+        (None, None),
+    )
 }
 
 /// Lets the system count the peak of this process anew, where it can.

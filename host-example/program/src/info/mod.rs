@@ -1,6 +1,7 @@
 //! What is understood of files, as facts for people and for programs.
 
 mod facts;
+mod meaning;
 mod picture;
 mod scene;
 mod style;

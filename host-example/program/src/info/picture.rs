@@ -5,26 +5,13 @@ use std::path::{Path, PathBuf};
 use serde_json::{Value, json};
 
 use super::facts::Facts;
+use super::meaning;
 use isophote_files::error::Result;
 use isophote_files::frames::{Pattern, sequence_of};
 use isophote_pictures::exr::{Guide, Offers, Selection};
-use isophote_pictures::meaning::{Alpha, ImageState, Meaning, Window};
+use isophote_pictures::meaning::Window;
 use isophote_pictures::pixels::Precision;
-use isophote_pictures::primaries::{
-    ADOBE, AP0, AP1, Chromaticities, P3, REC709, REC2020,
-};
 use isophote_pictures::read::Unread;
-use isophote_pictures::transfer::Transfer;
-
-/// Names of primaries.
-const PRIMARIES: [(&str, Chromaticities); 6] = [
-    ("Rec.709", REC709),
-    ("P3-D65", P3),
-    ("Rec.2020", REC2020),
-    ("AP1", AP1),
-    ("AP0", AP0),
-    ("Adobe RGB", ADOBE),
-];
 
 /// Adds what a picture holds.
 ///
@@ -38,7 +25,7 @@ pub fn add(facts: &mut Facts, path: &Path) -> Result<()> {
     let source = opened.decode(&file)?;
     facts.add("format", format);
     let Some(picture) = source.pictures.first() else { return Ok(()) };
-    let (pixels, meaning) = (&picture.pixels, &picture.meaning);
+    let (pixels, meant) = (&picture.pixels, &picture.meaning);
     let (width, height) = (pixels.width(), pixels.height());
     facts.told("size", json!([width, height]), format!("{width}x{height}"));
     facts.add("channels", pixels.channels());
@@ -52,11 +39,10 @@ pub fn add(facts: &mut Facts, path: &Path) -> Result<()> {
         },
     );
     window(facts, "data_window", Some(picture.window()));
-    window(facts, "display_window", meaning.display);
-    facts.add("pixel_aspect", f64::from(meaning.pixel_aspect));
-    colours(facts, meaning);
+    window(facts, "display_window", meant.display);
+    meaning::add(facts, meant);
     layers(facts, &offers);
-    facts.add("warnings", meaning.warnings.clone());
+    facts.add("warnings", meant.warnings.clone());
     Ok(())
 }
 
@@ -71,7 +57,7 @@ fn frames(facts: &mut Facts, path: &Path) -> Result<PathBuf> {
     let frames = pattern.on_disk()?;
     let (first, last) = (frames.first().copied().unwrap_or(0), frames.last().copied().unwrap_or(0));
     facts.add("kind", "sequence");
-    let missing = (last - first + 1).saturating_sub(frames.len() as i64);
+    let missing = last.saturating_sub(first).saturating_add(1).saturating_sub(frames.len() as i64);
     facts.told(
         "frames",
         json!({ "first": first, "last": last, "count": frames.len(), "missing": missing }),
@@ -91,49 +77,6 @@ fn window(facts: &mut Facts, name: &'static str, window: Option<Window>) {
     }
 }
 
-/// Adds what the numbers mean.
-fn colours(facts: &mut Facts, meaning: &Meaning) {
-    let primaries = PRIMARIES.iter().find(|(_, known)| meaning.has_primaries(*known)).map(|(name, _)| *name);
-    let own = meaning.primaries.map(|n| n.to_string()).join(" ");
-    facts.told(
-        "primaries",
-        json!({ "name": primaries, "xy": meaning.primaries }),
-        primaries.map_or(own, str::to_owned),
-    );
-    let transfer = match &meaning.transfer {
-        Transfer::Linear => "linear".into(),
-        Transfer::Srgb => "sRGB".into(),
-        Transfer::Rec709 => "Rec.709".into(),
-        Transfer::Gamma(gamma) => format!("gamma {gamma}"),
-        Transfer::Pq => "PQ".into(),
-        Transfer::Hlg => "HLG".into(),
-        Transfer::Curves(_) => "curves of the profile".to_owned(),
-    };
-    facts.add("transfer", transfer);
-    let said = meaning.said_by.map_or("assumed: the file says nothing of colours".into(), |by| format!("said by {by}"));
-    facts.told("colours", meaning.said_by.map_or("assumed", |by| by), said);
-    facts.add(
-        "state",
-        match meaning.state {
-            ImageState::DisplayReferred => "display-referred",
-            ImageState::SceneReferred => "scene-referred",
-        },
-    );
-    facts.add(
-        "alpha",
-        match meaning.alpha {
-            Alpha::None => "none",
-            Alpha::Straight => "straight",
-            Alpha::Premultiplied => "premultiplied",
-        },
-    );
-    facts.told(
-        "profile",
-        meaning.profile.as_ref().map(|profile| profile.len()),
-        meaning.profile.as_ref().map_or("none".into(), |profile| format!("ICC, {} bytes", profile.len())),
-    );
-}
-
 /// Adds the layers of an EXR file, and the guides that are found beside the one that is read.
 fn layers(facts: &mut Facts, offers: &Offers) {
     let shown = |name: &str| if name.is_empty() { "(main)".to_owned() } else { name.to_owned() };
@@ -142,7 +85,8 @@ fn layers(facts: &mut Facts, offers: &Offers) {
         json!({ "name": shown(&layer.name), "views": views, "data": layer.is_data.then_some(true) })
     };
     facts.add("layers", offers.layers.iter().map(layer).collect::<Vec<_>>());
-    let guide = |(guide, channels): &(Guide, Vec<String>)| json!({ "name": guide.id(), "channels": channels });
+    let guide =
+        |(guide, channels): &(Guide, Vec<String>)| json!({ "name": guide.id(), "channels": channels });
     facts.add("guides", offers.guides.iter().map(guide).collect::<Vec<_>>());
     facts.add("motion", offers.guides.iter().any(|(guide, _)| guide.is_motion()));
 }

@@ -43,11 +43,10 @@ pub fn add(facts: &mut Facts, path: &Path) -> Result<()> {
     facts.add("lights", lights(&scene));
     facts.add("cameras", list_file_cameras(&scene));
     facts.add("skins", scene.skins.len());
-    let animation = |animation: &isophote_scene::animation::Animation| {
-        json!({ "name": name(&animation.name), "seconds": animation.duration(), "channels": animation.channels.len() })
-    };
+    let animation = |animation: &isophote_scene::animation::Animation| json!({ "name": name(&animation.name), "seconds": animation.duration(), "channels": animation.channels.len() });
     facts.add("animations", scene.animations.iter().map(animation).collect::<Vec<_>>());
-    let extension = |(name, is_understood): &(String, bool)| json!({ "name": name, "understood": is_understood });
+    let extension =
+        |(name, is_understood): &(String, bool)| json!({ "name": name, "understood": is_understood });
     facts.add("extensions", scene.extensions.iter().map(extension).collect::<Vec<_>>());
     facts.add("warnings", scene.warnings);
     Ok(())

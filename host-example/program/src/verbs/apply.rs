@@ -103,10 +103,14 @@ pub struct ApplyArgs {
     /// Place where the filter runs.
     #[arg(long, value_enum, default_value_t = Backend::Auto)]
     pub backend: Backend,
-    /// Colour space of the picture and of the result; without it sRGB for integers, linear for floats, and what
-    /// the chromaticities or the colorInteropID of an EXR file say.
+    /// Colour space of the picture [default: what the file says by its ICC profile, chunks of PNG, chromaticities or
+    /// colorInteropID; else sRGB for integers, linear Rec.709 for floats].
     #[arg(long, value_enum)]
     pub space: Option<Space>,
+    /// Colour space of the result [default: the picture's where files of one kind are made of each other, sRGB for pictures
+    /// that are made of light, linear Rec.709 for EXR files of others].
+    #[arg(long, value_enum)]
+    pub output_space: Option<Space>,
     /// The layer of an EXR file that is read and replaced [default: the main layer].
     #[arg(long, value_name = "LAYER")]
     pub layer: Option<String>,
@@ -187,6 +191,7 @@ pub fn run(args: &ApplyArgs) -> Result<()> {
     }
     let tasks = args.tasks()?;
     let format = Format::of(&tasks.ready[0].output)?;
+    format.check_space(args.output_space)?;
     let library = Library::open()?;
     let threads = limits::start_threads(args.threads as usize)?;
     let entries = args.entries()?;
@@ -204,6 +209,7 @@ pub fn run(args: &ApplyArgs) -> Result<()> {
     args.check_results(&tasks, &planner, &choices)?;
     let guides = args.guides_found(&tasks, &selection, opened.as_ref(), &planner)?;
     let filter = Filter::new(library.clone(), looks, backend, args.space, args.threads)?;
+    let filter = filter.into_space(args.output_space);
     let most = args.memory.unwrap_or_else(memory::usual);
     let needs = args.needs(&mut planner, &tasks, opened.as_ref(), most)?;
     if args.dry_run {

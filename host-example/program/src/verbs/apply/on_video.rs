@@ -28,6 +28,7 @@ impl ApplyArgs {
             ("--dry-run", self.dry_run),
             ("--motion", self.motion.is_some() && !self.estimates_motion()),
             ("--into", self.into.is_some()),
+            ("--output-space", self.output_space.is_some()),
         ];
         if let Some((option, _)) = others.iter().find(|(_, given)| *given) {
             return wrong(option, "is not for videos", "leave it out");

@@ -71,7 +71,8 @@ pub fn shown(
 ) -> ColorImage {
     let across = width / fineness;
     let down = colors.len() / width.max(1) / fineness;
-    let change = meaning.space.primaries().and_then(|from| Change::new(from, REC709));
+    let primaries = Some(meaning.space.primaries()).filter(|from| *from != REC709);
+    let change = primaries.and_then(|from| Change::new(from, REC709));
     let mut pixels = vec![Color32::BLACK; across * down];
     pixels.par_chunks_mut(across.max(1)).enumerate().for_each(|(y, line)| {
         for (x, pixel) in line.iter_mut().enumerate() {
