@@ -73,6 +73,8 @@ fn decode(bytes: &[u8], ids: &[(&str, u32)], accessors: &Accessors) -> Result<Ge
             Err(e) => Err(format!("its data cannot be decoded: {e}")),
         }
     })?;
+    let held = |id: i32| mesh.try_attribute(id).map_or(0, |attribute| attribute.buffer().data_size());
+    budget.take((0..mesh.num_attributes()).map(held).sum(), 1)?;
     let count = mesh.num_points();
     budget.take(mesh.num_faces(), 3 * size_of::<u32>())?;
     let indices = mesh.faces().iter().flat_map(|face| face.map(|point| point.0)).collect();

@@ -1,5 +1,5 @@
-//! Buffer views that are compressed by EXT_meshopt_compression and KHR_meshopt_compression. Both have one format;
-//! decoders are as their specification has it, without a library: no crate decodes version 1 without unsafe code.
+//! Buffer views that are compressed by EXT_meshopt_compression and KHR_meshopt_compression. Both have one format,
+//! which is decoded here as it is specified: `meshopt` compiles C++, and `meshopt-rs` does not know version 1.
 
 mod attributes;
 mod filters;
