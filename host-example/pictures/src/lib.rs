@@ -20,6 +20,7 @@
 pub mod cicp;
 mod colours;
 pub mod convert;
+mod exif;
 pub mod exr;
 pub mod floats;
 mod hdr;

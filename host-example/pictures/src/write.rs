@@ -5,6 +5,7 @@ use std::path::Path;
 
 use image::{ExtendedColorType, ImageEncoder, ImageResult};
 
+use crate::convert::Conversion;
 use crate::exr::{ExrFile, components};
 use crate::floats;
 use crate::meaning::{ImageState, Meaning};
@@ -174,6 +175,10 @@ fn write_exr(
         Precision::U8 | Precision::F16 => floats::Precision::Half,
         Precision::U16 | Precision::F32 => floats::Precision::Float,
     };
+    // Numbers that somebody says to be encoded become light, which is what these files are of.
+    let light = Meaning { transfer: Transfer::Linear, ..meaning.clone() };
+    let changed = Conversion::between(meaning, &light).map(|change| change.apply(pixels).0);
+    let pixels = changed.as_ref().unwrap_or(pixels);
     let channels = pixels.channels();
     let data = floats::Picture {
         width: pixels.width(),
@@ -185,8 +190,8 @@ fn write_exr(
     floats::save_exr(path, existing, &data, components(channels), precision, chromaticities)
 }
 
-/// Says by a colour profile what numbers mean: the one of the source where it is one of pictures with these channels, else one
-/// that is made where the numbers are not what is assumed without.
+/// A colour profile for a file: the one of the source where it is one of pictures with these channels, else one that is made
+/// where the numbers are not what is assumed without.
 fn say(encoder: &mut impl ImageEncoder, meaning: &Meaning, channels: u32) {
     let made = || icc::made(meaning).filter(|_| !meaning.is_usual() && channels > 1);
     if let Some(profile) = meaning.profile_of(channels).map(<[u8]>::to_vec).or_else(made) {
