@@ -1,5 +1,6 @@
 //! Pictures in KTX2 files that are compressed by Basis Universal, as KHR_texture_basisu has them: ETC1S with BasisLZ, and
-//! UASTC, plain or with Zstandard; and pixels of 8 bits as they are, which some programs write instead. The header is checked here before the decoder of blocks, a crate, sees the file.
+//! UASTC, plain or with Zstandard; and pixels of 8 bits as they are, which some programs write instead. The header is
+//! checked here before the decoder of blocks, a crate, sees the file.
 //! Colours stay as they are encoded: what a texture is used for says how they are read.
 
 use basisu::{DecodeFlags, TargetFormat, Transcoder};
