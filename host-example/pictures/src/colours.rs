@@ -4,7 +4,8 @@ use image::DynamicImage;
 
 use crate::meaning::{Alpha, Meaning};
 use crate::pixels::{Pixels, Precision, Samples};
-use crate::{icc, inks, png};
+use crate::space::Space;
+use crate::{exif, icc, inks, png, tiff};
 
 /// Colours of inks through their profile; nothing for pictures of other colours, and without a profile that is understood.
 pub fn of_inks(kind: &str, bytes: &[u8], profile: Option<&[u8]>, most: u64) -> Option<DynamicImage> {
@@ -28,6 +29,7 @@ pub fn meant(
     profile: Option<Vec<u8>>,
     pixels: &mut Pixels,
     (is_grey, is_converted): (bool, bool),
+    exif: Option<&[u8]>,
 ) -> Meaning {
     let mut meaning = match pixels.precision() {
         Precision::F16 | Precision::F32 => Meaning::light(),
@@ -50,6 +52,13 @@ pub fn meant(
     }
     match profile.filter(|_| counts) {
         Some(profile) => icc::meant(meaning, profile, pixels, is_grey),
+        None if kind == "TIFF" => match tiff::primaries(bytes) {
+            Some(primaries) => Meaning { primaries, said_by: Some("PrimaryChromaticities"), ..meaning },
+            None => meaning,
+        },
+        None if exif.is_some_and(exif::is_adobe_rgb) => {
+            Meaning { said_by: Some(exif::NAME), ..meaning.named(Some(Space::AdobeRgb)) }
+        }
         None => meaning,
     }
 }

@@ -17,7 +17,7 @@ use crate::pixels::{Pixels, Samples};
 use crate::primaries::{self, Chromaticities};
 use crate::transfer::{Curve, Transfer, srgb_encode};
 
-/// What in a file says which colours are meant.
+/// The part of a file that says which colours are meant.
 pub const NAME: &str = "ICC profile";
 /// Samples of a profile's curve.
 const SAMPLES: usize = 4096;

@@ -32,14 +32,14 @@ pub fn read(kind: &str, bytes: &[u8], most: usize) -> Option<Pixels> {
     if kind == "JPEG" { read_jpeg(bytes) } else { read_tiff(bytes, most) }
 }
 
-/// How a JPEG file codes its inks.
+/// Coding of the inks of a JPEG file; nothing for other colours.
 fn of_jpeg(bytes: &[u8]) -> Option<ColorSpace> {
     let mut decoder = JpegDecoder::new_with_options(ZCursor::new(bytes), options());
     decoder.decode_headers().ok()?;
     decoder.input_colorspace().filter(|space| matches!(space, ColorSpace::CMYK | ColorSpace::YCCK))
 }
 
-/// Those of the decoder that reads all other JPEG files.
+/// Options of the decoder that reads all other JPEG files.
 fn options() -> DecoderOptions {
     DecoderOptions::default().set_strict_mode(false).set_max_width(usize::MAX).set_max_height(usize::MAX)
 }

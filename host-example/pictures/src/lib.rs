@@ -21,6 +21,7 @@ pub mod cicp;
 mod colours;
 pub mod convert;
 mod display;
+mod exif;
 pub mod exr;
 pub mod floats;
 mod hdr;

@@ -76,7 +76,7 @@ pub struct Meaning {
     pub data: Option<Window>,
     /// The window that is shown, of which the pixels may be a part or more.
     pub display: Option<Window>,
-    /// What in the file says which colours are meant; nothing where it is silent and the usual is assumed.
+    /// The part of the file that says which colours are meant; nothing where it is silent and the usual is assumed.
     pub said_by: Option<&'static str>,
     /// The ICC profile of the file, where it is one of these numbers.
     pub profile: Option<Arc<[u8]>>,

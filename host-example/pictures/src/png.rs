@@ -16,7 +16,7 @@ const FRAME: usize = 12;
 const HEAD: usize = SIGNATURE + FRAME + 13;
 /// Unit of numbers in `gAMA` and `cHRM`.
 const UNIT: f32 = 100_000.0;
-/// What files of sRGB have in `gAMA`, about: their curve is no power.
+/// Numbers that files of sRGB have in `gAMA`: their curve is no power.
 const OF_SRGB: std::ops::Range<u32> = 45_000..46_000;
 
 /// Chunks of a file, in their order, and whether the last is there.
@@ -40,7 +40,7 @@ fn chunks(bytes: &[u8]) -> Chunks<'_> {
     Chunks { rest: bytes.get(SIGNATURE..).unwrap_or_default() }
 }
 
-/// Tells whether the last chunk is there. Decoders have all pixels before it, and some of the one before it.
+/// True where the last chunk is there. Decoders have all pixels before it, and some of the one before it.
 pub fn is_whole(bytes: &[u8]) -> bool {
     chunks(bytes).any(|(kind, _)| kind == *b"IEND")
 }

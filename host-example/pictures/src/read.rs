@@ -377,6 +377,7 @@ fn picture(path: &Path, mut decoder: impl ImageDecoder, (kind, bytes): (&str, &[
     check_size(path, width.into(), height.into())?;
     // Before the limits of the picture, which are too small for the profile of a small one; decoders have others until then.
     let profile = decoder.icc_profile().unwrap_or_default();
+    let exif = if kind == "JPEG" { decoder.exif_metadata().unwrap_or_default() } else { None };
     // The size bounds the picture; what decoders need meanwhile is bounded by several times that.
     let mut limits = Limits::no_limits();
     let most = decoder.total_bytes().saturating_mul(4).saturating_add(LEAST);
@@ -406,7 +407,8 @@ fn picture(path: &Path, mut decoder: impl ImageDecoder, (kind, bytes): (&str, &[
     };
     let mut pixels = Pixels::new(width, height, channels, samples)
         .ok_or_else(|| Error::malformed(path, kind, "it does not hold as many pixels as it says"))?;
-    let meaning = colours::meant((kind, bytes), profile, &mut pixels, (is_grey, is_converted));
+    let meaning =
+        colours::meant((kind, bytes), profile, &mut pixels, (is_grey, is_converted), exif.as_deref());
     Ok(Source::alone(pixels, meaning))
 }
 

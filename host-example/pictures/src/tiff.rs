@@ -3,6 +3,7 @@
 
 use std::io::Cursor;
 
+use crate::primaries::{Change, Chromaticities, REC709};
 use image::error::{DecodingError, LimitError, LimitErrorKind};
 use image::metadata::Orientation;
 use image::{ColorType, ImageDecoder, ImageError, ImageFormat, ImageResult};
@@ -15,6 +16,10 @@ use crate::tiff_write::{ASSOCIATED, UNASSOCIATED};
 
 /// The number of unsigned integers among sample formats.
 const UNSIGNED: u16 = 1;
+
+/// Tags of x and y of white, and of red, green and blue.
+const WHITE_POINT: u16 = 318;
+const PRIMARY_CHROMATICITIES: u16 = 319;
 
 /// What a file says of its fourth sample.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -132,6 +137,22 @@ impl ImageDecoder for Wide<'_> {
     }
 }
 
+/// Primaries that tags of a file name, white apart from the others; nothing without, and where they span no colours.
+pub fn primaries(bytes: &[u8]) -> Option<Chromaticities> {
+    let mut decoder = Decoder::new(Cursor::new(bytes)).ok()?;
+    let mut numbers = |tag| -> Option<Vec<f32>> {
+        let Value::List(list) = decoder.find_tag(Tag::Unknown(tag)).ok()?? else { return None };
+        let number = |value: &Value| match value {
+            Value::Rational(above, below) => Some(*above as f32 / *below as f32),
+            _ => None,
+        };
+        list.iter().map(number).collect()
+    };
+    let (white, others) = (numbers(WHITE_POINT)?, numbers(PRIMARY_CHROMATICITIES)?);
+    let found = [others, white].concat().try_into().ok()?;
+    Change::new(found, REC709).map(|_| found)
+}
+
 /// Samples pixel by pixel: planes follow each other where they are apart.
 pub fn interleaved<T: Copy>(samples: Vec<T>, is_planar: bool, channels: usize) -> Vec<T> {
     if !is_planar {
@@ -166,5 +187,22 @@ mod tests {
         for (wide, narrowed) in [(0, 0), (u32::MAX, u16::MAX), (0x8080_8080, 0x8080), (65536, 1)] {
             assert_eq!(narrow(wide), narrowed);
         }
+    }
+    #[test]
+    fn primaries_are_those_of_the_tags() {
+        use tiff::encoder::{Rational, TiffEncoder, colortype::RGB8};
+        let file = |numbers: [u32; 8]| {
+            let mut bytes = Cursor::new(Vec::new());
+            let mut encoder = TiffEncoder::new(&mut bytes).unwrap();
+            let mut image = encoder.new_image::<RGB8>(1, 1).unwrap();
+            let values = numbers.map(|n| Rational { n, d: 10_000 });
+            image.encoder().write_tag(Tag::Unknown(WHITE_POINT), &values[6..]).unwrap();
+            image.encoder().write_tag(Tag::Unknown(PRIMARY_CHROMATICITIES), &values[..6]).unwrap();
+            image.write_data(&[1, 2, 3]).unwrap();
+            bytes.into_inner()
+        };
+        let p3 = primaries(&file([6800, 3200, 2650, 6900, 1500, 600, 3127, 3290])).unwrap();
+        assert!(crate::primaries::same(p3, crate::primaries::P3), "{p3:?}");
+        assert_eq!(primaries(&file([0; 8])), None);
     }
 }

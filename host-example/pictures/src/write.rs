@@ -6,6 +6,7 @@ use std::path::Path;
 use image::codecs::jpeg::{PixelDensity, PixelDensityUnit};
 use image::{ExtendedColorType, ImageEncoder, ImageResult};
 
+use crate::convert::Conversion;
 use crate::exr::{ExrFile, components};
 use crate::floats;
 use crate::meaning::{Alpha, ImageState, Meaning};
@@ -186,6 +187,10 @@ fn write_exr(
         Precision::U8 | Precision::F16 => floats::Precision::Half,
         Precision::U16 | Precision::F32 => floats::Precision::Float,
     };
+    // Numbers that somebody says to be encoded become light, which is what these files are of.
+    let light = Meaning { transfer: Transfer::Linear, ..meaning.clone() };
+    let changed = Conversion::between(meaning, &light).map(|change| change.apply(pixels).0);
+    let pixels = changed.as_ref().unwrap_or(pixels);
     let channels = pixels.channels();
     let data = floats::Picture {
         width: pixels.width(),

@@ -23,6 +23,7 @@ const WRITTEN: [(&str, &str, &str); 25] = [
     ("For engine authors", "engines/graphics", "Other graphics APIs"),
     ("For engine authors", "engines/rust", "From Rust"),
     ("For render TDs", "farms/sequences", "Sequences"),
+    ("For render TDs", "farms/colours", "Colours"),
     ("For render TDs", "farms/masks", "Masks and layered looks"),
     ("For render TDs", "farms/scenes", "Scenes"),
     ("For render TDs", "farms/formats", "Formats"),
