@@ -222,22 +222,16 @@ fn greatest(a: &[u8], b: &[u8]) -> u8 {
     a.iter().zip(b).map(|(a, b)| a.abs_diff(*b)).max().unwrap_or(0)
 }
 
-/// When pictures are shown, in seconds and in order.
+/// Times of pictures, in seconds and in order.
 fn times(file: &Path) -> Vec<f64> {
     let mut command = Command::new("ffprobe");
-    command.args([
-        "-v",
-        "error",
-        "-select_streams",
-        "v:0",
-        "-show_entries",
-        "packet=pts_time",
-        "-of",
-        "csv=p=0",
-    ]);
+    command.args(["-v", "error", "-select_streams", "v:0", "-of", "csv=p=0"]);
+    command.args(["-show_entries", "packet=pts_time,flags"]);
     let text = succeeds(command.arg(file)).0;
-    let mut times: Vec<f64> =
-        text.lines().map(|line| line.trim_end_matches(',').parse().expect("a time")).collect();
+    // What is marked by D is not shown.
+    let shown =
+        text.lines().filter_map(|line| line.split_once(',').filter(|(_, flags)| !flags.contains('D')));
+    let mut times: Vec<f64> = shown.map(|(time, _)| time.parse().expect("a time")).collect();
     times.sort_by(f64::total_cmp);
     times
 }

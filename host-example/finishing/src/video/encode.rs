@@ -26,12 +26,14 @@ const PIPED: &str = "pipe:1";
 
 /// Containers whose frames all last equally long.
 const EVEN: [&str; 6] = ["avi", "mxf", "vob", "dv", "ogv", Y4M];
-/// Those that begin with their first frame.
+/// Containers that begin with their first frame.
 const AT_ONCE: [&str; 4] = ["mxf", "dv", "ogv", Y4M];
-/// Those that have a scale of their own for the times of frames.
+/// Containers that have a scale of their own for the times of frames.
 const SCALED: [&str; 4] = ["mp4", "mov", "3gp", "3g2"];
 /// Least seconds by which pictures begin later than what else is in a file.
 const LEAST_START: f64 = 0.000_5;
+/// Least alpha of what is opaque but for rounding.
+const OPAQUE: u16 = 0xFF00;
 /// Filters that find the best colours of every frame for itself.
 const PALETTE: &str = ",split[a][b];[a]palettegen=stats_mode=single[p];[b][p]paletteuse=new=1";
 
@@ -44,7 +46,7 @@ pub struct Encoding<'a> {
     pub channels: u32,
     /// A file whose sound, subtitles and metadata it takes over.
     pub more: Option<More<'a>>,
-    /// When frames are shown, which do not last equally long.
+    /// Times of frames that do not last equally long.
     pub times: Option<&'a Times>,
     /// The video, which may be `-`; it says which kind of container.
     pub output: &'a Path,
@@ -52,14 +54,14 @@ pub struct Encoding<'a> {
     pub options: Option<&'a str>,
 }
 
-/// What is taken over of a file beside the pictures.
+/// Parts of a file beside the pictures that are taken over.
 #[derive(Clone, Copy, Debug)]
 pub struct More<'a> {
     /// The file.
     pub path: &'a Path,
     /// Its other tracks.
     pub tracks: &'a Tracks,
-    /// When the pictures begin, in seconds from where the file does.
+    /// Start of the pictures, in seconds from that of the file.
     pub start: f64,
 }
 
@@ -90,7 +92,7 @@ impl Encoder {
     /// # Errors
     /// [`Error::Failure`] without ffmpeg, [`Error::Input`] for options that change how many frames there are.
     pub fn start(encoding: &Encoding<'_>, place: &Path) -> Result<Self> {
-        let Encoding { stream, output, times, .. } = *encoding;
+        let Encoding { stream, output, .. } = *encoding;
         encoding.options.map_or(Ok(()), check_options)?;
         let place = Some(place).filter(|_| !is_pipe(output));
         if place.is_some() {
@@ -101,7 +103,9 @@ impl Encoder {
         let mut process = at(Process::start(&mut encoding.encoder(place)), output, FIX)?;
         let is_on_black = encoding.channels == 4 && !form.has_alpha;
         let channels = if is_on_black { 3 } else { encoding.channels };
+        let times = encoding.is_timed().then(|| encoding.times.cloned().unwrap_or_default());
         let header = times
+            .as_ref()
             .map_or_else(Vec::new, |_| timed::header((stream.width, stream.height), channels, stream.rate));
         let is_open = process.child().stdin.as_mut().is_some_and(|into| into.write_all(&header).is_ok());
         Ok(Self {
@@ -112,9 +116,9 @@ impl Encoder {
             is_open,
             is_on_black,
             is_told: false,
-            times: times.cloned(),
+            times,
             length: 1.0 / stream.frames_per_second(),
-            is_counted: times.is_none() || !encoding.is_even(),
+            is_counted: encoding.times.is_none() || !encoding.is_even(),
         })
     }
 
@@ -135,7 +139,7 @@ impl Encoder {
     /// The frame without its alpha, which is told once where there is any.
     fn opaque(&mut self, frame: &Pixels) -> Pixels {
         if let (Samples::U16(samples), false) = (frame.samples(), self.is_told)
-            && samples.as_chunks::<4>().0.iter().any(|pixel| pixel[3] < u16::MAX)
+            && samples.as_chunks::<4>().0.iter().any(|pixel| pixel[3] < OPAQUE)
         {
             self.is_told = true;
             output::warn(format_args!(
@@ -232,7 +236,7 @@ impl Encoding<'_> {
         EVEN.contains(&self.container())
     }
 
-    /// Says what the result cannot hold.
+    /// Warns of everything that the result cannot hold.
     fn warn(&self, form: &Form) {
         let output = self.output.display();
         if self.times.is_some() && self.is_even() {
@@ -289,7 +293,7 @@ impl Encoding<'_> {
             command.args(["-itsoffset", &format!("{start:.6}")]);
         }
         command.args(PROTOCOLS);
-        if self.times.is_some() {
+        if self.is_timed() {
             command.args(["-f", "matroska"]);
         } else {
             let channels = if form.has_alpha || self.channels != 4 { self.channels } else { 3 };
@@ -299,7 +303,12 @@ impl Encoding<'_> {
         command.args(["-i", "pipe:0"]);
     }
 
-    /// When the pictures begin, in seconds from where the sound or the subtitles do.
+    /// True where frames are handed over with their times.
+    fn is_timed(&self) -> bool {
+        self.times.is_some() || (self.start() != 0.0 && !self.is_even())
+    }
+
+    /// Start of the pictures, in seconds from that of the sound or the subtitles.
     fn start(&self) -> f64 {
         let start = self.more.map_or(0.0, |more| more.start);
         if AT_ONCE.contains(&self.container()) || start.abs() < LEAST_START { 0.0 } else { start }
@@ -321,13 +330,12 @@ impl Encoding<'_> {
     /// Options by which frames are shown when they are to be.
     fn keep_times(&self, command: &mut Command) {
         let Stream { grid, tick, .. } = self.stream;
-        let is_timed = self.times.is_some();
-        if is_timed && self.is_even() {
+        if self.times.is_some() && self.is_even() {
             command.args(["-fps_mode", "cfr", "-r", &grid.to_string()]);
             return;
         }
         command.args(["-fps_mode", "passthrough"]);
-        if (is_timed || self.start() != 0.0) && !self.is_even() {
+        if self.is_timed() {
             command.args(["-enc_time_base", &tick.with(':')]);
             if let Some(scale) = tick.parts_of_one().filter(|_| SCALED.contains(&self.container())) {
                 command.args(["-video_track_timescale", &scale.to_string()]);

@@ -49,7 +49,7 @@ pub struct Form {
 impl Form {
     /// For pictures like a stream's of so many channels, in this container, by the encoder that options name or the usual.
     pub fn of(container: &'static str, stream: &Stream, channels: u32, options: Option<&str>) -> Self {
-        // What few players show of red, green and blue would be a poor gift for pictures of few colours.
+        // Few players show red, green and blue in these.
         let is_plain = stream.is_animation && PLAYED.contains(&container);
         let is_red_green_blue = is_rgb(stream.pixels) && !is_plain;
         let is_deep = depth(stream.pixels) > 8;
@@ -107,7 +107,7 @@ impl Form {
         self.tags.push([option, value]);
     }
 
-    /// Finds a form in which an encoder takes a last odd row or column, or leaves that out.
+    /// Chooses a form in which an encoder takes a last odd row or column, or leaves that out.
     fn fit_size(&mut self, encoder: &str) {
         let (width, height) = self.size;
         if width.is_multiple_of(2) && height.is_multiple_of(2) {

@@ -22,7 +22,7 @@ pub struct Packets {
     shown: Vec<Option<f64>>,
     /// When the last one has been shown, in seconds.
     end: f64,
-    /// When the file begins.
+    /// Start of the file, in seconds.
     start: f64,
     /// Complaint of ffmpeg, also about sound and whatever else lies in the file.
     complaint: Option<String>,
@@ -76,7 +76,7 @@ impl Packets {
         times
     }
 
-    /// When the first frame is shown, in seconds from where the file begins.
+    /// Time of the first frame, in seconds from the start of the file.
     pub fn first(&self) -> f64 {
         self.shown.iter().flatten().copied().min_by(f64::total_cmp).unwrap_or(0.0)
     }
@@ -87,7 +87,7 @@ impl Packets {
         Some(self.end - self.start - last).filter(|length| *length > 0.0)
     }
 
-    /// When frames are shown that do not last equally long, in seconds from the first; nothing for others.
+    /// Times of frames that do not last equally long, in seconds from the first; nothing for others.
     ///
     /// # Errors
     /// The complaint of ffmpeg.
@@ -104,7 +104,8 @@ impl Packets {
         }
         process::read(&mut command, path);
         let text = at(Process::output(&mut command), path, FIX)?;
-        let told = text.lines().map(|line| line.trim_end_matches(',').parse().ok());
+        let lines = text.lines().map(|line| line.trim_end_matches(',')).filter(|line| !line.is_empty());
+        let told = lines.map(|line| line.parse().ok());
         let times: Vec<f64> = told.collect::<Option<_>>().unwrap_or_default();
         let first = times.first().copied().unwrap_or(0.0);
         let times: Vec<f64> = times.iter().map(|time| time - first).collect();

@@ -57,7 +57,7 @@ pub fn warn_of(path: &Path, unknown: &[&str]) {
     }
 }
 
-/// Says of frames of two fields that they become whole pictures.
+/// Warns of frames of two fields, which become whole pictures.
 pub fn warn_of_fields(path: &Path, stream: &Stream) {
     if stream.fields.is_some() {
         output::warn(format_args!(

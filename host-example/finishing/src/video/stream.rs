@@ -20,7 +20,7 @@ pub struct Stream {
     pub grid: Ratio,
     /// Seconds by which its times are told.
     pub tick: Ratio,
-    /// Which field of its frames is shown first, `tff` or `bff`; nothing where they are whole.
+    /// The field of its frames that is shown first, `tff` or `bff`; nothing where they are whole.
     pub fields: Option<&'static str>,
     /// The decoder that sees its alpha, where the usual one does not.
     pub decoder: Option<&'static str>,

@@ -11,7 +11,7 @@ const TICK: f64 = 1000.0;
 const OPEN: [u8; 8] = [0x01, 0xFF, 0xFF, 0xFF, 0xFF, 0xFF, 0xFF, 0xFF];
 
 /// Times of frames.
-#[derive(Clone, Debug, PartialEq)]
+#[derive(Clone, Debug, Default, PartialEq)]
 pub struct Times {
     /// In seconds from the first.
     pub shown: Vec<f64>,
@@ -20,7 +20,7 @@ pub struct Times {
 }
 
 impl Times {
-    /// When the frame of this index is shown, in frames that last so long beyond what is known.
+    /// Time of the frame of this index, of frames that last so long where nothing is known.
     pub fn of(&self, index: u64, length: f64) -> f64 {
         let last = self.shown.len().saturating_sub(1);
         let known = usize::try_from(index).unwrap_or(usize::MAX).min(last);

@@ -177,7 +177,7 @@ impl Tracks {
         Ok(Self::understand(&serde_json::from_str(&text).unwrap_or_default(), container))
     }
 
-    /// Says in one warning what of the input is not in the output.
+    /// Names in one warning everything of the input that is not in the output.
     pub fn warn(&self, input: &Path, output: &Path) {
         if !self.left_out.is_empty() {
             let (what, input) = (self.left_out.join(", "), input.display());
