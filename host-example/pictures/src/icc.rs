@@ -126,7 +126,7 @@ fn transfer(curves: [Vec<f32>; 3], tone: [Option<&ToneReprCurve>; 3]) -> Option<
 /// has none.
 pub fn meant(mut meaning: Meaning, profile: Vec<u8>, pixels: &mut Pixels, is_grey: bool) -> Meaning {
     let is_of_colours = profile_is_of(&profile, 3);
-    if !is_of_colours && !(is_grey && profile_is_of(&profile, 1)) {
+    if !(is_of_colours || is_grey && profile_is_of(&profile, 1)) {
         meaning.warnings.push(format!("its {NAME} is of other channels and left aside"));
         return meaning;
     }
