@@ -125,8 +125,8 @@ fn transfer(curves: [Vec<f32>; 3], tone: [Option<&ToneReprCurve>; 3]) -> Option<
 /// The meaning of numbers with a profile. Those that only tables explain become sRGB. `is_grey` says that a picture of colours
 /// has none.
 pub fn meant(mut meaning: Meaning, profile: Vec<u8>, pixels: &mut Pixels, is_grey: bool) -> Meaning {
-    let is_of_colours = profile_is_of(&profile, 3);
-    if !(is_of_colours || is_grey && profile_is_of(&profile, 1)) {
+    let fits = profile_is_of(&profile, 3) || is_grey && profile_is_of(&profile, 1);
+    if !fits {
         meaning.warnings.push(format!("its {NAME} is of other channels and left aside"));
         return meaning;
     }

@@ -257,8 +257,12 @@ impl Filter {
         let count = if in_place.is_some() { source.pictures.len() } else { source.pictures.len().min(1) };
         if in_place.is_some() && self.output_space.is_some() {
             let problem =
-                "cannot be of one layer of an EXR file, whose header says what the numbers of all mean";
-            return Err(Error::input("--output-space", problem, "leave it out, or write a new kind of file"));
+                "is not for EXR files made of themselves, whose headers say what all their layers mean";
+            return Err(Error::input(
+                "--output-space",
+                problem,
+                "leave it out, or write a .tif or .png file",
+            ));
         }
         let to = format.state(source.state());
         let scalar = self.layers.iter().all(|layer| layer.look.style.kind != Kind::Color);
