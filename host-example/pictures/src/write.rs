@@ -126,19 +126,8 @@ pub fn write(
                 _ => Precision::U16,
             };
             let pixels = pixels.converted(precision);
-            let color = color_type(&pixels);
-            // PNG wants the larger byte first; the encoder takes the machine's order.
             files::write(path, existing, |file| {
-                let mut bytes = Vec::new();
-                let mut encoder = image::codecs::png::PngEncoder::new(&mut bytes);
-                let is_said = match meaning.profile_of(pixels.channels()) {
-                    Some(profile) => encoder.set_icc_profile(profile.to_vec()).is_ok(),
-                    None => false,
-                };
-                as_text(encoder.write_image(pixels.bytes(), pixels.width(), pixels.height(), color))?;
-                let bytes = if is_said { bytes } else { png::with_meaning(bytes, meaning) };
-                let bytes = png::with_shape(bytes, meaning.pixel_aspect);
-                file.write_all(&bytes).map_err(|e| e.to_string())
+                file.write_all(&png_file(&pixels, meaning)?).map_err(|e| e.to_string())
             })
         }
         Format::Tiff => {
@@ -164,6 +153,20 @@ pub fn write(
             })
         }
     }
+}
+
+/// A PNG file with what it says of its numbers and of the shape of its pixels.
+fn png_file(pixels: &Pixels, meaning: &Meaning) -> std::result::Result<Vec<u8>, String> {
+    let mut bytes = Vec::new();
+    let mut encoder = image::codecs::png::PngEncoder::new(&mut bytes);
+    let is_said = match meaning.profile_of(pixels.channels()) {
+        Some(profile) => encoder.set_icc_profile(profile.to_vec()).is_ok(),
+        None => false,
+    };
+    // PNG wants the larger byte first; the encoder takes the machine's order.
+    as_text(encoder.write_image(pixels.bytes(), pixels.width(), pixels.height(), color_type(pixels)))?;
+    let bytes = if is_said { bytes } else { png::with_meaning(bytes, meaning) };
+    Ok(png::with_shape(bytes, meaning.pixel_aspect))
 }
 
 /// Floats of one channel as three equal ones: TIFF files of grey floats are not written.

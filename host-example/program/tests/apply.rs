@@ -291,7 +291,7 @@ fn graphs_and_settings_reach_the_library() {
     let twice = run("twice.json", "e.png", &[]);
     assert_ne!(twice, plain);
     assert_eq!(run("twice.json", "f.png", &["--set", "second.sigma=0"]), plain);
-    support::fails(
+    fails(
         isophote().current_dir(folder.path()).args([
             "apply",
             "twice.json",
@@ -313,7 +313,7 @@ fn the_graphs_that_come_with_the_program_run() {
     let folder = folder();
     picture(64, 48).save(folder.path().join("in.png")).expect("the picture can be written");
     let mut count = 0;
-    for entry in fs::read_dir(support::root().join("host-example/graphs")).expect("the folder of graphs") {
+    for entry in fs::read_dir(root().join("host-example/graphs")).expect("the folder of graphs") {
         let graph = entry.expect("an entry").path();
         apply(folder.path(), &graph.to_string_lossy(), "in.png", "out.png", &["--backend", "cpu"]);
         count += 1;
