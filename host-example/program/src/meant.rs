@@ -116,7 +116,10 @@ fn is_style(word: &str) -> bool {
 /// The error of an option that a verb has not, or of one word too many.
 fn no_option(refusal: &Refusal, verb: &str, option: &str, rest: &[&str]) -> Option<Error> {
     if verb == VIEW && !option.starts_with('-') {
-        let fix = format!("for several write `isophote apply STYLE {option} OTHERS... FOLDER/`");
+        let files = rest.iter().filter(|word| !word.starts_with('-'));
+        let line: Vec<String> =
+            ["STYLE"].iter().chain(files).chain(&["out/"]).map(|w| (*w).to_owned()).collect();
+        let fix = format!("give several a style by `{}`", command("apply", &line));
         return Some(Error::input(option, "is one more than the window opens", fix));
     }
     if verb == "apply" && option == "--style" {
