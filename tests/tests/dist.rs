@@ -331,6 +331,8 @@ fn every_manual_page_is_shown_without_a_warning() {
         let command = name.trim_end_matches(".1").replace('-', " ");
         assert!(shown.contains("SYNOPSIS") && shown.contains(&command), "{name}: {shown}");
     }
+    let program = words(&unpacked.run_in(&pages, "man -l isophote.1"));
+    assert!(program.contains("EXAMPLES isophote photo.jpg opens a picture"), "{program}");
     let apply = words(&unpacked.run_in(&pages, "man -l isophote-apply.1"));
     assert!(apply.contains("--skip-existing") && apply.contains("<STYLE> [INPUT] [OUTPUT]"), "{apply}");
 }

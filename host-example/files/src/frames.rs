@@ -145,6 +145,23 @@ impl Pattern {
         self.path.with_file_name(self.name(frame, self.counts_sign))
     }
 
+    /// The same pattern with a word before the number: `shot.cartoon.####.exr`.
+    pub fn with_word(&self, word: &str) -> PathBuf {
+        let all = self.path.file_name().unwrap_or_default().as_encoded_bytes();
+        let [before, number] = all.split_at_checked(self.before.len()).map_or([all, b""], |(a, b)| [a, b]);
+        let separator = match before.last() {
+            Some(separator @ (b'.' | b'_' | b'-')) => char::from(*separator),
+            _ => '.',
+        };
+        let mut name = piece(before);
+        if before.last().is_some_and(|last| char::from(*last) != separator) {
+            name.push(separator.to_string());
+        }
+        name.push(format!("{word}{separator}"));
+        name.push(piece(number));
+        self.path.with_file_name(name)
+    }
+
     fn name(&self, frame: i64, counts_sign: bool) -> OsString {
         let (sign, digits) = match (frame < 0, counts_sign) {
             (false, _) => ("", self.digits),

@@ -42,7 +42,7 @@ pub struct ReadingArgs {
     /// Image that colours an OBJ without textures.
     #[arg(long, value_name = "FILE")]
     pub texture: Option<PathBuf>,
-    /// Axis of the file that points up: z turns scenes of programs that have it so.
+    /// Axis of the file that points up.
     #[arg(long, value_name = "AXIS", default_value = "y")]
     pub up: Up,
 }
@@ -50,10 +50,10 @@ pub struct ReadingArgs {
 /// An axis that points up.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, ValueEnum)]
 pub enum Up {
-    /// As glTF has it.
+    /// Scenes of glTF, and of most programs for animation.
     #[default]
     Y,
-    /// As CAD programs and scanners have it.
+    /// Scenes of CAD programs and scanners.
     Z,
 }
 
@@ -160,7 +160,7 @@ pub struct StagingArgs {
     /// is behind it), and above the horizon, from -90 to 90 [default: the sun of the file, or -60,40].
     #[arg(long, value_name = "AZIMUTH,ELEVATION", value_parser = light, allow_hyphen_values = true)]
     pub light: Option<Direction>,
-    /// Brightness of the scene in stops, from -16 to 16. What EXR files hold of the scene is as bright as it is.
+    /// Brightness of the scene in stops, from -16 to 16. EXR files keep the scene's own brightness unless they are tone-mapped.
     #[arg(long, value_name = "STOPS", default_value_t = 0.0, value_parser = stops, allow_negative_numbers = true)]
     pub exposure: f32,
     /// Background of the scene: sky, transparent, a colour #rrggbb that is shown as it is, or an equirectangular

@@ -5,12 +5,34 @@ use clap::{CommandFactory, Parser, Subcommand};
 use crate::verbs::{apply, bench, documents, farm, info, nodes, preset, render, sheet, view};
 use isophote_files::error::Result;
 
-const AFTER_HELP: &str = "Files that are there already stay unless --force is given, and no result takes the place of a file \
-    that is read; a picture gives way to its own result with --in-place.";
+const ABOUT: &str = "Turns pictures, sequences, videos and 3D scenes into cartoons, drawings and paintings.";
+const AFTER_HELP: &str = "No file is replaced unless --force is given, and no result replaces a file that is read; \
+    --in-place replaces a picture by its own result.";
+
+/// Four commands to begin with, under their heading.
+const EXAMPLES: &str = "Examples:\n\
+    \x20 isophote photo.jpg                           opens a picture, a sequence, a video or a scene in the window\n\
+    \x20 isophote apply cartoon photo.jpg             writes photo.cartoon.jpg beside it\n\
+    \x20 isophote apply look:noir_panel photos/ out/  stylizes the pictures of a folder into another\n\
+    \x20 isophote preset list                         lists the looks, with a sentence on each";
+
+/// Help of the program: examples come before anything else.
+const HELP: &str = "\
+{about-with-newline}
+{before-help}{usage-heading} {usage}
+
+{all-args}{after-help}";
 
 /// Renders scenes and stylizes them; stylizes pictures and sequences of frames.
 #[derive(Debug, Parser)]
-#[command(name = "isophote", version, about, after_help = AFTER_HELP)]
+#[command(
+    name = "isophote",
+    version,
+    about = ABOUT,
+    before_help = EXAMPLES,
+    help_template = HELP,
+    after_help = AFTER_HELP
+)]
 pub struct Cli {
     /// Command to carry out.
     #[command(subcommand)]
@@ -22,9 +44,9 @@ pub struct Cli {
 enum Command {
     /// Renders a glTF or OBJ scene to PNG or EXR frames.
     Render(render::RenderArgs),
-    /// Applies a node, graph or preset to a picture or a sequence of frames.
+    /// Gives a picture, a sequence of frames or a video a style.
     Apply(Box<apply::ApplyArgs>),
-    /// Opens a window that renders a scene and stylizes every frame.
+    /// Opens a picture, a sequence, a video or a scene in a window with all styles and their controls.
     View(view::ViewArgs),
     /// Puts pictures side by side on one contact sheet, with their names.
     Sheet(sheet::SheetArgs),
@@ -34,9 +56,9 @@ enum Command {
     Farm(farm::FarmArgs),
     /// Prints what is understood of a file: a picture, a video, a scene, a preset.
     Info(info::InfoArgs),
-    /// Lists the nodes, or the parameters of one.
+    /// Lists the styles and the filters that they are made of, or the parameters of one.
     Nodes(nodes::NodesArgs),
-    /// Measures how fast the nodes are.
+    /// Measures the speed of styles and filters.
     Bench(bench::BenchArgs),
     /// Writes the manual pages and the completions for shells.
     Documents(documents::DocumentsArgs),

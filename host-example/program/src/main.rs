@@ -5,13 +5,15 @@
 mod bench;
 mod cli;
 mod info;
+mod meant;
 mod verbs;
 
+use std::ffi::OsString;
 use std::io::Write;
 use std::process::ExitCode;
 
-use clap::Parser;
 use clap::error::ErrorKind;
+use clap::{CommandFactory, Parser};
 use isophote_files::error::Error;
 use isophote_files::{limits, output};
 use isophote_loader::printable;
@@ -27,9 +29,10 @@ static OWN: isophote_glibc::Kept = isophote_glibc::KEPT;
 fn main() -> ExitCode {
     drivers::keep_quiet();
     limits::end_where_memory_ends();
-    let cli = match Cli::try_parse() {
+    let words = meant::with_verb(std::env::args_os().collect(), &Cli::command());
+    let cli = match Cli::try_parse_from(&words) {
         Ok(cli) => cli,
-        Err(error) => return usage(&error),
+        Err(error) => return usage(&error, &words),
     };
     match cli.run() {
         Ok(()) => ExitCode::SUCCESS,
@@ -44,7 +47,7 @@ fn failed(error: &Error) -> ExitCode {
 
 /// Help and version as the parser prints them; what is wrong with the command line on one line, like every
 /// other error.
-fn usage(error: &clap::Error) -> ExitCode {
+fn usage(error: &clap::Error, words: &[OsString]) -> ExitCode {
     if matches!(
         error.kind(),
         ErrorKind::DisplayHelp
@@ -56,11 +59,18 @@ fn usage(error: &clap::Error) -> ExitCode {
             Err(error) => failed(&error),
         };
     }
+    if let Some(error) = meant::explained(error, words) {
+        return failed(&error);
+    }
     let text = error.render().to_string();
     let wrong = text.lines().take_while(|line| !line.trim().is_empty());
-    let tips = text.lines().filter(|line| line.trim_start().starts_with("tip:"));
-    let words: Vec<&str> = wrong.chain(tips).flat_map(str::split_whitespace).collect();
+    let mut said = wrong.flat_map(str::split_whitespace).collect::<Vec<_>>().join(" ");
+    let tips = text.lines().filter_map(|line| line.trim_start().strip_prefix("tip:"));
+    // Nobody means an option as a value.
+    for tip in tips.map(str::trim).filter(|tip| !tip.starts_with("to pass")) {
+        said += &format!("; {tip}");
+    }
     // Words of the command line may be names of files. Where nobody can be told the exit code tells.
-    let _ = writeln!(std::io::stderr(), "{}; see --help", printable(&words.join(" ")));
+    let _ = writeln!(std::io::stderr(), "{}; see --help", printable(&said));
     ExitCode::from(2)
 }

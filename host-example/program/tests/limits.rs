@@ -118,8 +118,8 @@ fn nothing_but_ours_is_said_where_nobody_is_logged_in() {
     cube(folder.path());
     picture(40, 30).save(folder.path().join("in.png")).expect("the picture can be written");
     for arguments in [
-        ["render", "cube.gltf", "out.png", "--size", "64x36"],
-        ["apply", "gaussian", "in.png", "other.png", "--backend=auto"],
+        ["render", "cube.gltf", "out.png", "--size=64x36", "--quiet"],
+        ["apply", "gaussian", "in.png", "other.png", "--quiet"],
     ] {
         let mut command = Command::new(PROGRAM);
         command.current_dir(folder.path()).args(arguments).env_clear().env("ISOPHOTE_LIBRARY", library());

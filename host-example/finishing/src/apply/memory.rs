@@ -11,6 +11,9 @@ use isophote_files::error::Error;
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Bytes(pub u64);
 
+/// Fewest bytes that a number without a unit stands for: nobody who writes less means bytes.
+const FEWEST_BYTES: f64 = (1 << 20) as f64;
+
 impl FromStr for Bytes {
     type Err = String;
 
@@ -18,6 +21,10 @@ impl FromStr for Bytes {
         let wrong = || "write a size such as 4GiB or 500MB".to_owned();
         let split = text.find(|c: char| !c.is_ascii_digit() && c != '.').unwrap_or(text.len());
         let number: f64 = text[..split].parse().map_err(|_| wrong())?;
+        let is_bare = text[split..].trim().is_empty();
+        if is_bare && (1.0..FEWEST_BYTES).contains(&number) {
+            return Err(format!("that is {number} bytes; write {number}GiB, or another size such as 500MB"));
+        }
         let unit = match text[split..].trim().to_ascii_lowercase().as_str() {
             "" | "b" => 1.0,
             "k" | "kib" => 1024.0,
@@ -166,10 +173,16 @@ mod tests {
 
     #[test]
     fn sizes_are_read() {
-        for (text, bytes) in [("4GiB", 4 << 30), ("1.5k", 1536), ("500MB", 500_000_000), ("7", 7)] {
+        for (text, bytes) in
+            [("4GiB", 4 << 30), ("1.5k", 1536), ("500MB", 500_000_000), ("7b", 7), ("4194304", 4 << 20)]
+        {
             assert_eq!(text.parse(), Ok(Bytes(bytes)));
         }
-        for bad in ["", "x", "-1G", "0", "4 parsecs", "1e99"] {
+        assert_eq!(
+            "4".parse::<Bytes>(),
+            Err("that is 4 bytes; write 4GiB, or another size such as 500MB".to_owned())
+        );
+        for bad in ["", "x", "7", "-1G", "0", "4 parsecs", "1e99"] {
             assert!(bad.parse::<Bytes>().is_err(), "{bad}");
         }
     }

@@ -1,11 +1,11 @@
 //! Progress of a run: a bar for people, lines of JSON for programs, and a summary.
 
-use std::path::Path;
+use std::path::{Path, PathBuf};
 use std::sync::atomic::{AtomicBool, AtomicU32, Ordering};
 use std::sync::{Mutex, PoisonError};
 use std::time::Instant;
 
-use indicatif::{ProgressBar, ProgressStyle};
+use indicatif::{ProgressBar, ProgressDrawTarget, ProgressStyle};
 use serde_json::{Value, json};
 
 use super::tasks::{Task, Tasks};
@@ -83,6 +83,10 @@ pub struct Report {
     sequence: bool,
     /// True where every result gets a line.
     lists: bool,
+    /// True where nothing is told of what goes well.
+    quiet: bool,
+    /// Result as people are told of it, with its size where that is known.
+    result: Option<(PathBuf, Option<(u32, u32)>)>,
     /// Number of all frames; none where nobody knows exactly.
     frames: Option<u64>,
     /// Hundredths of the picture that were told of.
@@ -111,6 +115,8 @@ impl Report {
             json,
             sequence,
             lists: false,
+            quiet: false,
+            result: None,
             frames: Some(frames as u64),
             told: AtomicU32::new(0),
             unheard: AtomicBool::new(false),
@@ -129,6 +135,23 @@ impl Report {
     /// A report on so many pictures that have nothing to do with each other, with a line for each result.
     pub fn listing(pictures: usize, json: bool) -> Self {
         Self { lists: true, ..Self::new(pictures, true, json) }
+    }
+
+    /// The same without a word on what goes well.
+    #[must_use]
+    pub fn quietly(mut self, quiet: bool) -> Self {
+        if quiet {
+            self.bar.set_draw_target(ProgressDrawTarget::hidden());
+        }
+        self.quiet = quiet;
+        self
+    }
+
+    /// The same with the result that the last line names: a picture and its size in pixels, or a pattern or a video.
+    #[must_use]
+    pub fn of_result(mut self, result: &Path, size: Option<(u32, u32)>) -> Self {
+        self.result = Some((result.to_owned(), size));
+        self
     }
 
     /// The share of the frame at hand that is done.
@@ -175,7 +198,11 @@ impl Report {
         if self.sequence {
             self.bar.inc(1);
         }
-        if self.lists && !self.json && matches!(outcome, Outcome::Written(_) | Outcome::Skipped) {
+        if self.lists
+            && !self.json
+            && !self.quiet
+            && matches!(outcome, Outcome::Written(_) | Outcome::Skipped)
+        {
             let note = if matches!(outcome, Outcome::Skipped) { " (there already)" } else { "" };
             let text = format!("{} -> {}{note}\n", task.input.display(), task.output.display());
             self.bar.suspend(|| self.say(&text));
@@ -218,21 +245,37 @@ impl Report {
         }));
         let is_complete =
             counts.failed == 0 && self.frames.is_none_or(|frames| counts.done() + counts.missing == frames);
-        if self.sequence && !self.lists && !self.json && whole && is_complete {
-            let mut text = format!("{} frames written in {seconds:.1} s", counts.written);
-            for (count, what) in [
-                (counts.skipped, "there already"),
-                (counts.missing, "missing"),
-                (counts.failed, "failed"),
-                (counts.replaced, "samples replaced"),
-            ] {
-                if count > 0 {
-                    text += &format!(", {count} {what}");
-                }
-            }
-            self.say(&format!("{text}\n"));
+        if !self.lists && !self.json && !self.quiet && whole && is_complete {
+            self.sum_up(&counts, seconds);
         }
         counts
+    }
+
+    /// The one line on a run that went well.
+    fn sum_up(&self, counts: &Counts, seconds: f64) {
+        let Some((result, size)) = &self.result else { return };
+        let result = result.display();
+        let mut text = match (self.sequence, counts.written) {
+            (true, written) => format!("{written} frames written in {seconds:.1} s"),
+            (false, 0) => format!("{result}: there already"),
+            (false, _) => {
+                let size = size.map_or_else(String::new, |(width, height)| format!("{width}x{height}, "));
+                format!("{result}: {size}{seconds:.1} s")
+            }
+        };
+        let notes = [
+            (counts.skipped, "there already"),
+            (counts.missing, "missing"),
+            (counts.failed, "failed"),
+            (counts.replaced, "samples replaced"),
+        ];
+        for (count, what) in notes.into_iter().filter(|(count, _)| self.sequence && *count > 0) {
+            text += &format!(", {count} {what}");
+        }
+        if self.sequence {
+            text += &format!(": {result}");
+        }
+        self.say(&format!("{text}\n"));
     }
 
     /// Prints; the frames are written, whether or not anybody is told.

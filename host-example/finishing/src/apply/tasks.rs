@@ -30,7 +30,7 @@ impl Task {
 /// Treatment of missing frames by a run.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
 pub enum OnMissing {
-    /// It does not start.
+    /// Nothing is started.
     Fail,
     /// The other frames are done.
     Skip,

@@ -8,6 +8,7 @@ pub mod precision;
 pub mod preset;
 pub mod source;
 pub mod style;
+pub mod suggest;
 pub mod value;
 
 use std::sync::Arc;

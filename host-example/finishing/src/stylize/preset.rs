@@ -4,6 +4,7 @@ use std::ffi::OsString;
 use std::path::Path;
 use std::sync::OnceLock;
 
+use super::suggest;
 use isophote_files::error::{AtPlace, Error, Result};
 use isophote_loader::Library;
 pub use isophote_loader::preset::{LOOK, Lengths, Look, Preset, StyleText, Title, Track};
@@ -92,13 +93,21 @@ pub fn id_of_look(style: &Path) -> Option<&str> {
 /// Way to find a look.
 pub const LIST_OF_LOOKS: &str = "`isophote preset list` lists them";
 
-/// The error of a name that no style bears. `fix` is how to find one, unless a look is near, which the library names then.
-pub fn unknown(refused: isophote_loader::Error, style: &Path, fix: &str) -> Error {
-    match refused {
+/// The error of a name that no style has, with the style that was meant where one is near. `fix` is how to find one otherwise.
+pub fn unknown(library: &Library, refused: isophote_loader::Error, style: &Path, fix: &str) -> Error {
+    let error = match refused {
         isophote_loader::Error::Fault { fault, .. } if !fault.fix.contains(LOOK) => {
             Error::file(style, fault.problem, fix)
         }
         refused => refused.at(style.display(), fix),
+    };
+    let name = style.to_string_lossy();
+    match (suggest::style(library, &name), &error) {
+        (Some(meant), Error::Input { .. }) if meant.style != name => {
+            let kind = if id_of_look(style).is_some() { "look" } else { "style" };
+            Error::file(style, format!("there is no such {kind}; did you mean {meant}?"), fix)
+        }
+        _ => error,
     }
 }
 

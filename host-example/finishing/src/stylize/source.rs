@@ -4,7 +4,7 @@ use std::path::Path;
 
 use super::preset;
 use isophote_files::error::{Error, Result};
-use isophote_files::input;
+use isophote_files::{frames, input};
 use isophote_loader::Library;
 
 /// Most bytes of a file; real ones have some thousands.
@@ -23,7 +23,11 @@ pub fn read(path: &Path) -> Result<String> {
         // Opened only to be told which is near.
         library
             .style(&path.to_string_lossy())
-            .map_err(|e| preset::unknown(e, path, preset::LIST_OF_LOOKS))?;
+            .map_err(|e| preset::unknown(&library, e, path, preset::LIST_OF_LOOKS))?;
+    }
+    if frames::is_picture(path) {
+        let fix = "the style comes before the picture: write one such as cartoon first";
+        return Err(Error::file(path, "is no style", fix));
     }
     let fix = "name a graph file or a preset (.json), or a node";
     input::text(path, MOST_BYTES).map_err(|e| Error::file(path, format!("cannot be read: {e}"), fix))

@@ -8,6 +8,7 @@ use serde_json::{Map, Value};
 
 use super::preset::{self, Lengths, Preset};
 use super::source;
+use super::suggest;
 use isophote_files::error::{AtPlace, Error, Result};
 use isophote_files::{frames, output};
 use isophote_loader::abi::IsophoteRequest;
@@ -187,9 +188,37 @@ impl Style {
             Some(node) => format!("{node}.{}", setting.param),
             None => setting.param.clone(),
         };
-        let fail = |e: isophote_loader::Error| e.at(format!("--set {setting}"), "see the graph's nodes");
+        let fail = |e: isophote_loader::Error| {
+            let error =
+                e.at(format!("--set {setting}"), "`isophote nodes NODE` lists the parameters of a node");
+            self.with_hint(error, &setting.param)
+        };
         self.tracks.set(self.graph.handle(), &name, &setting.value).map_err(fail)?;
         Ok(())
+    }
+
+    /// The error about a parameter that is not there, with the one that was meant.
+    fn with_hint(&self, error: Error, param: &str) -> Error {
+        let params = self.params();
+        let ids: Vec<&str> = params.iter().map(String::as_str).collect();
+        match (suggest::id(&ids, param), error) {
+            (Some(meant), Error::Input { place, problem, fix }) if !ids.contains(&param) => {
+                // The library names the nearest by its letters alone.
+                let problem = problem.split("; did you mean").next().unwrap_or_default();
+                Error::input(place, format!("{problem}; did you mean '{meant}'?"), fix)
+            }
+            (_, error) => error,
+        }
+    }
+
+    /// Ids of the parameters of its nodes.
+    pub fn params(&self) -> Vec<String> {
+        let specs = (0..self.graph.count()).filter_map(|node| self.graph.spec(node).ok());
+        let ids = specs.flat_map(|spec| spec.params.into_iter().map(|param| param.id.to_owned()));
+        let mut ids: Vec<String> = ids.collect();
+        ids.sort_unstable();
+        ids.dedup();
+        ids
     }
 
     /// Makes all nodes that can be steady over time so, from 0 to 1.
@@ -211,7 +240,7 @@ impl Style {
         }
         if !found {
             let fix = "choose a style that has the parameter steadiness, or put the node steady before it";
-            return Err(Error::input(&place, "no node of the style knows of time", fix));
+            return Err(Error::input(&place, "the style has no steadiness", fix));
         }
         Ok(())
     }
@@ -277,8 +306,7 @@ impl Style {
 const FIX: &str = "correct the file";
 
 /// Way to find a style.
-const LIST_OF_STYLES: &str =
-    "name a node that `isophote nodes` lists, a look, or a graph file or preset (.json)";
+const LIST_OF_STYLES: &str = "`isophote nodes` lists the styles, and `isophote preset list` the looks";
 
 fn open(library: &Library, style: &OsStr) -> Result<Tracks> {
     if let Some(json) = style.to_str().filter(|text| preset::is_written_out(text)) {
@@ -298,7 +326,7 @@ fn open(library: &Library, style: &OsStr) -> Result<Tracks> {
         Err(refused) => {
             let is_look = preset::id_of_look(path).is_some();
             let fix = if is_look { preset::LIST_OF_LOOKS } else { LIST_OF_STYLES };
-            Err(preset::unknown(refused, path, fix))
+            Err(preset::unknown(library, refused, path, fix))
         }
     }
 }

@@ -48,6 +48,8 @@ pub struct VideoJob<'a> {
     pub on_error: OnError,
     /// True where lines of JSON are wanted.
     pub json: bool,
+    /// True where nothing is said of what goes well.
+    pub quiet: bool,
     /// Masks of the frames, which count from 1.
     pub masks: &'a Masks,
     /// Set when the run shall end early.
@@ -67,6 +69,7 @@ pub fn run(job: &VideoJob<'_>, filter: &mut Filter) -> Result<()> {
     }
     let frames = usize::try_from(input.stream.frames).unwrap_or(usize::MAX);
     let report = Report::about(frames, job.json && !is_pipe(job.output));
+    let report = report.quietly(job.quiet).of_result(job.output, None);
     let work = |place: &Path| job.all(filter, &mut input, missing, place, &report);
     let done = if is_pipe(job.output) {
         work(job.output)

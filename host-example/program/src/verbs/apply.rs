@@ -1,6 +1,7 @@
 //! `isophote apply`: a node, graph or preset on a picture or a sequence of frames, without any scene.
 
 mod guiding;
+mod naming;
 mod on_video;
 mod several;
 
@@ -9,7 +10,7 @@ use std::path::{Path, PathBuf};
 
 use clap::{Args, ValueHint};
 
-use super::shared::{ForceArgs, LengthArgs, PrecisionArgs};
+use super::shared::{ForceArgs, LengthArgs, PrecisionArgs, QuietArgs};
 use isophote_files::error::{Error, Result};
 use isophote_files::files::{self, Existing};
 use isophote_files::frames::FrameList;
@@ -38,20 +39,22 @@ use isophote_pictures::write::Format;
 /// Options of `apply`.
 #[derive(Args, Debug)]
 pub struct ApplyArgs {
-    /// The id of a node, a look, or a graph file or preset (.json). Left out where --preset or --layered is given.
+    /// The style: a name that `isophote nodes` lists, such as cartoon; a look that `isophote preset list` lists, such as
+    /// look:copperplate; or a preset or graph file (.json). Left out where --preset or --layered is given.
     #[arg(value_hint = ValueHint::FilePath)]
     pub style: PathBuf,
-    /// The picture: PNG, JPEG, TIFF, WebP, HDR or EXR. A sequence: shot.####.exr, shot.@@@@.exr, shot.%04d.exr, shot.$F4.exr
-    /// or shot.<UDIM>.exr; one # alone for any number of digits. A file that has just this name is meant first. A video that
-    /// ffmpeg reads, such as .mp4, .mov, .mkv, .webm or .gif, or an animated .png or .webp; or - for YUV4MPEG on standard
-    /// input. With --to a folder as well.
-    #[arg(required_unless_present = "to", value_hint = ValueHint::AnyPath)]
+    /// The picture: PNG, JPEG, TIFF, WebP, HDR or EXR. A sequence: shot.####.exr, shot.@@@@.exr, shot.%04d.exr, shot.$F4.exr or
+    /// shot.<UDIM>.exr; one # alone for any number of digits. A file of exactly this name comes first. A video
+    /// that ffmpeg reads, such as .mp4, .mov, .mkv, .webm or .gif, or an animated .png or .webp; or - for YUV4MPEG on
+    /// standard input. A folder of pictures where the results go to a folder.
+    #[arg(required_unless_present_any = ["preset", "layered", "to"], value_hint = ValueHint::AnyPath)]
     pub input: Option<PathBuf>,
-    /// The result: .png, .jpg, .tif or .exr; the input itself with --in-place only. For a sequence with #### as well. For a
-    /// video another one, or - for YUV4MPEG on standard output.
-    #[arg(required_unless_present_any = ["preset", "layered", "to"], value_hint = ValueHint::FilePath)]
+    /// The result: .png, .jpg, .tif or .exr, for a sequence with #### as well; for a video another one, or - for YUV4MPEG on
+    /// standard output. A folder, such as out/, gets files of the same names. [default: a file beside the picture with the style
+    /// in its name, such as photo.cartoon.png; with --in-place the picture itself]
+    #[arg(value_hint = ValueHint::AnyPath)]
     pub output: Option<PathBuf>,
-    /// More pictures, with --to.
+    /// More pictures, where the results go to a folder: the last, or that of --to.
     #[arg(value_hint = ValueHint::FilePath)]
     pub more: Vec<PathBuf>,
     /// A folder for the results instead of a result: every picture that is named, and those of every folder, get a file of
@@ -69,17 +72,17 @@ pub struct ApplyArgs {
     /// Frames of the sequence, such as 1001-1100x2,1200 [default: all that are on disk].
     #[arg(long, value_name = "LIST", allow_hyphen_values = true)]
     pub frames: Option<FrameList>,
-    /// Treatment of frames of the sequence that have no file.
+    /// Frames that are missing in the sequence: refuse to start, or leave them out.
     #[arg(long, value_enum, default_value_t = OnMissing::Fail)]
     pub on_missing: OnMissing,
     /// Limit of memory, such as 8GiB, which decides how many frames are worked on at once; frames that need more are
     /// refused [default: 4GiB, or what the machine or the container has].
     #[arg(long, value_name = "SIZE")]
     pub memory: Option<Bytes>,
-    /// Skips frames whose result is there already and complete, and makes the others: a run that was begun goes on.
+    /// Keeps complete results that are there already and makes the others, so that an interrupted run goes on.
     #[arg(long, conflicts_with_all = ["force", "in_place"])]
     pub skip_existing: bool,
-    /// Lets results take the place of the pictures that they are made from.
+    /// Replaces the pictures themselves by their results.
     #[arg(long)]
     pub in_place: bool,
     /// Treatment of results that are there.
@@ -88,9 +91,12 @@ pub struct ApplyArgs {
     /// Prints what would be done, and does nothing.
     #[arg(long)]
     pub dry_run: bool,
-    /// Prints a line of JSON for every frame; of a picture by itself for every hundredth, too.
+    /// Prints a line of JSON for every frame, and for a single picture one for every percent that is done.
     #[arg(long)]
     pub json: bool,
+    /// Silence on what goes well.
+    #[command(flatten)]
+    pub quiet: QuietArgs,
     /// Sets a parameter; node.id=value for one node of a graph. May be repeated.
     #[arg(long, value_name = "ID=VALUE")]
     pub set: Vec<Setting>,
@@ -100,7 +106,7 @@ pub struct ApplyArgs {
     /// Precision on graphics devices.
     #[command(flatten)]
     pub precision: PrecisionArgs,
-    /// Place where the filter runs.
+    /// Processor that the style is computed on.
     #[arg(long, value_enum, default_value_t = Backend::Auto)]
     pub backend: Backend,
     /// Colour space of the picture [default: what the file says by its ICC profile, chunks of PNG, chromaticities or
@@ -133,7 +139,7 @@ pub struct ApplyArgs {
     /// object_id=cryptomatte, or `object_id=cryptomatte[LAYER]` for another. May be repeated.
     #[arg(long, value_name = "GUIDE=LAYER")]
     pub guide: Vec<GuideChoice>,
-    /// Share of the result that is used where: a file such as mask.png, one for each frame (mask.####.exr), a layer
+    /// The mask of the result, which is used where it is white: a file such as mask.png, one for each frame (mask.####.exr), a layer
     /// or channel of the EXR file, or things of its Cryptomatte: `cryptomatte:hero,props/*` or
     /// `cryptomatte[crypto_material]:skin`. A star in a name stands for any letters, ? for one, and a backslash makes
     /// either ordinary. Files of colours count by luminance; alpha never counts.
@@ -142,18 +148,18 @@ pub struct ApplyArgs {
     /// EXR files that have the mask's layer or Cryptomatte, such as ids.####.exr [default: the input].
     #[arg(long, value_name = "FILES", value_hint = ValueHint::FilePath)]
     pub mask_from: Option<PathBuf>,
-    /// Uses the result where the mask is not.
+    /// Inverts the mask: the result is used where it is black.
     #[arg(long, requires = "mask")]
     pub invert: bool,
-    /// Treatment of frames that do not know a name of the mask's.
+    /// Names in the mask that a frame does not have: fail, or take them for empty.
     #[arg(long, value_enum, default_value_t = OnUnknown::Fail)]
     pub on_unknown: OnUnknown,
     /// A painted flow map, along which the style draws: a file such as flow.png, or one for each frame (flow.####.exr). Red and
     /// green say where it leads, 0.5 for nowhere, and alpha how much it counts.
     #[arg(long, value_name = "FILE", value_hint = ValueHint::FilePath)]
     pub flow: Option<PathBuf>,
-    /// How steady frames of a sequence are, from 0 to 1: neighbouring frames are carried along motion and averaged before
-    /// the style decides anything. Needs motion vectors in the EXR files, or --motion [default: what the style says].
+    /// Steadiness of a sequence, from 0 to 1: neighbouring frames are carried along motion and averaged before the style is
+    /// applied. Needs motion vectors in the EXR files, or --motion [default: what the style says].
     #[arg(long, value_name = "S")]
     pub steadiness: Option<f32>,
     /// EXR files with motion vectors, one for each frame: mv.####.exr; or estimate, for optical flow of the pictures.
@@ -223,7 +229,7 @@ pub fn run(args: &ApplyArgs) -> Result<()> {
     if !tasks.are_several() {
         stop.ends_the_process("the picture");
     }
-    let report = args.report(&tasks);
+    let report = args.report(&tasks).of_result(&files.output, opened.as_ref().and_then(Opened::size));
     let is_parallel = tasks.are_several() && threads == Threads::Several;
     let mut filters = filters(filter, is_parallel, || args.looks(&library, files.style, &entries))?;
     let budget = Budget::new(most.0, filters.len());
@@ -283,6 +289,7 @@ impl ApplyArgs {
         } else {
             Report::new(tasks.count(), tasks.is_sequence(), self.json)
         };
+        let report = report.quietly(self.quiet.quiet);
         for task in &tasks.missing {
             report.frame(task, &Outcome::Missing);
         }
@@ -423,7 +430,7 @@ impl ApplyArgs {
             Err(error) if !tasks.are_several() && !self.skip_existing => return Err(error),
             opened => opened.ok(),
         };
-        if self.dry_run && self.to.as_deref().is_some_and(|folder| !folder.exists()) {
+        if self.dry_run && self.named()?.folder.is_some_and(|folder| !folder.exists()) {
             return Ok(opened);
         }
         if self.dry_run {

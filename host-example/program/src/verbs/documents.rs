@@ -58,6 +58,13 @@ fn pages(command: &Command, folder: &Path, documents: &mut Vec<(PathBuf, Vec<u8>
     let mut text = Vec::new();
     page.render(&mut text)
         .map_err(|e| Error::failure(e, "this is a mistake in the program; please report it"))?;
+    if let Some(examples) = command.get_before_help() {
+        // Lines stay lines; a dot or a quote at their beginning would be a request.
+        let examples = examples.to_string();
+        let examples = examples.split_once('\n').map_or("", |(_, lines)| lines);
+        let examples = examples.replace('\\', "\\e").replace('-', "\\-");
+        text.extend(format!(".SH EXAMPLES\n.nf\n{examples}\n.fi\n").bytes());
+    }
     documents.push((folder.join(page.get_filename()), text));
     let mut verbs = command.get_subcommands().filter(|verb| !verb.is_hide_set());
     verbs.try_for_each(|verb| pages(verb, folder, documents))

@@ -1,18 +1,25 @@
 //! `isophote nodes`: what the library can do, for people and for programs.
 
+mod look;
+
+use std::path::Path;
+
 use clap::Args;
 
 use isophote_files::error::{AtPlace, Error, Result};
+use isophote_finishing::stylize::preset;
 use isophote_loader::Library;
 use isophote_loader::catalogue::{Catalogue, Node, Param, ParamKind, Port};
 
+/// Way to find a node or a look.
+const LISTS: &str = "`isophote nodes` lists all, and `isophote preset list` the looks";
 /// Columns of running text.
 const WIDTH: usize = 90;
 
 /// Options of `nodes`.
 #[derive(Args, Debug)]
 pub struct NodesArgs {
-    /// A node, to list its parameters.
+    /// A style or another node, to list its parameters; or a look, to show its values.
     node: Option<String>,
     /// Prints JSON.
     #[arg(long)]
@@ -27,8 +34,16 @@ pub fn run(args: &NodesArgs) -> Result<()> {
     let library = Library::open()?;
     let text = match &args.node {
         Some(id) => {
-            let node = library.find_node(id).map_err(|e| e.at(id, "`isophote nodes` lists all"))?;
-            if args.json { json(&node)? } else { describe(&node) }
+            let found = library.find_node(id);
+            match look::find(&library, id)?.filter(|_| found.is_err()) {
+                Some(look) if args.json => json(&look::object(&look))?,
+                Some(look) => look::describe(&look)?,
+                None => {
+                    let unknown = |e| preset::unknown(&library, e, Path::new(id), LISTS);
+                    let node = found.map_err(unknown)?;
+                    if args.json { json(&node)? } else { describe(&node) }
+                }
+            }
         }
         None => {
             let catalogue = library.catalogue().map_err(|e| e.at("the catalogue", "use another library"))?;

@@ -65,7 +65,7 @@ impl ApplyArgs {
                 Some(named.style).filter(|style| self.layered.is_none() && style::is_file(style)),
             ),
             ("layered", Part::Style, self.layered.as_deref()),
-            (second, Part::Result, named.output),
+            (second, Part::Result, named.output.or(named.folder.filter(|_| self.to.is_none()))),
             ("to", Part::Result, self.to.as_deref()),
             ("mask", Part::Frames, mask),
             ("mask_from", Part::Frames, self.mask_from.as_deref()),

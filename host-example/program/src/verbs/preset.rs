@@ -83,7 +83,7 @@ struct SaveArgs {
     /// The name of the preset, for people.
     #[arg(long, value_name = "TEXT", value_parser = line)]
     name: Option<String>,
-    /// What it looks like, one line.
+    /// A sentence on the look.
     #[arg(long, value_name = "TEXT", value_parser = line)]
     about: Option<String>,
     /// A word by which it is found. May be repeated; takes the place of all tags of another preset.

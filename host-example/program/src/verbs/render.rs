@@ -4,7 +4,7 @@ use std::path::{Path, PathBuf};
 
 use clap::Args;
 
-use super::shared::{ForceArgs, LengthArgs, PrecisionArgs, SceneArgs, parse_size};
+use super::shared::{ForceArgs, LengthArgs, PrecisionArgs, QuietArgs, SceneArgs, parse_size};
 use isophote_files::error::{Error, Result};
 use isophote_files::files::{self, Existing};
 use isophote_files::frames::{FrameList, Pattern};
@@ -42,7 +42,7 @@ pub struct RenderArgs {
     /// with 24 frames per second, 49-72 is its third second.
     #[arg(long, value_name = "N|LIST", default_value = "1", value_parser = FrameList::or_count, allow_hyphen_values = true)]
     frames: FrameList,
-    /// Leaves pictures alone that are there already and whole, and a video that is there; makes the others.
+    /// Keeps complete pictures, or the video, that are there already, and makes the others.
     #[arg(long, conflicts_with = "force")]
     skip_existing: bool,
     #[command(flatten)]
@@ -50,6 +50,8 @@ pub struct RenderArgs {
     /// Prints a line of JSON for every frame, as apply does.
     #[arg(long)]
     json: bool,
+    #[command(flatten)]
+    quiet: QuietArgs,
     /// Options of ffmpeg's encoder for a video, such as "-c:v libx265 -crf 20".
     #[arg(long, value_name = "OPTIONS", allow_hyphen_values = true)]
     encode: Option<String>,
@@ -61,7 +63,7 @@ pub struct RenderArgs {
     /// Frames per second of the animation, and of a video.
     #[arg(long, value_name = "N", default_value_t = 24.0)]
     fps: f32,
-    /// Exposes and tone-maps the colour of EXR files too, as PNG files and the window have it.
+    /// Applies exposure and tone mapping to EXR files too, as to PNG files and in the window.
     #[arg(long)]
     tone_mapped: bool,
     /// Style of the frames: none, the id of a node, a look, or a graph file or preset (.json).
@@ -75,7 +77,7 @@ pub struct RenderArgs {
     #[command(flatten)]
     precision: PrecisionArgs,
     /// Steadiness of the style over time, from 0 to 1: frames before are carried along the scene's motion and averaged
-    /// before the style decides anything [default: what the style says].
+    /// before the style is applied [default: what the style says].
     #[arg(long, value_name = "S")]
     steadiness: Option<f32>,
 }
@@ -112,6 +114,7 @@ pub fn run(args: &RenderArgs) -> Result<()> {
         stop.ends_the_process("the picture");
     }
     let report = Report::new(frames.len(), frames.len() > 1, args.json);
+    let report = report.quietly(args.quiet.quiet).of_result(&args.out, Some(args.size));
     let result = match video::becomes_video(&args.out) {
         true => args.film(&mut shot, &stop, &report),
         false => args.pictures(&mut shot, &stop, &report),

@@ -93,6 +93,14 @@ impl ForceArgs {
     }
 }
 
+/// Silence on what goes well.
+#[derive(Args, Clone, Copy, Debug)]
+pub struct QuietArgs {
+    /// Says nothing where all goes well: no line with the result, its size and the time.
+    #[arg(long)]
+    pub quiet: bool,
+}
+
 /// Width and height in pixels, such as `1280x720`.
 ///
 /// # Errors

@@ -1,13 +1,15 @@
 //! `isophote sheet`: pictures side by side with their names under them.
 
 use std::path::{Path, PathBuf};
+use std::time::Instant;
 
 use clap::Args;
 
-use super::shared::ForceArgs;
+use super::shared::{ForceArgs, QuietArgs};
 use isophote_files::error::{Error, Result};
 use isophote_files::files;
 use isophote_files::limits;
+use isophote_files::output;
 use isophote_files::replacing::{Inputs, Made};
 use isophote_finishing::sheet;
 
@@ -31,6 +33,8 @@ pub struct SheetArgs {
     label: Vec<String>,
     #[command(flatten)]
     force: ForceArgs,
+    #[command(flatten)]
+    quiet: QuietArgs,
 }
 
 /// Runs the verb.
@@ -47,7 +51,7 @@ pub fn run(args: &SheetArgs) -> Result<()> {
     }
     let made = Made { from: None, to: &args.sheet };
     args.force.consent().check(&[made], false, || Ok(Inputs::of(&args.pictures)))?;
-    let existing = args.force.existing();
+    let (existing, started) = (args.force.existing(), Instant::now());
     files::check_writable(&args.sheet, existing)?;
     limits::start_threads(0)?;
     let mut all = Vec::new();
@@ -57,7 +61,13 @@ pub fn run(args: &SheetArgs) -> Result<()> {
     }
     // As many across as there are, up to four: before and after stand beside each other.
     let columns = args.columns.map_or(all.len().min(4), |columns| columns as usize);
-    sheet::save(&args.sheet, existing, &all, columns, args.width)
+    sheet::save(&args.sheet, existing, &all, columns, args.width)?;
+    if args.quiet.quiet {
+        return Ok(());
+    }
+    let (count, seconds) = (all.len(), started.elapsed().as_secs_f64());
+    let pictures = if count == 1 { "picture" } else { "pictures" };
+    output::print(&format!("{}: {count} {pictures}, {seconds:.1} s\n", args.sheet.display()))
 }
 
 /// The name of a file, with its folder where others have the same.

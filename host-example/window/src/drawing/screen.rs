@@ -9,7 +9,8 @@ use isophote_files::error::{Error, Result};
 use isophote_render::gpu::Gpu;
 
 /// Advice where windows cannot be drawn on.
-const FIX: &str = "install a Vulkan driver with X11 or Wayland support";
+const FIX: &str =
+    "install a Vulkan driver with X11 or Wayland support (on Debian: apt install mesa-vulkan-drivers)";
 
 /// The surface of a window.
 pub struct Screen {
@@ -93,12 +94,17 @@ impl Screen {
 /// # Errors
 /// [`Error::Failure`] when the system has nothing of the kind.
 pub fn surface(instance: &wgpu::Instance, window: &Arc<Window>) -> Result<wgpu::Surface<'static>> {
-    instance
-        .create_surface(Arc::clone(window))
-        .map_err(|e| Error::failure(format!("the window cannot be drawn on: {e}"), FIX))
+    instance.create_surface(Arc::clone(window)).map_err(|e| {
+        Error::failure(format!("the window cannot be drawn on: {}", reason(&e.to_string())), FIX)
+    })
 }
 
 /// A minimised window has no pixels; targets have at least one.
 fn drawable(size: PhysicalSize<u32>) -> (u32, u32) {
     (size.width.max(1), size.height.max(1))
+}
+
+/// Message of wgpu without its list of drivers where that is empty.
+fn reason(said: &str) -> &str {
+    said.trim_end_matches(": {}")
 }

@@ -97,7 +97,7 @@ impl ApplyArgs {
                  motion vectors by --motion",
             );
         }
-        let is_told = !(parts.is_empty() || self.json);
+        let is_told = !(parts.is_empty() || self.json || self.quiet.quiet);
         Ok(if is_told { format!("guides: {}\n", parts.join("; ")) } else { String::new() })
     }
 }

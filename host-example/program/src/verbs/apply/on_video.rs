@@ -19,9 +19,7 @@ impl ApplyArgs {
     pub(super) fn run_on_video(&self, files: &Files<'_>) -> Result<()> {
         let wrong = |place: &str, problem: &str, fix: &str| Err(Error::input(place, problem, fix));
         if !video::is_video(files.input) || !video::becomes_video(&files.output) {
-            let place = files.output.display().to_string();
-            let fix = "name two of a kind (an animated .png or .webp is a video, and .apng and .webp are written as such)";
-            return wrong(&place, "a video becomes a video, and pictures pictures", fix);
+            return Err(unlike(files));
         }
         let others = [
             ("--frames", self.frames.is_some()),
@@ -63,10 +61,29 @@ impl ApplyArgs {
         let stop = Stop::on_signals();
         let (input, output, encode) = (files.input, &*files.output, self.encode.as_deref());
         let run = |existing| {
-            let (on_error, json, masks, stop) = (self.on_error, self.json, &masks, &stop);
-            let job = video::VideoJob { input, output, existing, encode, on_error, json, masks, stop };
+            let (on_error, json, quiet) = (self.on_error, self.json, self.quiet.quiet);
+            let (masks, stop) = (&masks, &stop);
+            let job = video::VideoJob { input, output, existing, encode, on_error, json, quiet, masks, stop };
             video::run(&job, &mut filter)
         };
         self.consent().write(made, Path::is_file, run).map(drop)
     }
+}
+
+/// The error of a video that is to become a picture, or of pictures that are to become a video.
+fn unlike(files: &Files<'_>) -> Error {
+    let (input, output) = (files.input.display(), files.output.display());
+    let problem = "a video becomes a video, and pictures become pictures";
+    let fix = if video::is_video(files.input) {
+        format!(
+            "name a video such as out.mp4, or out.apng or out.webp, which are animated; or take its frames out \
+             first: `ffmpeg -i {input} frame.%04d.png`, and name frame.####.png and out.####.png"
+        )
+    } else {
+        format!(
+            "name pictures, such as out.png or out.####.png, and make a video of those: \
+             `ffmpeg -i out.%04d.png {output}`"
+        )
+    };
+    Error::input(&output, problem, fix)
 }

@@ -1,17 +1,15 @@
-//! `isophote apply --to`: several pictures, or those of folders, each to a file of its own name in one folder.
+//! `isophote apply` into a folder: several pictures, or those of folders, each to a file of its own name in one folder.
 
 use std::borrow::Cow;
 use std::collections::HashMap;
 use std::fs;
 use std::path::{Path, PathBuf};
 
-use super::{ApplyArgs, Files};
+use super::{ApplyArgs, Files, naming};
 use isophote_files::error::{Error, Result};
 use isophote_files::files;
 use isophote_files::frames::{self, Pattern};
 use isophote_finishing::apply::tasks::Task;
-use isophote_finishing::video::is_video;
-use isophote_pictures::write::Format;
 
 /// Arguments without an option, by their meaning.
 pub struct Named<'a> {
@@ -19,59 +17,79 @@ pub struct Named<'a> {
     pub style: &'a Path,
     /// Pictures, sequences, folders and videos that are read; at least one.
     pub inputs: Vec<&'a Path>,
-    /// The result; nothing where it goes to a folder.
+    /// The result; nothing where it goes to a folder or was left out.
     pub output: Option<&'a Path>,
+    /// The folder of the results.
+    pub folder: Option<&'a Path>,
 }
 
 impl ApplyArgs {
-    /// Meaning of the arguments without an option: with a preset the style is left out, and with a folder the result.
+    /// Meaning of the arguments without an option: with a preset the style is left out, and the last may be a folder for the
+    /// results or be left out.
     ///
     /// # Errors
     /// [`Error::Input`] for a style beside a preset, for a folder without pictures for it, and for more pictures without one.
     pub fn named(&self) -> Result<Named<'_>> {
-        if let (Some(first), None) = (self.more.first(), &self.to) {
-            let fix = "name the folder of the results of several by --to, or leave it out";
-            return Err(Error::file(first, "is one more than a style, a picture and a result", fix));
-        }
         let all = [Some(&self.style), self.input.as_ref(), self.output.as_ref()];
         let all: Vec<&Path> = all.into_iter().flatten().chain(&self.more).map(PathBuf::as_path).collect();
-        match (self.preset.as_deref().or(self.layered.as_deref()), all.as_slice()) {
-            (Some(style), inputs) if self.to.is_some() => {
-                Ok(Named { style, inputs: inputs.to_vec(), output: None })
+        let set = self.preset.as_deref().or(self.layered.as_deref());
+        let Some((style, rest)) = set.map(|style| (style, &all[..])).or_else(|| {
+            let (style, rest) = all.split_first()?;
+            Some((*style, rest))
+        }) else {
+            return Err(no_picture());
+        };
+        let (inputs, output, folder) = match (self.to.as_deref(), rest) {
+            (_, []) => return Err(no_picture()),
+            (Some(to), inputs) => (inputs, None, Some(to)),
+            (None, [inputs @ .., folder]) if !inputs.is_empty() && naming::is_folder(folder) => {
+                (inputs, None, Some(*folder))
             }
-            (None, [style, inputs @ ..]) if self.to.is_some() && !inputs.is_empty() => {
-                Ok(Named { style, inputs: inputs.to_vec(), output: None })
-            }
-            (None, [style, input, output]) if self.to.is_none() => {
-                Ok(Named { style, inputs: vec![input], output: Some(output) })
-            }
-            (Some(style), [input, output]) => Ok(Named { style, inputs: vec![input], output: Some(output) }),
-            (None, _) => {
-                Err(Error::input("--to", "is given no picture", "name a style, and pictures or a folder"))
-            }
-            (Some(_), _) => {
-                let (option, problem) = match self.preset {
-                    Some(_) => ("--preset", "the preset names the style"),
-                    None => ("--layered", "its looks name the styles"),
-                };
-                let fix = format!("give the picture and the result alone, or leave {option} out");
-                Err(Error::input(option, problem, fix))
-            }
+            (None, [_]) => (rest, None, None),
+            (None, [inputs @ .., output]) if inputs.len() == 1 => (inputs, Some(*output), None),
+            (None, _) => return Err(self.too_many()),
+        };
+        Ok(Named { style, inputs: inputs.to_vec(), output, folder })
+    }
+
+    /// The error of more names than have a meaning.
+    fn too_many(&self) -> Error {
+        if let Some(first) = self.more.first() {
+            let fix = "name a folder for the results of several as the last, or by --to";
+            return Error::file(first, "is one more than a style, a picture and a result", fix);
         }
+        let (option, problem) = match self.preset {
+            Some(_) => ("--preset", "the preset names the style"),
+            None => ("--layered", "its looks name the styles"),
+        };
+        let fix = format!("give the picture and the result alone, or leave {option} out");
+        Error::input(option, problem, fix)
     }
 
     /// The files that the command line names; of several the first.
     ///
     /// # Errors
-    /// As [`ApplyArgs::named`].
+    /// As [`ApplyArgs::named`], and as [`naming::beside`].
     pub fn files(&self) -> Result<Files<'_>> {
-        let Named { style, inputs, output } = self.named()?;
+        let Named { style, inputs, output, folder } = self.named()?;
         let input = inputs[0];
-        let output = match (output, &self.to) {
-            (None, Some(folder)) => Cow::Owned(result(folder, input)),
-            (output, _) => Cow::Borrowed(output.unwrap_or(input)),
+        let output = match (output, folder) {
+            (Some(output), _) => Cow::Borrowed(output),
+            (None, Some(folder)) => Cow::Owned(self.result(style, folder, input)?),
+            (None, None) if self.in_place => Cow::Borrowed(input),
+            (None, None) => Cow::Owned(naming::beside(style, input)?),
         };
         Ok(Files { style, input, output })
+    }
+
+    /// The result of a file in a folder. In the file's own, where it would take its place, it has the style in its name.
+    fn result(&self, style: &Path, folder: &Path, input: &Path) -> Result<PathBuf> {
+        let result = naming::in_folder(folder, input);
+        if self.to.is_none() && !self.in_place && naming::are_neighbours(&result, input) {
+            let beside = naming::beside(style, input)?;
+            return Ok(folder.join(beside.file_name().unwrap_or_default()));
+        }
+        Ok(result)
     }
 
     /// The pictures of a run that has several of them or a folder, each with its result; nothing for other runs.
@@ -79,8 +97,8 @@ impl ApplyArgs {
     /// # Errors
     /// [`Error::Input`] for folders without pictures, two results of one name, and options of sequences.
     pub fn pictures(&self) -> Result<Option<Vec<Task>>> {
-        let inputs = self.named()?.inputs;
-        let Some(to) = self.to.as_deref() else { return Ok(None) };
+        let Named { style, inputs, folder, .. } = self.named()?;
+        let Some(folder) = folder else { return Ok(None) };
         if matches!(inputs.as_slice(), [one] if !one.is_dir()) {
             return Ok(None);
         }
@@ -95,7 +113,7 @@ impl ApplyArgs {
         let mut made: HashMap<PathBuf, PathBuf> = HashMap::new();
         for input in inputs {
             for input in each(input)? {
-                let output = result(to, &input);
+                let output = self.result(style, folder, &input)?;
                 if let Some(other) = made.insert(output.clone(), input.clone()) {
                     let problem =
                         format!("would be the result of {} and of {}", other.display(), input.display());
@@ -116,9 +134,13 @@ impl ApplyArgs {
     /// # Errors
     /// [`Error::Input`] where it cannot be made.
     pub fn make_folder(&self) -> Result<()> {
-        let Some(folder) = self.to.as_deref().filter(|folder| !folder.is_dir()) else { return Ok(()) };
+        let Some(folder) = self.named()?.folder.filter(|folder| !folder.is_dir()) else { return Ok(()) };
         fs::create_dir_all(folder).map_err(|e| files::unwritable(folder, Some(e.kind()), e))
     }
+}
+
+fn no_picture() -> Error {
+    Error::input("--to", "is given no picture", "name a style, and pictures or a folder")
 }
 
 /// The files that a path names: the pictures of a folder, the frames of a sequence, or itself.
@@ -145,40 +167,5 @@ fn each(path: &Path) -> Result<Vec<PathBuf>> {
     match Pattern::new(path)? {
         Some(pattern) => Ok(pattern.on_disk()?.into_iter().map(|frame| pattern.file(frame)).collect()),
         None => Ok(vec![path.to_owned()]),
-    }
-}
-
-/// The result of a file in a folder: of the same name, with another ending where that kind is not written, and that of an
-/// animated PNG file tells it from a still one.
-fn result(folder: &Path, input: &Path) -> PathBuf {
-    let name = Path::new(input.file_name().unwrap_or(input.as_os_str()));
-    let name = match Format::of(name) {
-        Ok(_) if is_video(input) => name.with_extension("apng"),
-        Ok(_) => name.to_owned(),
-        Err(_) if is_video(input) => name.to_owned(),
-        Err(_) if name.extension().is_some_and(|e| e.eq_ignore_ascii_case("hdr")) => {
-            name.with_extension("exr")
-        }
-        Err(_) => name.with_extension("png"),
-    };
-    folder.join(name)
-}
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-
-    #[test]
-    fn results_keep_their_names() {
-        for (input, output) in [
-            ("a/b.jpg", "out/b.jpg"),
-            ("photo #1.PNG", "out/photo #1.PNG"),
-            ("a.webp", "out/a.png"),
-            ("a.hdr", "out/a.exr"),
-            ("a.mp4", "out/a.mp4"),
-            ("shot.####.exr", "out/shot.####.exr"),
-        ] {
-            assert_eq!(result(Path::new("out"), Path::new(input)), Path::new(output));
-        }
     }
 }
