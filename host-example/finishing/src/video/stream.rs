@@ -180,7 +180,8 @@ mod tests {
     fn tags_say_what_numbers_mean() {
         let mut stream = Stream::of_frames((4, 4), Ratio::USUAL_RATE);
         let usual = stream.meaning();
-        assert!(usual.is_usual() && usual.range == Range::Limited && usual.matrix == Matrix::Bt709);
+        assert_eq!((usual.transfer, usual.primaries), (Transfer::Srgb, REC709));
+        assert_eq!((usual.range, usual.matrix), (Range::Limited, Matrix::Bt709));
         stream.tags =
             vec![["-color_trc", "smpte2084"], ["-color_primaries", "bt2020"], ["-color_range", "pc"]];
         (stream.pixels, stream.range, stream.matrix) = ("yuva444p12le", "pc", "bt2020");
