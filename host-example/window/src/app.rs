@@ -34,7 +34,8 @@ use isophote_render::gpu::Gpu;
 /// Time between two looks at whether what is to end with the window has ended.
 const CLOSING: Duration = Duration::from_millis(20);
 /// Way to mend a desktop that gives no window.
-pub const FIX: &str = "start the viewer in a desktop session; without one `isophote apply` and `isophote render` make pictures";
+pub const FIX: &str =
+    "start the viewer in a desktop session; without one `isophote apply` and `isophote render` make pictures";
 /// Time between two updates of the title.
 const TITLE: Duration = Duration::from_millis(250);
 
