@@ -7,7 +7,7 @@ use isophote::registry;
 use std::path::Path;
 
 /// Pages written for the site: part, place, title.
-const WRITTEN: [(&str, &str, &str); 25] = [
+const WRITTEN: [(&str, &str, &str); 26] = [
     ("", "index", "Isophote"),
     ("", "install", "Install"),
     ("For artists", "artists/first-look", "First look in five minutes"),
