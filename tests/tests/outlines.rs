@@ -261,13 +261,11 @@ impl Disc {
     }
 }
 
+/// A way of running a plan on pictures by their inputs.
+type RunPlan<'a> = dyn FnMut(&Plan, &[(&str, Image)]) -> Image + 'a;
+
 /// The share of a disc's outline that `run` draws at a height, and how much it draws per pixel of it.
-fn measured(
-    lines: Lines,
-    guide: &str,
-    height: u32,
-    run: &mut dyn FnMut(&Plan, &[(&str, Image)]) -> Image,
-) -> [f32; 2] {
+fn measured(lines: Lines, guide: &str, height: u32, run: &mut RunPlan<'_>) -> [f32; 2] {
     let disc = Disc::of(height);
     let inputs = disc.inputs(guide);
     let [with, without] = [false, true].map(|off| run(&disc.plan(lines, &inputs, off), &inputs));

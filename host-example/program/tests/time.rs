@@ -139,7 +139,10 @@ fn what_cannot_be_steady_is_refused() {
     let refused = |more: &[&str], words: &[&str]| fails(&mut apply(at, more), 2, words);
     let cartoon = ["cartoon", INPUT, "no.####.exr"];
     let with = |more: &[&'static str]| [&cartoon[..], more].concat();
-    refused(&["gaussian", INPUT, "no.####.exr", "--steadiness", "0.5"], &["--steadiness", "has no steadiness"]);
+    refused(
+        &["gaussian", INPUT, "no.####.exr", "--steadiness", "0.5"],
+        &["--steadiness", "has no steadiness"],
+    );
     refused(&with(&["--steadiness", "2"]), &["--steadiness 2"]);
     refused(&with(&["--motion", INPUT]), &["--motion", "reads no motion"]);
     refused(&with(&["--steadiness", "0.5", "--motion", "mv.exr"]), &["frame number"]);

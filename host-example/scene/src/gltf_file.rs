@@ -41,7 +41,8 @@ pub fn load(path: &Path, budget: &Budget) -> Result<Scene> {
     let file = File::open(path).map_err(|e| unreadable(e.to_string()))?;
     let bytes = budget.read(file).map_err(unreadable)?;
     let malformed = |problem: String| Error::file(path, problem, budget.fix("export the scene again"));
-    let Parsed { document, channels, blob, extensions, warnings } = parse(&bytes, budget).map_err(malformed)?;
+    let Parsed { document, channels, blob, extensions, warnings } =
+        parse(&bytes, budget).map_err(malformed)?;
     let buffers = read_buffers(path, &document, blob, budget)?;
     let decoded = meshopt::decode(&document, &buffers, budget).map_err(malformed)?;
     let accessors = Accessors { buffers: &buffers, decoded: &decoded, budget };
