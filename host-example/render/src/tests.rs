@@ -56,6 +56,7 @@ fn scene(primitives: Vec<Primitive>, nodes: Vec<Node>, channels: Vec<Channel>) -
         animations: vec![Animation { name: String::new(), channels }],
         bounds: Bounds { min: Vec3::splat(-1.0), max: Vec3::ONE, extremes: Vec::new() },
         warnings: Vec::new(),
+        extensions: Vec::new(),
         files: Vec::new(),
     };
     scene.draws = (0..scene.nodes.len())
