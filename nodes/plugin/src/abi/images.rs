@@ -240,6 +240,19 @@ impl Checked {
         Ok(bytes)
     }
 
+    /// Writes the numbers of a guide as they are, into an image of [`Checked::target`] that holds its window.
+    ///
+    /// # Safety
+    /// The memory of the image must be writable.
+    pub unsafe fn write_guide(&self, result: &Image) {
+        let window = result.window();
+        for y in window.y0..window.y1 {
+            let bytes: Vec<u8> = result.row(y).iter().flat_map(|v| v.to_ne_bytes()).collect();
+            // SAFETY: as in `write`: floats of as many channels are as many bytes.
+            unsafe { self.at(&window, y).copy_from_nonoverlapping(bytes.as_ptr(), bytes.len()) };
+        }
+    }
+
     /// Writes all pixels of `result`, which must lie within the image.
     ///
     /// # Errors

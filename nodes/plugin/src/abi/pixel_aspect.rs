@@ -95,7 +95,11 @@ unsafe extern "C" fn to_square(
         }
         // SAFETY: the host promised that the target's memory may be written, and the count, or it is null.
         unsafe {
-            target.write(&moved(pixels, target.window)?)?;
+            let pixels = moved(pixels, target.window)?;
+            match input {
+                GraphInput::Color => target.write(&pixels)?,
+                _ => target.write_guide(&pixels),
+            }
             args::put_if_wanted(replaced, bad);
         }
         Ok(())
