@@ -67,7 +67,7 @@ pub fn run(options: &Options) -> Result<()> {
         format!("{}\n", wrapped("    ", "  ", &format!("- `{}`: {}", guide.id, guide.clause())))
     });
     let handed_on = lines(|guide| format!("        {0}={0},\n", guide.id));
-    list(options, style, "    /,\n    *,\n", "    out: Array | None = None,\n", &arguments)?;
+    list(options, style, "    /,\n    *,\n", "    out: Any = None,\n", &arguments)?;
     list(options, style, "Guides are what a renderer knows:\n\n", "\n    Normals have", &documents)?;
     list(options, style, "        settings=settings,\n", "    )\n", &handed_on)
 }
