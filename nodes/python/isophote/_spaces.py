@@ -38,9 +38,9 @@ class Colors:
     def leaving(self, floats: Array, dtype: np.dtype[Any]) -> Array:
         """A result of the library's in the picture's space and in numbers of a type; `floats` are used up."""
         native.change_space(floats, self._working, self._space, self._is_premultiplied)
+        result: Array = floats
         if dtype.kind == "u":
-            most = np.float32(np.iinfo(dtype).max)
-            return (np.clip(floats, 0, 1) * most + np.float32(0.5)).astype(dtype)
-        if dtype.itemsize == 2:
-            floats = np.clip(floats, -_LARGEST_HALF, _LARGEST_HALF)
-        return floats.astype(dtype)
+            result = np.clip(floats, 0, 1) * np.float32(np.iinfo(dtype).max) + np.float32(0.5)
+        elif dtype.itemsize == 2:
+            result = np.clip(floats, -_LARGEST_HALF, _LARGEST_HALF)
+        return result.astype(dtype)
