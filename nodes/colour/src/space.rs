@@ -4,154 +4,80 @@ use crate::primaries::{ADOBE, AP0, AP1, Chromaticities, P3, REC709, REC2020, sam
 use crate::transfer::Transfer;
 use std::str::FromStr;
 
-/// Space of the numbers of a picture.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Space {
-    /// Gamma-encoded sRGB.
-    Srgb,
-    /// Linear light, Rec.709 primaries.
-    Linear,
-    /// ACEScg: linear light, AP1 primaries.
-    Acescg,
-    /// Linear light, P3 primaries, white D65.
-    P3,
-    /// Linear light, Rec.2020 primaries.
-    Rec2020,
-    /// ACES2065-1: linear light, AP0 primaries.
-    Aces,
-    /// Display P3: P3 primaries, white D65, the curve of sRGB.
-    DisplayP3,
-    /// Rec.709 primaries and the curve of cameras of BT.709.
-    EncodedRec709,
-    /// Rec.2020 primaries and the curve of cameras of BT.2020.
-    EncodedRec2020,
-    /// Adobe RGB (1998).
-    AdobeRgb,
-    /// BT.2100 PQ: Rec.2020 primaries, white graphics at 203 candelas a square metre.
-    Pq,
-    /// BT.2100 HLG: Rec.2020 primaries, white graphics at 75 %.
-    Hlg,
+macro_rules! spaces {
+    ($($space:ident: $id:literal $aliases:tt, $label:literal, $primaries:ident, $transfer:expr, $doc:literal;)+) => {
+        /// Space of the numbers of a picture.
+        #[derive(Clone, Copy, Debug, PartialEq, Eq)]
+        pub enum Space {
+            $(#[doc = $doc] $space,)+
+        }
+
+        impl Space {
+            /// All of them, in the order in which they are listed.
+            pub const ALL: [Self; [$(Space::$space),+].len()] = [$(Space::$space),+];
+
+            /// Stable name, for scripts and the command line.
+            pub const fn id(self) -> &'static str {
+                match self { $(Self::$space => $id,)+ }
+            }
+
+            /// Other names that are understood.
+            pub const fn aliases(self) -> &'static [&'static str] {
+                match self { $(Self::$space => &$aliases,)+ }
+            }
+
+            /// Name in menus.
+            pub const fn label(self) -> &'static str {
+                match self { $(Self::$space => $label,)+ }
+            }
+
+            /// One sentence about it.
+            pub const fn doc(self) -> &'static str {
+                match self { $(Self::$space => $doc,)+ }
+            }
+
+            /// The primaries.
+            pub const fn primaries(self) -> Chromaticities {
+                match self { $(Self::$space => $primaries,)+ }
+            }
+
+            /// The relation of numbers to light.
+            pub const fn transfer(self) -> Transfer {
+                match self { $(Self::$space => $transfer,)+ }
+            }
+        }
+    };
 }
 
-/// Names of a space.
-struct Names {
-    id: &'static str,
-    aliases: &'static [&'static str],
-    label: &'static str,
-    doc: &'static str,
+// Id and aliases, label, primaries, transfer, sentence. The exponent of Adobe RGB is the exact number of its standard.
+spaces! {
+    Srgb: "srgb" [], "sRGB", REC709, Transfer::Srgb,
+        "Gamma-encoded sRGB.";
+    Linear: "linear" ["rec709", "linear-rec709"], "Linear (Rec. 709)", REC709, Transfer::Linear,
+        "Linear light, Rec.709 primaries.";
+    Acescg: "acescg" [], "ACEScg", AP1, Transfer::Linear,
+        "ACEScg: linear light, AP1 primaries.";
+    P3: "p3" ["linear-p3"], "Linear (P3)", P3, Transfer::Linear,
+        "Linear light, P3 primaries, white D65.";
+    Rec2020: "rec2020" ["linear-rec2020"], "Linear (Rec. 2020)", REC2020, Transfer::Linear,
+        "Linear light, Rec.2020 primaries.";
+    Aces: "aces2065-1" ["aces", "ap0"], "ACES2065-1", AP0, Transfer::Linear,
+        "ACES2065-1: linear light, AP0 primaries.";
+    DisplayP3: "display-p3" [], "Display P3", P3, Transfer::Srgb,
+        "Display P3: P3 primaries, white D65, the curve of sRGB.";
+    EncodedRec709: "encoded-rec709" ["bt709"], "Rec. 709 (camera)", REC709, Transfer::Rec709,
+        "Rec.709 primaries and the curve of cameras of BT.709.";
+    EncodedRec2020: "encoded-rec2020" ["bt2020"], "Rec. 2020 (camera)", REC2020, Transfer::Rec709,
+        "Rec.2020 primaries and the curve of cameras of BT.2020.";
+    AdobeRgb: "adobe-rgb" [], "Adobe RGB", ADOBE, Transfer::Gamma(563.0 / 256.0),
+        "Adobe RGB (1998).";
+    Pq: "rec2100-pq" ["pq"], "Rec. 2100 PQ", REC2020, Transfer::Pq,
+        "BT.2100 PQ: Rec.2020 primaries, white graphics at 203 candelas a square metre.";
+    Hlg: "rec2100-hlg" ["hlg"], "Rec. 2100 HLG", REC2020, Transfer::Hlg,
+        "BT.2100 HLG: Rec.2020 primaries, white graphics at 75 %.";
 }
 
 impl Space {
-    /// All of them, in the order in which they are listed.
-    pub const ALL: [Self; 12] = [
-        Self::Srgb,
-        Self::Linear,
-        Self::Acescg,
-        Self::P3,
-        Self::Rec2020,
-        Self::Aces,
-        Self::DisplayP3,
-        Self::EncodedRec709,
-        Self::EncodedRec2020,
-        Self::AdobeRgb,
-        Self::Pq,
-        Self::Hlg,
-    ];
-
-    const fn names(self) -> Names {
-        let (id, aliases, label, doc): (_, &[_], _, _) = match self {
-            Self::Srgb => ("srgb", &[], "sRGB", "Gamma-encoded sRGB."),
-            Self::Linear => (
-                "linear",
-                &["rec709", "linear-rec709"],
-                "Linear (Rec. 709)",
-                "Linear light, Rec.709 primaries.",
-            ),
-            Self::Acescg => ("acescg", &[], "ACEScg", "ACEScg: linear light, AP1 primaries."),
-            Self::P3 => ("p3", &["linear-p3"], "Linear (P3)", "Linear light, P3 primaries, white D65."),
-            Self::Rec2020 => {
-                ("rec2020", &["linear-rec2020"], "Linear (Rec. 2020)", "Linear light, Rec.2020 primaries.")
-            }
-            Self::Aces => {
-                ("aces2065-1", &["aces", "ap0"], "ACES2065-1", "ACES2065-1: linear light, AP0 primaries.")
-            }
-            Self::DisplayP3 => {
-                ("display-p3", &[], "Display P3", "Display P3: P3 primaries, white D65, the curve of sRGB.")
-            }
-            Self::EncodedRec709 => (
-                "encoded-rec709",
-                &["bt709"],
-                "Rec. 709 (camera)",
-                "Rec.709 primaries and the curve of cameras of BT.709.",
-            ),
-            Self::EncodedRec2020 => (
-                "encoded-rec2020",
-                &["bt2020"],
-                "Rec. 2020 (camera)",
-                "Rec.2020 primaries and the curve of cameras of BT.2020.",
-            ),
-            Self::AdobeRgb => ("adobe-rgb", &[], "Adobe RGB", "Adobe RGB (1998)."),
-            Self::Pq => (
-                "rec2100-pq",
-                &["pq"],
-                "Rec. 2100 PQ",
-                "BT.2100 PQ: Rec.2020 primaries, white graphics at 203 candelas a square metre.",
-            ),
-            Self::Hlg => (
-                "rec2100-hlg",
-                &["hlg"],
-                "Rec. 2100 HLG",
-                "BT.2100 HLG: Rec.2020 primaries, white graphics at 75 %.",
-            ),
-        };
-        Names { id, aliases, label, doc }
-    }
-
-    /// Stable name, for scripts and the command line.
-    pub const fn id(self) -> &'static str {
-        self.names().id
-    }
-
-    /// Other names that are understood.
-    pub const fn aliases(self) -> &'static [&'static str] {
-        self.names().aliases
-    }
-
-    /// Name in menus.
-    pub const fn label(self) -> &'static str {
-        self.names().label
-    }
-
-    /// One sentence about it.
-    pub const fn doc(self) -> &'static str {
-        self.names().doc
-    }
-
-    /// The primaries.
-    pub fn primaries(self) -> Chromaticities {
-        match self {
-            Self::Srgb | Self::Linear | Self::EncodedRec709 => REC709,
-            Self::Acescg => AP1,
-            Self::Aces => AP0,
-            Self::P3 | Self::DisplayP3 => P3,
-            Self::Rec2020 | Self::EncodedRec2020 | Self::Pq | Self::Hlg => REC2020,
-            Self::AdobeRgb => ADOBE,
-        }
-    }
-
-    /// The relation of numbers to light.
-    pub fn transfer(self) -> Transfer {
-        match self {
-            Self::Linear | Self::Acescg | Self::Aces | Self::P3 | Self::Rec2020 => Transfer::Linear,
-            Self::Srgb | Self::DisplayP3 => Transfer::Srgb,
-            Self::EncodedRec709 | Self::EncodedRec2020 => Transfer::Rec709,
-            // The exact number of the standard.
-            Self::AdobeRgb => Transfer::Gamma(563.0 / 256.0),
-            Self::Pq => Transfer::Pq,
-            Self::Hlg => Transfer::Hlg,
-        }
-    }
-
     /// True where numbers are light.
     pub fn is_linear(self) -> bool {
         self.transfer() == Transfer::Linear
