@@ -6,6 +6,8 @@
 
 #[path = "openfx/aspect.rs"]
 mod aspect;
+#[path = "openfx/colours.rs"]
+mod colours;
 #[path = "openfx/controls.rs"]
 mod controls;
 #[path = "openfx/describe.rs"]
@@ -50,6 +52,10 @@ type OfAnEffect = (&'static str, fn(&Binary, Expected));
 /// Tests of the binary, whatever its effects.
 const OF_THE_BINARY: &[OfTheBinary] = named! {
     regions::a_bounding_box_shows_the_marks_of_the_project,
+    colours::other_spaces_are_changed_once,
+    colours::the_same_picture_comes_of_every_space,
+    colours::neighbours_and_tiles_have_the_colours_of_the_frame,
+    colours::what_is_no_colour_is_not_changed,
     controls::tiles_are_supported_as_saved_values_say,
     controls::another_time_is_no_edit,
     controls::what_motion_comes_from_decides_about_tiles_and_controls,

@@ -1,43 +1,19 @@
 //! Changes of what the numbers of pictures mean: transfer, primaries, kind of alpha.
 
+use isophote_colour::Encoding;
 use rayon::prelude::*;
 
 use crate::meaning::Meaning;
 use crate::pixels::{Pixels, Samples};
-use crate::primaries::{Change, same};
-use crate::transfer::Transfer;
-
-/// Number that an infinity becomes.
-const LARGEST_HALF: f32 = 65504.0;
 
 /// A change from one meaning to another.
 #[derive(Clone, Debug, PartialEq)]
-pub struct Conversion {
-    from: Encoding,
-    to: Encoding,
-    change: Option<Change>,
-}
-
-/// Relation of numbers to light that is not multiplied by alpha.
-#[derive(Clone, Debug, PartialEq)]
-struct Encoding {
-    transfer: Transfer,
-    is_premultiplied: bool,
-}
-
-impl Encoding {
-    fn of(meaning: &Meaning) -> Self {
-        Self { transfer: meaning.transfer.clone(), is_premultiplied: meaning.is_premultiplied() }
-    }
-}
+pub struct Conversion(isophote_colour::Conversion);
 
 impl Conversion {
     /// From one meaning to another; nothing where numbers stay as they are. Primaries that span no colours stay too.
     pub fn between(from: &Meaning, to: &Meaning) -> Option<Self> {
-        let change =
-            if same(from.primaries, to.primaries) { None } else { Change::new(from.primaries, to.primaries) };
-        let (from, to) = (Encoding::of(from), Encoding::of(to));
-        (change.is_some() || from != to).then_some(Self { from, to, change })
+        isophote_colour::Conversion::between(encoding(from), encoding(to)).map(Self)
     }
 
     /// The picture in the other meaning, and how many samples of colour that are no number or infinite were replaced first,
@@ -45,51 +21,17 @@ impl Conversion {
     pub fn apply(&self, pixels: &Pixels) -> (Pixels, u64) {
         let mut numbers = pixels.to_f32();
         let channels = pixels.channels() as usize;
-        let replaced = numbers.par_chunks_exact_mut(channels).map(|pixel| self.pixel(pixel)).sum();
+        let replaced = numbers.par_chunks_exact_mut(channels).map(|pixel| self.0.apply(pixel)).sum();
         // As many numbers as there were.
         let changed = Pixels::new(pixels.width(), pixels.height(), pixels.channels(), Samples::F32(numbers));
         (changed.unwrap_or_else(|| pixels.clone()), replaced)
     }
+}
 
-    fn pixel(&self, pixel: &mut [f32]) -> u64 {
-        let colors = if pixel.len() == 1 { 1 } else { 3 };
-        let mut replaced = 0;
-        for value in pixel.iter_mut().take(colors).filter(|v| !v.is_finite()) {
-            *value = if value.is_nan() { 0.0 } else { LARGEST_HALF.copysign(*value) };
-            replaced += 1;
-        }
-        match pixel {
-            [grey] => {
-                let [changed, ..] = self.to.transfer.encode(self.from.transfer.decode([*grey; 3]));
-                *grey = changed;
-            }
-            [r, g, b, alpha @ ..] => {
-                [*r, *g, *b] = self.color([*r, *g, *b], alpha.first().copied().unwrap_or(1.0));
-            }
-            _ => {}
-        }
-        replaced
-    }
-
-    fn color(&self, mut rgb: [f32; 3], alpha: f32) -> [f32; 3] {
-        let is_linear = self.from.transfer == Transfer::Linear && self.to.transfer == Transfer::Linear;
-        // Multiplied light needs no division where it stays such.
-        let is_apart = !(is_linear && self.from.is_premultiplied && self.to.is_premultiplied);
-        if is_apart && self.from.is_premultiplied && alpha > 0.0 {
-            rgb = rgb.map(|v| v / alpha);
-        }
-        rgb = self.from.transfer.decode(rgb);
-        if let Some(change) = &self.change {
-            rgb = change.apply(rgb);
-        }
-        rgb = self.to.transfer.encode(rgb);
-        // Light without coverage stays light.
-        let is_light = self.from.is_premultiplied && alpha <= 0.0;
-        if is_apart && self.to.is_premultiplied && !is_light {
-            rgb = rgb.map(|v| v * alpha);
-        }
-        rgb
-    }
+/// Relation of a picture's numbers to colours.
+fn encoding(meaning: &Meaning) -> Encoding {
+    let Meaning { primaries, transfer, .. } = meaning.clone();
+    Encoding { primaries, transfer, is_premultiplied: meaning.is_premultiplied() }
 }
 
 #[cfg(test)]

@@ -32,12 +32,12 @@ pub mod meaning;
 pub mod mix;
 pub mod pixels;
 mod png;
-pub mod primaries;
 pub mod read;
 mod said;
 pub mod space;
 mod tiff;
 mod tiff_write;
-pub mod transfer;
 pub mod working;
 pub mod write;
+
+pub use isophote_colour::{primaries, transfer};

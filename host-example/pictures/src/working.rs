@@ -4,9 +4,8 @@ use crate::convert::Conversion;
 use crate::exr::Picture;
 use crate::meaning::{ImageState, Meaning};
 use crate::pixels::Pixels;
-use crate::primaries::{AP1, REC709};
+use crate::primaries::REC709;
 use crate::space::Space;
-use crate::transfer::Transfer;
 
 /// The space in which a picture is filtered, and the change to it from what its numbers mean. The library knows three
 /// spaces; others are changed here.
@@ -27,12 +26,8 @@ impl WorkingSpace {
     pub fn of(space: Option<Space>, picture: &Picture) -> Self {
         let source = picture.meaning.clone().named(space);
         let is_grey = picture.pixels.channels() == 1;
-        let is_rec709 = is_grey || source.has_primaries(REC709);
-        let space = match source.transfer {
-            Transfer::Srgb if is_rec709 => Space::Srgb,
-            Transfer::Linear if !is_rec709 && source.has_primaries(AP1) => Space::Acescg,
-            _ => Space::Linear,
-        };
+        let primaries = if is_grey { REC709 } else { source.primaries };
+        let space = Space::working_for(primaries, &source.transfer);
         let (primaries, transfer) = (space.primaries(), space.transfer());
         // Grey has the white of its file.
         let primaries = if is_grey { source.primaries } else { primaries };

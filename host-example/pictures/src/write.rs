@@ -64,7 +64,7 @@ impl Format {
         match space.filter(|space| self == Self::Exr && !space.is_linear()) {
             Some(space) => Err(Error::input(
                 "--output-space",
-                format!("{} is encoded, and EXR files are of light", space.name()),
+                format!("{} is encoded, and EXR files are of light", space.id()),
                 "name linear, acescg, aces2065-1, p3 or rec2020",
             )),
             None => Ok(()),

@@ -6,6 +6,7 @@
 //! any action may come on any thread, in any number.
 
 mod clips;
+mod colours;
 mod controls;
 mod describe;
 mod effects;

@@ -7,6 +7,7 @@ from typing import Any
 import numpy as np
 
 from ._inputs import Array, given, tensor
+from ._spaces import Colors
 from .errors import InvalidValueError
 
 _FORMATS = "uint8, uint16, float16 or float32"
@@ -61,8 +62,9 @@ def writable(out: Any) -> Array:
 class Target:
     """Where a result is written: the caller's array, or a new one."""
 
-    def __init__(self, source: Array, kind: str, out: Any) -> None:
+    def __init__(self, source: Array, kind: str, out: Any, colors: Colors) -> None:
         """`source` is the picture that a result of this kind is made of, `out` the caller's array or tensor."""
+        self._colors = colors if kind == "color" and colors.is_needed else None
         self._caller: Array | None = out
         out = None if out is None else writable(out)
         height, width = source.shape[:2]
@@ -85,12 +87,14 @@ class Target:
         # The library writes pictures of 1, 3 or 4 channels.
         self._picked = [0, 3] if kind == "color" and channels == 2 else list(range(channels))
         written = {2: 4 if kind == "color" else 3}.get(channels, channels)
-        is_fit = written == channels and out.dtype.isnative and dense(view) is view
-        self.pixels: Array = view if is_fit else np.empty((height, width, written), out.dtype.newbyteorder("="))
+        is_fit = written == channels and out.dtype.isnative and dense(view) is view and self._colors is None
+        of_library = out.dtype.newbyteorder("=") if self._colors is None else np.dtype(np.float32)
+        self.pixels: Array = view if is_fit else np.empty((height, width, written), of_library)
         self._view = view
 
     def finished(self) -> Array:
         """The result: the caller's array or tensor, or the new array."""
         if self.pixels is not self._view:
-            self._view[...] = self.pixels[:, :, self._picked]
+            result = self.pixels if self._colors is None else self._colors.leaving(self.pixels, self._view.dtype)
+            self._view[...] = result[:, :, self._picked]
         return self.out if self._caller is None else self._caller

@@ -62,15 +62,19 @@ class Sequence:
         if picture is None:
             raise IndexError(f"there is no frame {number}")
         image = given(picture, "color")
+        colors = self._settings.colors
 
         def source(name: str, frame: int) -> Array | None:
             found = image if (name, frame) == ("color", number) else self._source(name, frame)
-            return None if found is None else pixels(found, name)
+            if found is None:
+                return None
+            read = pixels(found, name)
+            return colors.entering(read) if name == "color" else read
 
         request = self._settings.request(pixels(image, "color"), self._guides, number, self.style)
         with self._lock, self.style._lock:
             self.style._at(number)
-            target = Target(image, self.style.output_kind, out)
+            target = Target(image, self.style.output_kind, out, colors)
             self._sequence.process(
                 self.style._graph,
                 request,

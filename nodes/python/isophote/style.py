@@ -14,6 +14,7 @@ import numpy as np
 from ._inputs import Array, given
 from ._library import native
 from ._pixels import Target, pixels, writable
+from ._spaces import Colors
 from .devices import Device, DeviceLike, open_device
 from .errors import InvalidValueError
 from .presets import LENGTHS, LOOK, PLACE, Preset, StyleLike, as_json, as_text
@@ -26,7 +27,8 @@ class Picture(TypedDict, total=False):
     """What is known of a picture, and how it is computed: keywords of everything that computes one."""
 
     color_space: str
-    """`srgb` (gamma-encoded), `linear` (Rec. 709) or `acescg`; the result has the same."""
+    """`srgb` (gamma-encoded), `linear` (Rec. 709), `acescg`, `display-p3` or another of the program's option `--space`; the
+    result has the same."""
     alpha_mode: str
     """`straight`; `premultiplied`, as renderers write it; or `emissive`, premultiplied with light where alpha is 0."""
     lengths: str
@@ -66,6 +68,7 @@ class Settings:
         if lengths is not None and lengths not in LENGTHS:
             raise InvalidValueError(f"lengths are {' or '.join(LENGTHS)}, not {lengths!r}")
         self.color_space = color_space
+        self.colors = Colors(color_space, alpha_mode)
         self.alpha_mode = alpha_mode
         self.lengths = lengths
         self.scale = scale
@@ -174,9 +177,10 @@ class Style:
         image = images["color"]
         images = {name: pixels(each, name) for name, each in images.items()}
         request = settings.request(images["color"], list(images), frame, self)
+        images["color"] = settings.colors.entering(images["color"])
         with self._lock:
             self._at(frame)
-            target = Target(image, self.output_kind, out)
+            target = Target(image, self.output_kind, out, settings.colors)
             self._graph.process(request, images, target.pixels, settings.device, settings.threads, settings.progress)
         return target.finished()
 
@@ -284,11 +288,13 @@ def apply(
 
     Normals have 3 or 4 channels of floats, rest positions 32 bits a channel, and motion goes x right and y down.
 
-    `color_space` is `srgb` (gamma-encoded), `linear` (Rec. 709) or `acescg`, and the result has the same. `alpha_mode` is
-    `straight`; `premultiplied`, as renderers write it; or `emissive`, premultiplied with light where alpha is 0. `lengths`
-    of parameters are `relative`, in pixels of a picture 1080 lines high, unless a preset says otherwise, or `pixels` of the
-    picture itself. `scale` is the picture's size over full size; `origin` is where it stands in the canonical picture,
-    which has `canonical_height` lines. `frame` renews what `hold` lets last, and tells keyframes of presets apart.
+    `color_space` is `srgb` (gamma-encoded), `linear` (Rec. 709), `acescg`, `p3` or `rec2020` (linear), `aces2065-1`,
+    `display-p3`, `adobe-rgb`, `encoded-rec709`, `encoded-rec2020`, `rec2100-pq` or `rec2100-hlg`, and the result has the
+    same. `alpha_mode` is `straight`; `premultiplied`, as renderers write it; or `emissive`, premultiplied with light where
+    alpha is 0. `lengths` of parameters are `relative`, in pixels of a picture 1080 lines high, unless a preset says
+    otherwise, or `pixels` of the picture itself. `scale` is the picture's size over full size; `origin` is where it stands
+    in the canonical picture, which has `canonical_height` lines. `frame` renews what `hold` lets last, and tells keyframes of
+    presets apart.
 
     `device` is `cpu`; `gpu`, the best graphics device, or a software driver without one; `auto`, a graphics card or the
     CPU; a part of an adapter's name; or an `isophote.Device`. Devices compute with a `precision`: `exact`, or `half` and

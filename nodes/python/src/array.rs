@@ -151,6 +151,11 @@ impl AsTarget for Pixels {
 }
 
 impl Pixels {
+    /// Place where a line of floats begins.
+    pub fn line(&self, y: u32) -> *mut f32 {
+        self.data.wrapping_offset(y as isize * self.row_stride).cast()
+    }
+
     fn described(&self) -> IsophoteTarget {
         IsophoteTarget {
             data: self.data.cast(),

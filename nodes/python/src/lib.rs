@@ -9,6 +9,7 @@
 #![allow(unsafe_code, reason = "arrays of NumPy and the functions of the library's table meet here")]
 
 pub mod array;
+pub mod colour;
 pub mod exception;
 pub mod motion;
 pub mod objects;
@@ -28,6 +29,8 @@ use std::path::PathBuf;
 pub mod native {
     use super::*;
 
+    #[pymodule_export]
+    use crate::colour::{change_space, color_space};
     #[pymodule_export]
     use crate::motion::motion;
     #[pymodule_export]

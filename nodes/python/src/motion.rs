@@ -47,7 +47,7 @@ pub fn motion(
     for y in 0..target.height {
         // SAFETY: the lines of both arrays hold so many pixels of floats, as their descriptions say; nothing is aligned.
         unsafe {
-            let (from, to) = (line(pass, y), line(&target, y));
+            let (from, to) = (pass.line(y), target.line(y));
             for (x, vector) in row.chunks_exact_mut(2).enumerate() {
                 for (value, place) in vector.iter_mut().zip(places) {
                     *value = from.add(x * pass.channels as usize + place).read_unaligned();
@@ -60,9 +60,4 @@ pub fn motion(
         }
     }
     Ok(())
-}
-
-/// Where a line of an image begins.
-fn line(pixels: &Pixels, y: u32) -> *mut f32 {
-    pixels.data.wrapping_offset(y as isize * pixels.row_stride).cast()
 }

@@ -1,10 +1,12 @@
 //! The classes of the extension module. `isophote/_native.pyi` describes them to type checkers.
 
 use crate::array::{Pixels, Use};
+use crate::colour;
 use crate::exception::{invalid, raised, usage};
 use crate::opened::library;
 use crate::owned::Owned;
 use crate::watch::Watch;
+use isophote_colour::Space;
 use isophote_loader::abi::{self as c, IsophoteRequest};
 use isophote_loader::{self as loader, Control, Input, Report};
 use pyo3::prelude::*;
@@ -18,7 +20,8 @@ fn word<T: Copy>(what: &str, given: &str, words: &[(&str, T)]) -> PyResult<T> {
     })
 }
 
-/// Request: the picture, its spaces and where it stands.
+/// Request: the picture, its spaces and where it stands. Its numbers are those of the space in which pictures of
+/// `color_space` are computed.
 #[pyclass(frozen, module = "isophote._native")]
 #[derive(Debug)]
 pub struct Request(IsophoteRequest);
@@ -39,11 +42,6 @@ impl Request {
         reference_height: u32,
         canonical_height: u32,
     ) -> PyResult<Self> {
-        const SPACES: [(&str, u32); 3] = [
-            ("srgb", c::ISOPHOTE_SPACE_SRGB),
-            ("linear", c::ISOPHOTE_SPACE_LINEAR),
-            ("acescg", c::ISOPHOTE_SPACE_ACESCG),
-        ];
         const ALPHAS: [(&str, u32); 3] = [
             ("straight", c::ISOPHOTE_ALPHA_STRAIGHT),
             ("premultiplied", c::ISOPHOTE_ALPHA_PREMULTIPLIED),
@@ -54,7 +52,11 @@ impl Request {
         let whole = answer(py, library.request(size))?;
         Ok(Self(IsophoteRequest {
             scale,
-            space: word("the colour space", color_space, &SPACES)?,
+            space: match colour::named(color_space)?.working() {
+                Space::Srgb => c::ISOPHOTE_SPACE_SRGB,
+                Space::Acescg => c::ISOPHOTE_SPACE_ACESCG,
+                _ => c::ISOPHOTE_SPACE_LINEAR,
+            },
             alpha: word("alpha", alpha_mode, &ALPHAS)?,
             guides,
             origin_x: origin.0,

@@ -2,9 +2,14 @@
 
 from __future__ import annotations
 
+import os
+import subprocess
+from pathlib import Path
+
 import numpy as np
 import pytest
 from c_face import Face
+from PIL import Image
 
 import isophote
 from isophote._pixels import pixels
@@ -149,6 +154,64 @@ def test_spaces_and_alpha_are_the_requests(small: np.ndarray) -> None:
                 hold=2,
             )
             assert np.array_equal(result, expected), (space, alpha)
+
+
+SPACES = [
+    "p3",
+    "rec2020",
+    "aces2065-1",
+    "display-p3",
+    "encoded-rec709",
+    "encoded-rec2020",
+    "adobe-rgb",
+    "rec2100-pq",
+    "rec2100-hlg",
+]
+"""Spaces in which the library does not compute."""
+
+
+@pytest.mark.parametrize("space", SPACES)
+def test_other_spaces_are_those_of_the_host(small: np.ndarray, host: Path, tmp_path: Path, space: str) -> None:
+    image = with_alpha(small)
+    given, made = tmp_path / "given.png", tmp_path / "made.png"
+    Image.fromarray(image).save(given)
+    command = [host, "apply", "oil_paint", given, made, "--space", space, "--backend", "cpu"]
+    subprocess.run(command, check=True, env={**os.environ, "NODEVICE_SELECT": "1"}, stdout=subprocess.DEVNULL)
+    # Light, PQ and HLG have 16 bits there, of which Pillow shows the upper ones.
+    expected = np.asarray(Image.open(made)).astype(int)
+    result = isophote.apply("oil_paint", image, color_space=space)
+    assert result.dtype == np.uint8 and np.abs(result - expected).max() <= 1
+    assert not np.array_equal(result, isophote.apply("oil_paint", image))
+
+
+@pytest.mark.parametrize("space", SPACES)
+def test_other_spaces_come_back_as_they_were(small: np.ndarray, space: str) -> None:
+    for dtype in FORMATS:
+        image = converted(with_alpha(small), dtype)
+        for picture in (image, image[..., :3], image[..., 0]):
+            result = isophote.apply("oil_paint", picture, mix=0.0, color_space=space)
+            near = 1e-3 if dtype in (np.float16, np.float32) else 255 if space.startswith("rec2100") else 4
+            assert result.shape == picture.shape and result.dtype == dtype
+            assert np.abs(result.astype(float) - picture).max() <= (0 if dtype is np.uint8 else near), dtype
+    colors = converted(with_alpha(small), np.float32)
+    colors[..., :3] *= colors[..., 3:]
+    back = isophote.apply("oil_paint", colors, mix=0.0, color_space=space, alpha_mode="premultiplied")
+    assert np.abs(back - colors).max() < 1e-3
+
+
+def test_spaces_have_aliases_and_results_a_place(small: np.ndarray) -> None:
+    result = isophote.apply("cartoon", small, color_space="p3")
+    out = np.empty_like(small)[::-1]
+    assert isophote.apply("cartoon", small, color_space="linear-p3", out=out) is out
+    assert np.array_equal(out, result)
+    assert np.array_equal(
+        isophote.apply("cartoon", small, color_space="rec709"), isophote.apply("cartoon", small, color_space="linear")
+    )
+    lines = isophote.apply("flow_dog", small, color_space="p3")
+    assert (
+        lines.shape == small.shape[:2]
+        and np.array_equal(lines, isophote.apply("flow_dog", small, color_space="linear")) is False
+    )
 
 
 def test_other_kinds_of_results_have_their_own_shapes(small: np.ndarray) -> None:

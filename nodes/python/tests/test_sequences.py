@@ -147,3 +147,17 @@ def test_motion_vectors_of_renderers_are_understood() -> None:
         isophote.motion(vector[..., :1])
     with pytest.raises(ValueError, match="one size"):
         isophote.motion(vector[..., :2], vector[:1, :, :2])
+
+
+def test_colors_of_neighbours_are_in_the_same_space(footage: dict[int, np.ndarray], motion: np.ndarray) -> None:
+    wanted = {"steadiness": 0.5, "color_space": "linear"}
+    floats = {n: (frame / 255).astype(np.float32) for n, frame in footage.items()}
+    # Light of Rec.2020 of the same colours, by the matrix of Rec. ITU-R BT.2087.
+    matrix = np.float32([[0.6274, 0.3293, 0.0433], [0.0691, 0.9195, 0.0114], [0.0164, 0.0880, 0.8956]])
+    wide = {n: frame @ matrix.T for n, frame in floats.items()}
+    paths = {"motion": {n: motion for n in footage}}
+    plain = isophote.Sequence("oil_paint", {"color": floats, **paths}, **wanted).frame(3)
+    same = isophote.Sequence("oil_paint", {"color": wide, **paths}, **{**wanted, "color_space": "rec2020"}).frame(3)
+    assert np.abs(same - plain @ matrix.T).mean() < 1e-3
+    still = isophote.apply("oil_paint", wide[3], color_space="rec2020")
+    assert np.abs(same - still).mean() > 2e-3

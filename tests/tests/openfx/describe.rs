@@ -187,6 +187,10 @@ pub fn the_working_space_follows_the_host(binary: &Binary) {
         shown.each_param(|param| {
             if param.name.as_c_str() == c"working_space" {
                 assert_eq!(param.set.get(kOfxParamPropDefault), [Value::Int(index)], "{name:?}");
+                let options = param.set.texts(kOfxParamPropChoiceOption);
+                // Saved projects hold their places.
+                assert_eq!(options[..5], ["Linear (Rec. 709)", "sRGB", "As is", "ACEScg", "Linear (P3)"]);
+                assert_eq!(options.len(), 13);
             }
         });
     }
@@ -210,7 +214,14 @@ pub fn hosts_that_manage_colours_are_asked_for_the_working_space(binary: &Binary
     assert!(wanted().is_empty(), "this host manages no colours yet");
     let style = Value::from(kOfxImageEffectColourManagementBasic);
     instance.effect.set.put(kOfxImageEffectPropColourManagementStyle, vec![style]);
-    for (space, name) in [(0, "ofx_scene_linear"), (1, "ofx_display_sdr"), (3, "ofx_scene_linear")] {
+    for (space, name) in [
+        (0, "ofx_scene_linear"),
+        (1, "ofx_display_sdr"),
+        (3, "ofx_scene_linear"),
+        (6, "ofx_scene_linear"),
+        (7, "ofx_display_sdr"),
+        (11, "ofx_display_hdr"),
+    ] {
         instance.set("working_space", space);
         assert_eq!(wanted(), [name]);
     }

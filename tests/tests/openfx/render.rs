@@ -14,11 +14,12 @@ use isophote_tests::ofx::state::Behaviour;
 use std::ffi::CStr;
 use std::sync::atomic::Ordering;
 
-const SIZE: [i32; 2] = [WIDTH, HEIGHT];
+pub const SIZE: [i32; 2] = [WIDTH, HEIGHT];
 const DEPTHS: [&CStr; 4] = [kOfxBitDepthFloat, kOfxBitDepthHalf, kOfxBitDepthShort, kOfxBitDepthByte];
 const COMPONENTS: [&CStr; 3] = [kOfxImageComponentRGBA, kOfxImageComponentRGB, kOfxImageComponentAlpha];
 
-fn through(graph: &isophote::Graph, source: &Picture, layout: Layout, space: ColourSpace) -> Vec<u8> {
+/// Result of the C table for a picture.
+pub fn through(graph: &isophote::Graph, source: &Picture, layout: Layout, space: ColourSpace) -> Vec<u8> {
     let through = Through {
         graph,
         size: SIZE,
@@ -101,6 +102,11 @@ pub fn the_colour_space_that_a_host_names_counts(binary: &Binary) {
     assert!(render(1, Some(c"ofx_scene_linear")) == linear && render(0, Some(c"ACEScg")) == aces);
     assert!(render(3, Some(c"ofx_scene_linear")) == aces && render(0, Some(c"arri_logc4")) == linear);
     assert!(render(2, Some(c"lin_rec709_srgb")) == srgb, "as is");
+    let [p3, display_p3] = [4, 7].map(|space| render(space, None));
+    assert!(p3 != linear && display_p3 != srgb && p3 != display_p3);
+    assert!(render(0, Some(c"lin_p3d65")) == p3 && render(1, Some(c"displayp3_display")) == display_p3);
+    assert!(render(4, Some(c"ofx_scene_linear")) == p3 && render(7, Some(c"ofx_display_sdr")) == display_p3);
+    assert!(render(7, Some(c"ofx_scene_linear")) == linear && render(4, Some(c"srgb_tx")) == srgb);
     host.no_faults();
 }
 

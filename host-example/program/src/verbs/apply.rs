@@ -33,7 +33,7 @@ use isophote_finishing::video::{self, OnError};
 use isophote_loader::Library;
 use isophote_pictures::exr::{Convention, GuideChoice, MaskSource, OnUnknown, Selection};
 use isophote_pictures::read::{self, Opened};
-use isophote_pictures::space::Space;
+use isophote_pictures::space::{self, Space};
 use isophote_pictures::write::Format;
 
 /// Options of `apply`.
@@ -111,11 +111,11 @@ pub struct ApplyArgs {
     pub backend: Backend,
     /// Colour space of the picture [default: what the file says by its ICC profile, chunks of PNG, chromaticities or
     /// colorInteropID; else sRGB for integers, linear Rec.709 for floats].
-    #[arg(long, value_enum)]
+    #[arg(long, value_parser = space::parser())]
     pub space: Option<Space>,
     /// Colour space of the result [default: the picture's where files of one kind are made of each other, sRGB for pictures
     /// that are made of light, linear Rec.709 for EXR files of others].
-    #[arg(long, value_enum)]
+    #[arg(long, value_parser = space::parser())]
     pub output_space: Option<Space>,
     /// The layer of an EXR file that is read and replaced [default: the main layer].
     #[arg(long, value_name = "LAYER")]

@@ -1,7 +1,8 @@
 //! Describing an effect to a host: properties, clips and parameters, all from the effect's controls.
 
 use super::clips::{MASK, OUTPUT, SOURCE, guide_clip, guide_label};
-use super::effects::{Control, Effect, SPACES, Target, WORKING_SPACE};
+use super::colours::SPACES;
+use super::effects::{Control, Effect, Target, WORKING_SPACE};
 use super::host::{Host, Outcome, Properties};
 use isophote::Value;
 use isophote::spec::{ImageKind, Param, Unit};
@@ -210,7 +211,7 @@ fn define_control(
             choice(define(kOfxParamTypeChoice)?, control, 0)
         }
         Target::WorkingSpace => {
-            let default = SPACES.iter().position(|(_, space)| *space == host.quirks.space).unwrap_or(0);
+            let default = SPACES.iter().position(|space| *space == Some(host.quirks.space)).unwrap_or(0);
             choice(define(kOfxParamTypeChoice)?, control, default)
         }
         Target::ReferenceHeight => {

@@ -6,13 +6,15 @@
 //! image effect adds itself.
 
 use super::clips::guides;
+use super::colours::{AS_IS, SPACES};
 use super::motion::{MOTION_OPTIONS, estimate};
 use isophote::engine::Support;
 use isophote::frames::Frames;
 use isophote::graph::GraphInput;
 use isophote::request::Guides;
 use isophote::spec::{ImageKind, NodeSpec, Param, Unit};
-use isophote::{ColourSpace, Graph, NodeId, Planned, Request};
+use isophote::{Graph, NodeId, Planned, Request};
+use isophote_colour::Space;
 use isophote_motion::Convention;
 use std::ffi::{CStr, CString};
 use std::sync::LazyLock;
@@ -39,18 +41,6 @@ pub enum Form {
     /// A node from colour to tensors, and one that shows them.
     Structure,
 }
-
-/// The space of pixels that are in none of the others.
-pub const AS_IS: &CStr = c"As is";
-
-/// The spaces that pixels may be in. "As is" computes as sRGB does, without
-/// a claim that the pixels are.
-pub const SPACES: [(&CStr, ColourSpace); 4] = [
-    (c"Linear (Rec. 709)", ColourSpace::Linear),
-    (c"sRGB", ColourSpace::Srgb),
-    (AS_IS, ColourSpace::Srgb),
-    (c"ACEScg", ColourSpace::AcesCg),
-];
 
 /// Results that an effect of lines can show.
 pub const LINE_OUTPUTS: [&CStr; 2] = [c"Lines only", c"Lines over source"];
@@ -264,7 +254,9 @@ impl Effect {
         let options = match target {
             Target::Param(_, param) => param.options.iter().map(|o| text(o.label)).collect(),
             Target::LinesOutput => LINE_OUTPUTS.map(CStr::to_owned).to_vec(),
-            Target::WorkingSpace => SPACES.map(|(label, _)| label.to_owned()).to_vec(),
+            Target::WorkingSpace => {
+                SPACES.iter().map(|space| text(space.map_or(AS_IS, Space::label))).collect()
+            }
             Target::MotionFrom => MOTION_OPTIONS.map(CStr::to_owned).to_vec(),
             Target::MotionConvention => Convention::PRESETS.iter().map(|c| text(c.label)).collect(),
             _ => Vec::new(),

@@ -4,6 +4,7 @@
 //! next: hosts do not tell effects when the pictures of other frames change.
 
 use super::clips::{MOTION, MOTION_FORWARD, SOURCE, guide_clip};
+use super::colours::Colours;
 use super::effects::Effect;
 use super::frame::{Frame, is_endless};
 use super::host::{Host, Outcome, Properties};
@@ -60,6 +61,8 @@ pub struct Inputs<'h> {
     pub guides: Vec<(GraphInput, Fetched<'h>)>,
     /// Meaning of the vectors of clips.
     pub convention: Convention,
+    /// Change of the source's colours to those of the plan, and back.
+    pub colours: Colours,
     /// True where nothing is to change, not even an alpha that is 1 by declaration.
     pub identity: bool,
 }
@@ -121,6 +124,9 @@ impl<'h> Inputs<'h> {
                 }
                 continue;
             };
+            if input == GraphInput::Color {
+                self.colours.enter(&mut pixels, threads);
+            }
             if let Some(square) = prepared.square {
                 if input == GraphInput::Color && self.is_straight() {
                     multiply(&mut pixels);

@@ -1,6 +1,7 @@
 //! Actions by which hosts ask an instance before they render: regions, clip preferences, identity.
 
 use super::clips::{MASK, OUTPUT, SOURCE, is_connected};
+use super::colours;
 use super::effects::Effect;
 use super::frame::{Frame, bounded, is_endless};
 use super::host::{Host, Outcome, Properties};
@@ -8,7 +9,6 @@ use super::image::Clip;
 use super::known::{Known, clip_of};
 use super::prepared::Prepared;
 use super::settings::Settings;
-use isophote::ColourSpace;
 use isophote::engine::Rect;
 use isophote::graph::GraphInput;
 use isophote_abi::openfx::*;
@@ -119,9 +119,10 @@ pub fn regions_of_interest(
     let order = source.properties.string(kOfxImageClipPropFieldOrder, 0);
     let fields = order.is_some_and(|order| order.as_c_str() != kOfxImageFieldNone);
     let mut interest = Interest { answer, frame, fields, rects: BTreeMap::new() };
+    let space = colours::working(settings.space);
     for mut known in Known::connected(effect, host, instance, &settings)? {
         known.limit_to_source(host, instance, moment.time);
-        let prepared = Prepared::new(&known, settings.space, &frame, true).map_err(|_| kOfxStatFailed)?;
+        let prepared = Prepared::new(&known, space, &frame, true).map_err(|_| kOfxStatFailed)?;
         let windows = prepared.windows(region);
         for port in prepared.planned.plan().inputs() {
             let window = prepared.host_window(windows[port.image.index()]).union(&region);
@@ -180,11 +181,7 @@ pub fn clip_preferences(effect: &Effect, host: &Host, instance: Handle, out_args
     let style = host.effect(instance).string(kOfxImageEffectPropColourManagementStyle, 0);
     if style.is_some_and(|style| style.as_c_str() != kOfxImageEffectColourManagementNone) {
         let settings = Settings::read(effect, host, instance, 0.0)?;
-        let space = match settings.space {
-            _ if settings.as_is => None,
-            ColourSpace::Srgb => Some(c"ofx_display_sdr"),
-            ColourSpace::Linear | ColourSpace::AcesCg => Some(c"ofx_scene_linear"),
-        };
+        let space = (!settings.as_is).then(|| colours::preferred(settings.space));
         answered |= space.is_some_and(|s| answer.answer(PREFERRED_COLOURSPACES_OF_SOURCE, s));
     }
     Ok(if answered { kOfxStatOK } else { kOfxStatReplyDefault })

@@ -1,14 +1,14 @@
 //! Differences between hosts, by the name that a host gives itself. Whatever follows from a property
 //! or an image is not here: it is looked at where it is used.
 
-use isophote::ColourSpace;
+use isophote_colour::Space;
 use std::ffi::CStr;
 
 /// Differences of a host from others.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Quirks {
     /// Space of its pixels unless the user says otherwise.
-    pub space: ColourSpace,
+    pub space: Space,
     /// True where messages may be shown from a thread that renders.
     pub messages: bool,
     /// True where its multi-thread suite is sound.
@@ -20,7 +20,7 @@ pub struct Quirks {
 impl Default for Quirks {
     fn default() -> Self {
         // Most hosts composite in scene-linear light.
-        Self { space: ColourSpace::Linear, messages: true, threads: true, all_connected: false }
+        Self { space: Space::Linear, messages: true, threads: true, all_connected: false }
     }
 }
 
@@ -32,11 +32,11 @@ impl Quirks {
         let general = Self::default();
         if named(&["davinciresolve", "resolve"]) {
             // Its message functions are null or worse, and every clip is connected.
-            return Self { space: ColourSpace::Srgb, messages: false, all_connected: true, ..general };
+            return Self { space: Space::Srgb, messages: false, all_connected: true, ..general };
         }
         if named(&["catalyst"]) {
             // The suite lacks its mutexes.
-            return Self { space: ColourSpace::Srgb, threads: false, ..general };
+            return Self { space: Space::Srgb, threads: false, ..general };
         }
         if named(&["openfx-driver"]) {
             // A runner for tests, which ends when its suite is used.
@@ -44,7 +44,7 @@ impl Quirks {
         }
         // Editors work on pictures as they are displayed.
         if named(&["vegas", "mlt", "kdenlive", "shotcut", "premiere", "hitfilm"]) {
-            return Self { space: ColourSpace::Srgb, ..general };
+            return Self { space: Space::Srgb, ..general };
         }
         general
     }
@@ -57,10 +57,10 @@ mod tests {
     #[test]
     fn editors_are_display_referred_and_compositors_linear() {
         for name in [c"DaVinciResolve", c"com.sonycreativesoftware.vegas", c"org.mltframework.mlt"] {
-            assert_eq!(Quirks::of(name).space, ColourSpace::Srgb, "{name:?}");
+            assert_eq!(Quirks::of(name).space, Space::Srgb, "{name:?}");
         }
         for name in [c"uk.co.thefoundry.nuke", c"fr.inria.Natron", c"com.autodesk.flame", c""] {
-            assert_eq!(Quirks::of(name).space, ColourSpace::Linear, "{name:?}");
+            assert_eq!(Quirks::of(name).space, Space::Linear, "{name:?}");
         }
         assert!(!Quirks::of(c"DaVinciResolve").messages);
         assert!(!Quirks::of(c"openfx-driver").threads && Quirks::of(c"uk.co.thefoundry.nuke").threads);

@@ -1,6 +1,7 @@
 //! Rendering: the frame's plan, run over bands of rows that keep memory bounded.
 
 use super::clips::{MASK, SOURCE};
+use super::colours::{Colours, working};
 use super::effects::Effect;
 use super::faults;
 use super::frame::{Bounds, Frame};
@@ -20,8 +21,9 @@ use isophote::engine::{Error as EngineError, Image, Rect};
 use isophote::graph::GraphInput;
 use isophote::kernels::shared::host_colour::has_light;
 use isophote::kernels::shared::host_colour::scalar::beyond_coverage;
-use isophote::{ColourSpace, Error, Planned};
+use isophote::{Error, Planned};
 use isophote_abi::openfx::*;
+use isophote_colour::Space;
 use std::sync::Mutex;
 
 /// Everything that one render action was given.
@@ -62,7 +64,7 @@ pub fn render(effect: &Effect, host: &Host, instance: Handle, in_args: Handle) -
     }
     if source.channels == 1 {
         // A single channel is coverage, whatever space the colours are in.
-        settings.space = ColourSpace::Srgb;
+        settings.space = Space::Srgb;
     }
     let mask = if settings.mask_apply { fetch(host, instance, MASK, moment.time)? } else { None };
     let wants_motion = host.temporal && settings.graph.frames() != [0, 0];
@@ -72,6 +74,7 @@ pub fn render(effect: &Effect, host: &Host, instance: Handle, in_args: Handle) -
         time: moment.time,
         frame,
         field: Field::of(args),
+        colours: Colours::of(settings.space, source.alpha != Alpha::Unpremultiplied),
         source,
         guides: fetch_guides(effect, host, instance, moment.time, wants_motion)?,
         convention: settings.convention,
@@ -174,19 +177,21 @@ impl RenderAction<'_> {
         Ok(())
     }
 
-    /// The plan's result in the host's pixels of `band`.
+    /// The plan's result in the host's pixels and colours of `band`.
     fn to_host(
         &self,
         prepared: &Prepared,
-        result: Image,
+        mut result: Image,
         band: Rect,
         threads: &dyn Threads,
     ) -> Result<Image, Stop> {
-        let Some(square) = prepared.square else { return Ok(result) };
-        let mut result = square.to_host(result, band, threads).map_err(Error::from)?;
-        if self.inputs.is_straight() && result.channels() == 4 {
-            divide(&mut result);
+        if let Some(square) = prepared.square {
+            result = square.to_host(result, band, threads).map_err(Error::from)?;
+            if self.inputs.is_straight() && result.channels() == 4 {
+                divide(&mut result);
+            }
         }
+        self.inputs.colours.leave(&mut result, threads);
         Ok(result)
     }
 
@@ -255,7 +260,7 @@ impl Plans {
 
     fn prepared(known: &Known, action: &RenderAction<'_>) -> isophote::Result<Prepared> {
         let RenderAction { inputs, settings, .. } = action;
-        Prepared::new(known, settings.space, &inputs.frame, !inputs.is_straight())
+        Prepared::new(known, working(settings.space), &inputs.frame, !inputs.is_straight())
     }
 
     /// Images that a band is computed from. Frames are known up to the first that lacks an image.

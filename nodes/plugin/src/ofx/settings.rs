@@ -1,12 +1,14 @@
 //! The values of an instance's controls at one time, as a graph. Read when they are needed and never
 //! kept, since hosts change them without a word.
 
-use super::effects::{AS_IS, Control, Effect, Form, SPACES, Target};
+use super::colours::{self, SPACES};
+use super::effects::{Control, Effect, Form, Target};
 use super::host::{Host, Outcome};
 use super::motion::MotionFrom;
 use isophote::spec::{Param, Unit};
-use isophote::{ColourSpace, Graph, NodeId, Value};
+use isophote::{Graph, NodeId, Value};
 use isophote_abi::openfx::*;
+use isophote_colour::Space;
 use isophote_motion::Convention;
 use std::ffi::{CStr, c_int};
 use std::ptr::null_mut;
@@ -19,7 +21,7 @@ pub struct Settings {
     /// Its nodes, in the order of the effect's.
     pub ids: Vec<NodeId>,
     /// Space of the pixels.
-    pub space: ColourSpace,
+    pub space: Space,
     /// True where the user says so, whatever the host does.
     pub as_is: bool,
     /// Height of pictures at which lengths are meant; 0: any.
@@ -57,8 +59,8 @@ impl Settings {
             match control.target {
                 Target::LinesOutput => over = values.int(name) == Some(1),
                 Target::WorkingSpace => {
-                    if let Some((label, listed)) = values.index(name).and_then(|i| SPACES.get(i)) {
-                        (space, as_is) = (*listed, *label == AS_IS);
+                    if let Some(listed) = values.index(name).and_then(|i| SPACES.get(i)) {
+                        (space, as_is) = (listed.unwrap_or(Space::Srgb), listed.is_none());
                     }
                 }
                 Target::ReferenceHeight => {
@@ -108,16 +110,8 @@ impl Settings {
 
     /// Space of the pixels by the host's name of their colour space, which counts more than what they
     /// were said to be.
-    pub fn space_of(&self, name: &CStr) -> ColourSpace {
-        match name.to_bytes() {
-            _ if self.as_is => self.space,
-            b"ofx_display_sdr" | b"srgb_tx" | b"srgb_display" => ColourSpace::Srgb,
-            b"lin_rec709_srgb" => ColourSpace::Linear,
-            b"ACEScg" => ColourSpace::AcesCg,
-            // Of one or the other primaries.
-            b"ofx_scene_linear" if self.space == ColourSpace::Srgb => ColourSpace::Linear,
-            _ => self.space,
-        }
+    pub fn space_of(&self, name: &CStr) -> Space {
+        if self.as_is { self.space } else { colours::of_host(name, self.space) }
     }
 
     /// True where the values leave a picture that is rendered at `scale` as it is.
