@@ -7,13 +7,16 @@
 
 use std::sync::Arc;
 
-use crate::history::Past;
 use crate::kernels::Kernels;
 use crate::plan_runner::PlanRunner;
 use isophote_files::error::{AtPlace, Result};
-use isophote_loader::abi::{IsophoteHistory, IsophoteRequest};
-use isophote_loader::plan::{Change, Role};
+use isophote_loader::abi::IsophoteRequest;
+use isophote_loader::history::Past;
+use isophote_loader::plan::Change;
 use isophote_loader::{Graph, Library, Plan};
+
+/// Way to mend a graph that cannot be planned.
+const FIX: &str = "choose a style whose inputs are color, normal, depth, object_id, motion or rest_position, or another size";
 
 /// Graph with the name that messages have for it.
 #[derive(Clone, Copy, Debug)]
@@ -30,34 +33,15 @@ impl Named<'_> {
     /// # Errors
     /// [`Error::Input`](isophote_files::error::Error::Input) when an input that the graph needs is open.
     pub fn plan(&self, library: &Library, request: &IsophoteRequest, known: usize) -> Result<Plan> {
-        let history = IsophoteHistory { past: known as u32, max_motion: 0.0 };
-        let plan = match library.frames(self.graph) {
-            Ok([0, 0]) => self.graph.plan(request),
-            Ok(_) => library.plan_in_order(self.graph, request, &history),
-            Err(error) => Err(error),
-        };
-        plan.map_err(|e| {
-            e.at(
-                self.name,
-                "choose a style whose inputs are color, normal, depth, object_id, motion or rest_position, or another size",
-            )
-        })
+        library.plan_frame(self.graph, request, known as u32).map_err(|e| e.at(self.name, FIX))
     }
 
-    /// Stages and inputs that frames read of those before, where all are known.
+    /// Images of frames before that frames read, where all are known.
     ///
     /// # Errors
     /// As [`Named::plan`].
     pub fn past(&self, library: &Library, request: &IsophoteRequest) -> Result<Past> {
-        let refused = |e: isophote_loader::Error| e.at(self.name, "choose another style");
-        let [frames, _] = library.frames(self.graph).map_err(refused)?;
-        if frames == 0 {
-            return Ok(Past::default());
-        }
-        let plan = self.plan(library, request, frames as usize)?;
-        let textures = plan.textures().map_err(refused)?;
-        let inputs = textures.iter().filter(|t| t.role == Role::Input).map(|t| t.name);
-        Ok(Past::of(inputs))
+        library.past(self.graph, request).map_err(|e| e.at(self.name, FIX))
     }
 }
 
@@ -182,16 +166,6 @@ impl FrameRunner {
         self.forget();
         self.replan(graph, 0)?;
         Ok(true)
-    }
-
-    /// Compiles what later frames need too, where they look at those before, so that none of them waits for it.
-    ///
-    /// # Errors
-    /// [`Error::Failure`](isophote_files::error::Error::Failure) when the device refuses.
-    pub fn compile_all(&self, graph: Named<'_>) -> Result<()> {
-        (1..=self.past.frames).try_for_each(|known| {
-            self.runner.kernels().compile(&graph.plan(&self.library, &self.request, known)?)
-        })
     }
 
     /// Reads pictures of these names, as large as was asked for or larger. The same ones again cost nothing.

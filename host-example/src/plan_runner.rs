@@ -20,14 +20,16 @@
 
 use std::sync::Arc;
 
-use crate::history::{self, Past, Rings};
+use crate::history::Rings;
 use crate::kernels::{Kernels, mistaken, refused};
 use crate::passes::{ReadyPass, unbound};
 use crate::textures::{self, COPIED, Slot};
-use crate::uniforms::{Layout, Uniforms};
+use crate::uniforms::Uniforms;
 use isophote_files::error::Result;
 use isophote_loader::Plan;
+use isophote_loader::history::{self, Past};
 use isophote_loader::plan::Role;
+use isophote_loader::uniforms::Bytes;
 
 /// A plan, ready to be recorded again and again.
 ///
@@ -73,15 +75,16 @@ impl PlanRunner {
     ) -> Result<Self> {
         let wanted = plan.textures().map_err(refused)?;
         let textures = textures::slots(kernels, &wanted, &past, old, &mut rings)?;
-        let mut layout = Layout::new(kernels.device());
+        let alignment = kernels.device().limits().min_uniform_buffer_offset_alignment;
+        let mut uniforms = Bytes::new(alignment);
         let mut passes = Vec::new();
         for (index, pass) in (0..).zip(plan.passes().map_err(refused)?) {
             if pass.inputs.iter().chain(pass.outputs).any(|at| *at as usize >= wanted.len()) {
                 return Err(mistaken(format!("kernel '{}' names an unknown texture", pass.kernel)));
             }
-            passes.push(ReadyPass::new(kernels.get(plan, index, &pass, &wanted)?, &pass, &mut layout));
+            passes.push(ReadyPass::new(kernels.get(plan, index, &pass, &wanted)?, &pass, &mut uniforms));
         }
-        let uniforms = Uniforms::new(kernels, &layout)?;
+        let uniforms = Uniforms::new(kernels, uniforms)?;
         let kernels = Arc::clone(kernels);
         let mut runner = Self { kernels, textures, passes, past, rings, uniforms };
         runner.repack(plan)?;
@@ -96,8 +99,8 @@ impl PlanRunner {
     pub fn repack(&mut self, plan: &Plan) -> Result<()> {
         let mut is_changed = false;
         for (ready, pass) in self.passes.iter().zip(plan.passes().map_err(refused)?) {
-            is_changed |= self.uniforms.put(ready.grid, pass.grid);
-            is_changed |= ready.params.is_some_and(|params| self.uniforms.put(params, pass.params));
+            is_changed |= self.uniforms.bytes.put(ready.grid, pass.grid);
+            is_changed |= ready.params.is_some_and(|params| self.uniforms.bytes.put(params, pass.params));
         }
         if is_changed {
             self.uniforms.upload(&self.kernels);
@@ -202,10 +205,5 @@ impl PlanRunner {
     pub fn encode_pass(&self, compute: &mut wgpu::ComputePass<'_>, index: usize) -> Result<()> {
         let pass = self.passes.get(index).ok_or_else(unbound)?;
         pass.encode(compute, if pass.groups.len() == self.rings.turns() { self.rings.turn() } else { 0 })
-    }
-
-    /// The kernels of its device.
-    pub fn kernels(&self) -> &Kernels {
-        &self.kernels
     }
 }

@@ -24,6 +24,7 @@ pub mod device;
 mod error;
 pub mod graph;
 pub mod guides;
+pub mod history;
 mod image;
 mod library;
 mod open;
@@ -35,6 +36,7 @@ pub mod process;
 pub mod sequence;
 pub mod style;
 mod text;
+pub mod uniforms;
 
 pub use catalogue::Catalogue;
 pub use device::Device;

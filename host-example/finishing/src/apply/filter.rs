@@ -8,7 +8,7 @@ use super::frame_cache::Window;
 use super::memory::Needs;
 use super::picture_request::PictureRequest;
 use super::square;
-use super::stages::{history, stages};
+use super::stages::stages;
 use crate::stylize::style::Style;
 use isophote_files::error::{AtPlace, Error, Result};
 use isophote_loader::abi::IsophoteRequest;
@@ -382,11 +382,7 @@ impl Planner {
             let all = guides.clone().chain(layer.guide());
             request.guides = self.library.guide_bits(all).map_err(refused)?;
             let frames = self.library.frames(&style.graph).map_err(refused)?;
-            let plan = match frames {
-                [0, 0] => style.graph.plan(&request),
-                [past, _] => self.library.plan_in_order(&style.graph, &request, &history(past)),
-            };
-            let plan = plan.map_err(refused)?;
+            let plan = self.library.plan_frame(&style.graph, &request, frames[0]).map_err(refused)?;
             let textures: u64 = plan.textures().map_err(refused)?.iter().map(Texture::bytes).sum();
             let mixed = if layer.is_mixed() || self.layers.len() > 1 { pixels * MIXED } else { 0 };
             most = most.max(textures + mixed);

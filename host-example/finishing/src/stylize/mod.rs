@@ -17,8 +17,7 @@ use self::style::{Setting, Style};
 use self::value::Value;
 use isophote_example::frame_runner::{FrameRunner, Named};
 use isophote_example::guides;
-use isophote_example::history::Past;
-use isophote_example::kernels::Kernels;
+use isophote_example::kernels::{Kernels, refused};
 use isophote_files::error::{AtPlace, Result};
 use isophote_loader::abi::IsophoteRequest;
 use isophote_loader::catalogue::Kind;
@@ -156,8 +155,15 @@ impl Stylizer {
     ///
     /// # Errors
     /// [`isophote_files::error::Error::Failure`] when the device refuses.
-    pub fn compile_all(&self) -> Result<()> {
-        self.frames.compile_all(self.style.named())
+    pub fn compile_all(&self, kernels: &Kernels, library: &Library) -> Result<()> {
+        for known in 1..=self.depth() {
+            let plan = self.style.named().plan(library, self.frames.request(), known)?;
+            let textures = plan.textures().map_err(refused)?;
+            for (index, pass) in (0..).zip(plan.passes().map_err(refused)?) {
+                kernels.get(&plan, index, &pass, &textures)?;
+            }
+        }
+        Ok(())
     }
 
     /// Reads these targets from now on, with the colour that is display-referred, which must have the size given
@@ -217,25 +223,9 @@ impl Stylizer {
 }
 
 impl Style {
-    /// Graph with its name.
-    fn named(&self) -> Named<'_> {
+    /// Graph with its name, to be planned.
+    pub fn named(&self) -> Named<'_> {
         Named { name: &self.name, graph: &self.graph }
-    }
-
-    /// The plan of a frame where so many frames before it are known.
-    ///
-    /// # Errors
-    /// As [`Named::plan`].
-    pub fn plan(&self, library: &Library, request: &IsophoteRequest, known: usize) -> Result<Plan> {
-        self.named().plan(library, request, known)
-    }
-
-    /// Images of frames before that frames read, where all are known.
-    ///
-    /// # Errors
-    /// As [`Named::plan`].
-    pub fn past(&self, library: &Library, request: &IsophoteRequest) -> Result<Past> {
-        self.named().past(library, request)
     }
 }
 

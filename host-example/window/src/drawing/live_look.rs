@@ -261,7 +261,7 @@ fn build(job: &BuildJob) -> Result<Ready> {
     precision.apply(&style)?;
     let request = IsophoteRequest { reference_height: style.lengths.reference_height(), ..*request };
     let stylizer = Stylizer::with_request(kernels, library, style, request)?;
-    stylizer.compile_all()?;
+    stylizer.compile_all(kernels, library)?;
     Ok(Ready {
         stylizer,
         recipe: recipe.clone(),
