@@ -5,6 +5,7 @@
 //! their own: one where nothing is known, one where one frame is, and so on. [`FrameRunner::update`] takes the next
 //! plan when there is one, and follows parameters that were changed.
 
+use std::ops::Range;
 use std::sync::Arc;
 
 use crate::kernels::Kernels;
@@ -176,25 +177,13 @@ impl FrameRunner {
         self.runner.bind(inputs)
     }
 
-    /// Records all passes on a frame; the next call is of the next one. Nothing is created and nothing submitted.
+    /// Records passes on a frame, [all](crate::plan_runner::ALL) or some; says whether the last is among them, and the next
+    /// call is of the next frame then. Nothing is created and nothing submitted.
     ///
     /// # Errors
     /// [`Error::Failure`](isophote_files::error::Error::Failure) when nothing is bound.
-    pub fn encode(&mut self, encoder: &mut wgpu::CommandEncoder) -> Result<()> {
-        self.encode_some(encoder, 0, usize::MAX).map(|_| ())
-    }
-
-    /// As [`FrameRunner::encode`], so many passes from one on; says whether the last was among them.
-    ///
-    /// # Errors
-    /// As [`FrameRunner::encode`].
-    pub fn encode_some(
-        &mut self,
-        encoder: &mut wgpu::CommandEncoder,
-        from: usize,
-        count: usize,
-    ) -> Result<bool> {
-        let is_whole = self.runner.encode_some(encoder, from, count)?;
+    pub fn encode(&mut self, encoder: &mut wgpu::CommandEncoder, passes: Range<usize>) -> Result<bool> {
+        let is_whole = self.runner.encode(encoder, passes)?;
         if is_whole {
             self.known = (self.planned + 1).min(self.past.frames);
         }

@@ -3,6 +3,7 @@
 use isophote_example::frame_runner::FrameRunner;
 use isophote_example::guides;
 use isophote_example::kernels::Kernels;
+use isophote_example::plan_runner::ALL;
 use isophote_files::error::{AtPlace, Result};
 use isophote_loader::Library;
 use isophote_render::gpu::Gpu;
@@ -108,7 +109,10 @@ impl Painter {
         }
         let view = self.camera.view(&self.scene, &self.pose);
         self.renderer.encode(encoder, &self.scene, &self.pose, &view, &self.lighting);
-        self.stylized.as_mut().map_or(Ok(()), |stylized| stylized.frames.encode(encoder))
+        if let Some(Stylized { frames, .. }) = &mut self.stylized {
+            frames.encode(encoder, ALL)?;
+        }
+        Ok(())
     }
 
     /// The picture of the last frame: four channels of linear light, or one of grey.

@@ -18,6 +18,7 @@
 //! so a sampler, in plans that are fast rather than exact. wgpu puts the
 //! barriers between passes; `tests/c/vulkan.c` does the same work by hand.
 
+use std::ops::Range;
 use std::sync::Arc;
 
 use crate::history::Rings;
@@ -30,6 +31,9 @@ use isophote_loader::Plan;
 use isophote_loader::history::{self, Past};
 use isophote_loader::plan::Role;
 use isophote_loader::uniforms::Bytes;
+
+/// The passes of a whole frame.
+pub const ALL: Range<usize> = 0..usize::MAX;
 
 /// A plan, ready to be recorded again and again.
 ///
@@ -166,29 +170,16 @@ impl PlanRunner {
         output.and_then(|slot| slot.views.first()).ok_or_else(|| mistaken("the plan has no output".into()))
     }
 
-    /// Records all passes of a frame; the next call is of the next one.
+    /// Records passes of a frame, [all](ALL) or those of one of its submissions, and says whether the last is among them. The
+    /// next call is of the next frame then.
     ///
     /// # Errors
     /// [`Error::Failure`](isophote_files::error::Error::Failure) when the inputs are not bound.
-    pub fn encode(&mut self, encoder: &mut wgpu::CommandEncoder) -> Result<()> {
-        self.encode_some(encoder, 0, usize::MAX).map(|_| ())
-    }
-
-    /// Records so many passes of a frame from one on, for frames of several submissions, and says whether the last was among
-    /// them.
-    ///
-    /// # Errors
-    /// As [`PlanRunner::encode`].
-    pub fn encode_some(
-        &mut self,
-        encoder: &mut wgpu::CommandEncoder,
-        from: usize,
-        count: usize,
-    ) -> Result<bool> {
-        let end = from.saturating_add(count).min(self.passes.len());
+    pub fn encode(&mut self, encoder: &mut wgpu::CommandEncoder, passes: Range<usize>) -> Result<bool> {
+        let end = passes.end.min(self.passes.len());
         let descriptor = wgpu::ComputePassDescriptor { label: Some("stylize"), timestamp_writes: None };
         let mut compute = encoder.begin_compute_pass(&descriptor);
-        (from..end).try_for_each(|index| self.encode_pass(&mut compute, index))?;
+        (passes.start..end).try_for_each(|index| self.encode_pass(&mut compute, index))?;
         drop(compute);
         let is_whole = end == self.passes.len();
         if is_whole {

@@ -5,6 +5,7 @@ use std::f32::consts::TAU;
 use crate::stylize::Stylizer;
 use crate::stylize::style::Style;
 use isophote_example::kernels::Kernels;
+use isophote_example::plan_runner::ALL;
 use isophote_files::error::Result;
 use isophote_loader::Library;
 use isophote_pictures::floats::Picture;
@@ -184,7 +185,7 @@ impl Shot {
         let mut encoder = self.gpu.device.create_command_encoder(&Default::default());
         self.renderer.encode(&mut encoder, &self.scene, &self.pose, &view, &self.lighting);
         if let Some(stylizer) = &mut self.stylizer {
-            stylizer.encode(&mut encoder)?;
+            stylizer.encode(&mut encoder, ALL)?;
         }
         self.gpu.queue.submit([encoder.finish()]);
         Ok(())

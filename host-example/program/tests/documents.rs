@@ -9,7 +9,7 @@ use std::time::{Duration, Instant};
 
 use image::{DynamicImage, Rgb32FImage, Rgba32FImage};
 use isophote_example::kernels::Kernels;
-use isophote_example::plan_runner::PlanRunner;
+use isophote_example::plan_runner::{ALL, PlanRunner};
 use isophote_finishing::apply::backend::Backend;
 use isophote_finishing::apply::filter::{self, Filter, MaskedStyle};
 use isophote_finishing::apply::frame_cache::{CachedFrame, Window};
@@ -125,7 +125,7 @@ fn on_the_device(frame: &Frame, name: &str) -> Vec<f32> {
     let inputs: Vec<(&str, &wgpu::TextureView)> = views.iter().map(|(name, view)| (*name, view)).collect();
     runner.bind(&inputs).expect("the inputs fit");
     let mut encoder = gpu.device.create_command_encoder(&Default::default());
-    runner.encode(&mut encoder).expect("the plan is complete");
+    runner.encode(&mut encoder, ALL).expect("the plan is complete");
     gpu.queue.submit([encoder.finish()]);
     let output = runner.output().expect("an output").texture();
     Readback::default().read(&gpu, output).expect("the device works").data

@@ -11,6 +11,7 @@ pub mod style;
 pub mod suggest;
 pub mod value;
 
+use std::ops::Range;
 use std::sync::Arc;
 
 use self::style::{Setting, Style};
@@ -195,25 +196,13 @@ impl Stylizer {
         self.frames.bind(&guides::inputs(color, targets))
     }
 
-    /// Records the whole style on a frame; the next call is of the next one. Nothing is created and nothing submitted.
+    /// Records passes of the style on a frame, [all](isophote_example::plan_runner::ALL) or some; says whether the last is
+    /// among them, and the next call is of the next frame then. Nothing is created and nothing submitted.
     ///
     /// # Errors
     /// [`isophote_files::error::Error::Failure`] when nothing is bound.
-    pub fn encode(&mut self, encoder: &mut wgpu::CommandEncoder) -> Result<()> {
-        self.frames.encode(encoder)
-    }
-
-    /// As [`Stylizer::encode`], so many passes from one on; says whether the last was among them.
-    ///
-    /// # Errors
-    /// As [`Stylizer::encode`].
-    pub fn encode_some(
-        &mut self,
-        encoder: &mut wgpu::CommandEncoder,
-        from: usize,
-        count: usize,
-    ) -> Result<bool> {
-        self.frames.encode_some(encoder, from, count)
+    pub fn encode(&mut self, encoder: &mut wgpu::CommandEncoder, passes: Range<usize>) -> Result<bool> {
+        self.frames.encode(encoder, passes)
     }
 
     /// The passes with their textures.

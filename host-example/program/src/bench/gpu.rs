@@ -7,7 +7,7 @@ use super::entry::{Entry, PassEntry};
 use super::timer::Timer;
 use super::{Subject, median, motion};
 use isophote_example::kernels::Kernels;
-use isophote_example::plan_runner::PlanRunner;
+use isophote_example::plan_runner::{ALL, PlanRunner};
 use isophote_files::error::{AtPlace, Result};
 use isophote_finishing::stylize::precision::Precision;
 use isophote_finishing::stylize::style::Style;
@@ -144,7 +144,7 @@ impl Bench {
     fn once(&self, runner: &mut PlanRunner) -> Result<f64> {
         let started = Instant::now();
         let mut encoder = self.gpu.device.create_command_encoder(&Default::default());
-        runner.encode(&mut encoder)?;
+        runner.encode(&mut encoder, ALL)?;
         self.gpu.queue.submit([encoder.finish()]);
         self.gpu.wait()?;
         Ok(started.elapsed().as_secs_f64())
