@@ -291,10 +291,14 @@ impl Filter {
             let (mut result, replaced) =
                 self.layered(name, &job, (channels, precision), encoding, &mut report)?;
             filtered.replaced += replaced;
-            result = square::unmake(&self.library, name, picture, result)?;
+            if let Some(own) = &picture.own {
+                result = square::unmake(&self.library, name, (own, &picture.meaning), &result)?;
+            }
             if !scalar {
                 let meaning = format.kept(working.of_results(to, self.output_space));
-                result = working.leave(result, &meaning);
+                if let Some(back) = working.back(&meaning) {
+                    result = back.apply(&result).0;
+                }
                 if at == 0 {
                     filtered.meaning = meaning;
                 }
@@ -446,7 +450,8 @@ impl Planner {
     /// # Errors
     /// As [`square::make`].
     pub fn square(&self, name: &str, source: &mut Source) -> Result<()> {
-        square::make(&self.library, name, source)
+        let is_square = source.pictures.iter().all(|picture| picture.meaning.pixel_aspect == 1.0);
+        if is_square { Ok(()) } else { square::make(&self.library, name, source) }
     }
 }
 
