@@ -14,7 +14,7 @@ pub struct Past {
 }
 
 impl Past {
-    /// Of a plan that knows as many frames before as may count, by the names of its inputs.
+    /// The images of a plan that knows as many frames before as may count, by the names of its inputs.
     pub fn of<'n>(names: impl Iterator<Item = &'n str>) -> Self {
         let mut depths: Vec<(String, usize)> = Vec::new();
         for (base, before) in names.filter_map(split) {

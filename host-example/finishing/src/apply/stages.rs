@@ -1,4 +1,4 @@
-//! Stages that frames read of those before and after them.
+//! Memory of the stages that frames read of those before and after them.
 
 use crate::stylize::style::Style;
 use isophote_loader::Library;
