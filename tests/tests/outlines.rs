@@ -286,8 +286,9 @@ fn on_cpu(lines: Lines, guide: &str) -> Vec<[f32; 2]> {
         .collect()
 }
 
+/// The disc of `tests/data/cases/lines_small/`, which lost its outline below 540 lines.
 #[test]
-fn lines_of_guides_are_drawn_at_every_size() {
+fn cases_of_small_pictures_have_all_lines_of_guides() {
     for lines in GUIDED {
         for guide in ["depth", "object_id", "normal"] {
             let found = on_cpu(lines, guide);
@@ -300,7 +301,7 @@ fn lines_of_guides_are_drawn_at_every_size() {
 }
 
 #[test]
-fn lines_of_colours_are_drawn_at_every_size() {
+fn cases_of_small_pictures_have_all_lines_of_colours() {
     for lines in COLOURED {
         let found = on_cpu(lines, "");
         // Soft ones leave out a little at any size.

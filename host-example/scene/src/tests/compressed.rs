@@ -40,7 +40,7 @@ fn assert_alike(name: &str, scene: &Scene, plain: &Scene, draw: usize, far: [f32
 }
 
 #[test]
-fn views_of_meshopt_are_decoded() {
+fn cases_of_meshopt_are_decoded() {
     let plain = whole("gltf_meshopt/ball_plain.glb");
     for name in ["gltf_meshopt/ball_ext.glb", "gltf_meshopt/ball_khr.glb"] {
         let scene = whole(name);
@@ -93,7 +93,7 @@ fn assert_same_triangles(name: &str, found: &Primitive, expected: &Primitive) {
 
 #[cfg(feature = "compressed")]
 #[test]
-fn geometry_of_draco_is_decoded() {
+fn cases_of_draco_are_decoded() {
     let plain = whole("gltf_webp/box.glb");
     assert_same_triangles("box", first(&whole("gltf_draco/box_draco.glb")).0, first(&plain).0);
     let plain = whole("gltf_meshopt/ball_plain.glb");
@@ -125,7 +125,7 @@ fn furthest(image: &Image, expected: impl Fn(Vec2) -> Vec4) -> f32 {
 
 #[cfg(feature = "compressed")]
 #[test]
-fn textures_of_basis_universal_are_decoded() {
+fn cases_of_basis_universal_are_decoded() {
     use super::cases::picture;
     // The pictures: gradients, and a disc that is covered where the rest is less so.
     let gradients = |scale: f32| {
