@@ -128,6 +128,15 @@ fn frames(library: &Library, layers: &[Layer]) -> Result<[i64; 2]> {
     Ok(most)
 }
 
+/// Gives animated parameters of the looks their values at a frame, and says whether there are any.
+fn at_frame(layers: &[Layer], frame: i64) -> Result<bool> {
+    let mut is_animated = false;
+    for layer in layers {
+        is_animated |= layer.look.style.at_frame(frame)?;
+    }
+    Ok(is_animated)
+}
+
 impl Layer {
     /// The guide beside those of the picture, by its name.
     fn guide(&self) -> Option<&'static str> {
@@ -249,20 +258,12 @@ impl Filter {
     ) -> Result<Filtered> {
         let (own, source) = (&window.own, &window.own.source);
         if let Some(frame) = own.number {
-            for layer in &self.layers {
-                layer.look.style.at_frame(frame)?;
-            }
+            at_frame(&self.layers, frame)?;
         }
         let in_place = exr.filter(|_| format == Format::Exr);
         let count = if in_place.is_some() { source.pictures.len() } else { source.pictures.len().min(1) };
-        if in_place.is_some() && self.output_space.is_some() {
-            let problem =
-                "is not for EXR files made of themselves, whose headers say what all their layers mean";
-            return Err(Error::input(
-                "--output-space",
-                problem,
-                "leave it out, or write a .tif or .png file",
-            ));
+        if in_place.is_some() {
+            self.check_output_space()?;
         }
         let to = format.state(source.state());
         let scalar = self.layers.iter().all(|layer| layer.look.style.kind != Kind::Color);
@@ -306,6 +307,15 @@ impl Filter {
             filtered.results.push(result);
         }
         Ok(filtered)
+    }
+
+    /// Refuses a space of results that go back into the file that they came from.
+    fn check_output_space(&self) -> Result<()> {
+        if self.output_space.is_none() {
+            return Ok(());
+        }
+        let problem = "is not for EXR files made of themselves, whose headers say what all their layers mean";
+        Err(Error::input("--output-space", problem, "leave it out, or write a .tif or .png file"))
     }
 
     /// The looks of one picture over each other, and how many samples were replaced.
@@ -370,7 +380,7 @@ impl Planner {
     /// # Errors
     /// [`Error::Input`] for sizes and graphs that the library refuses.
     pub fn filter_memory(&mut self, name: &str, frame: Option<i64>, size: (u32, u32)) -> Result<u64> {
-        let is_animated = frame.map_or(Ok(false), |frame| self.at_frame(frame))?;
+        let is_animated = frame.map_or(Ok(false), |frame| at_frame(&self.layers, frame))?;
         if let Some((_, bytes)) = self.last.filter(|(last, _)| *last == size && !is_animated) {
             return Ok(bytes);
         }
@@ -397,22 +407,13 @@ impl Planner {
         Ok(bytes)
     }
 
-    /// Gives animated parameters their values at a frame, and says whether there are any.
-    fn at_frame(&self, frame: i64) -> Result<bool> {
-        let mut is_animated = false;
-        for layer in &self.layers {
-            is_animated |= layer.look.style.at_frame(frame)?;
-        }
-        Ok(is_animated)
-    }
-
     /// Frames before and after `frame` that it depends on.
     ///
     /// # Errors
     /// [`Error::Input`] when an animated parameter cannot have its value.
     pub fn frames(&self, frame: Option<i64>) -> Result<[i64; 2]> {
         let Some(frame) = frame else { return Ok([0, 0]) };
-        self.at_frame(frame)?;
+        at_frame(&self.layers, frame)?;
         frames(&self.library, &self.layers)
     }
 
