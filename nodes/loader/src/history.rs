@@ -9,7 +9,7 @@
 pub struct Past {
     /// Frames before the one at hand that plans read at most.
     pub frames: usize,
-    /// Stages and inputs of the host's, such as `depth`, that are read of them, and of how many frames before at most.
+    /// Stages and inputs of the host's, such as `depth`, that are read of them, each with the frames before at most.
     depths: Vec<(String, usize)>,
 }
 
@@ -32,14 +32,14 @@ impl Past {
         self.depths.iter().map(|(name, _)| name.as_str()).filter(|name| !is_stage(name))
     }
 
-    /// Number of images of a name that take turns, where there are so many turns: one for each frame that it is read of
-    /// and one for the frame at hand, and no number that does not go into the turns.
+    /// Number of images that a name needs where all begin anew after so many frames: more than the frames before that it is
+    /// read of, and a divisor of `turns`.
     pub fn images(&self, name: &str, turns: usize) -> usize {
         let depth = self.depths.iter().find(|(known, _)| known == name).map_or(0, |(_, depth)| *depth);
         (depth + 1..turns).find(|count| turns.is_multiple_of(*count)).unwrap_or(turns.max(1))
     }
 
-    /// Number of turns that takes the fewest images.
+    /// Number of frames after which all images begin anew, as it takes the fewest of them.
     pub fn turns(&self) -> usize {
         let least = self.frames + 1;
         let all = |turns: usize| self.depths.iter().map(|(name, _)| self.images(name, turns)).sum::<usize>();
