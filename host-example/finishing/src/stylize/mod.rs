@@ -152,7 +152,8 @@ impl Stylizer {
         Ok(())
     }
 
-    /// Compiles what later frames need too, where they look at those before, so that none of them waits for it.
+    /// Compiles what later frames need too, where they look at those before, so that none of them waits for it. `kernels` and
+    /// `library` are those that it was made with.
     ///
     /// # Errors
     /// [`isophote_files::error::Error::Failure`] when the device refuses.
