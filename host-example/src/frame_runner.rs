@@ -5,15 +5,19 @@
 //! their own: one where nothing is known, one where one frame is, and so on. [`FrameRunner::update`] takes the next
 //! plan when there is one, and follows parameters that were changed.
 
+use std::ops::Range;
 use std::sync::Arc;
 
-use crate::history::Past;
 use crate::kernels::Kernels;
 use crate::plan_runner::PlanRunner;
 use isophote_files::error::{AtPlace, Result};
-use isophote_loader::abi::{IsophoteHistory, IsophoteRequest};
-use isophote_loader::plan::{Change, Role};
+use isophote_loader::abi::IsophoteRequest;
+use isophote_loader::history::Past;
+use isophote_loader::plan::Change;
 use isophote_loader::{Graph, Library, Plan};
+
+/// Way to mend a graph that cannot be planned.
+const FIX: &str = "choose a style whose inputs are color, normal, depth, object_id, motion or rest_position, or another size";
 
 /// Graph with the name that messages have for it.
 #[derive(Clone, Copy, Debug)]
@@ -30,34 +34,15 @@ impl Named<'_> {
     /// # Errors
     /// [`Error::Input`](isophote_files::error::Error::Input) when an input that the graph needs is open.
     pub fn plan(&self, library: &Library, request: &IsophoteRequest, known: usize) -> Result<Plan> {
-        let history = IsophoteHistory { past: known as u32, max_motion: 0.0 };
-        let plan = match library.frames(self.graph) {
-            Ok([0, 0]) => self.graph.plan(request),
-            Ok(_) => library.plan_in_order(self.graph, request, &history),
-            Err(error) => Err(error),
-        };
-        plan.map_err(|e| {
-            e.at(
-                self.name,
-                "choose a style whose inputs are color, normal, depth, object_id, motion or rest_position, or another size",
-            )
-        })
+        library.plan_frame(self.graph, request, known as u32).map_err(|e| e.at(self.name, FIX))
     }
 
-    /// Stages and inputs that frames read of those before, where all are known.
+    /// Images of frames before that frames read, where all are known.
     ///
     /// # Errors
     /// As [`Named::plan`].
     pub fn past(&self, library: &Library, request: &IsophoteRequest) -> Result<Past> {
-        let refused = |e: isophote_loader::Error| e.at(self.name, "choose another style");
-        let [frames, _] = library.frames(self.graph).map_err(refused)?;
-        if frames == 0 {
-            return Ok(Past::default());
-        }
-        let plan = self.plan(library, request, frames as usize)?;
-        let textures = plan.textures().map_err(refused)?;
-        let inputs = textures.iter().filter(|t| t.role == Role::Input).map(|t| t.name);
-        Ok(Past::of(inputs))
+        library.past(self.graph, request).map_err(|e| e.at(self.name, FIX))
     }
 }
 
@@ -184,16 +169,6 @@ impl FrameRunner {
         Ok(true)
     }
 
-    /// Compiles what later frames need too, where they look at those before, so that none of them waits for it.
-    ///
-    /// # Errors
-    /// [`Error::Failure`](isophote_files::error::Error::Failure) when the device refuses.
-    pub fn compile_all(&self, graph: Named<'_>) -> Result<()> {
-        (1..=self.past.frames).try_for_each(|known| {
-            self.runner.kernels().compile(&graph.plan(&self.library, &self.request, known)?)
-        })
-    }
-
     /// Reads pictures of these names, as large as was asked for or larger. The same ones again cost nothing.
     ///
     /// # Errors
@@ -202,25 +177,13 @@ impl FrameRunner {
         self.runner.bind(inputs)
     }
 
-    /// Records all passes on a frame; the next call is of the next one. Nothing is created and nothing submitted.
+    /// Records passes on a frame, [all](crate::plan_runner::ALL) or some; says whether the last is among them, and the next
+    /// call is of the next frame then. Nothing is created and nothing submitted.
     ///
     /// # Errors
     /// [`Error::Failure`](isophote_files::error::Error::Failure) when nothing is bound.
-    pub fn encode(&mut self, encoder: &mut wgpu::CommandEncoder) -> Result<()> {
-        self.encode_some(encoder, 0, usize::MAX).map(|_| ())
-    }
-
-    /// As [`FrameRunner::encode`], so many passes from one on; says whether the last was among them.
-    ///
-    /// # Errors
-    /// As [`FrameRunner::encode`].
-    pub fn encode_some(
-        &mut self,
-        encoder: &mut wgpu::CommandEncoder,
-        from: usize,
-        count: usize,
-    ) -> Result<bool> {
-        let is_whole = self.runner.encode_some(encoder, from, count)?;
+    pub fn encode(&mut self, encoder: &mut wgpu::CommandEncoder, passes: Range<usize>) -> Result<bool> {
+        let is_whole = self.runner.encode(encoder, passes)?;
         if is_whole {
             self.known = (self.planned + 1).min(self.past.frames);
         }

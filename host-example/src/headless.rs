@@ -1,5 +1,6 @@
 //! Frames to PNG files, without a window.
 
+use std::f32::consts::TAU;
 use std::fs;
 use std::path::Path;
 
@@ -9,9 +10,8 @@ use isophote_pictures::floats;
 use isophote_render::gpu::Gpu;
 use isophote_render::readback::Readback;
 use isophote_scene::Scene;
-use isophote_scene::pose::Pose;
+use isophote_scene::camera::{Framing, Orbit, Viewpoint};
 
-use crate::camera::Camera;
 use crate::painter::Painter;
 
 /// Writes `count` frames of a size into a folder as `frame.0001.png` and so on. Of several, the camera turns once around
@@ -24,15 +24,17 @@ pub fn write(folder: &Path, count: u32, size: (u32, u32), scene: Scene, style: &
         |e| Error::file(folder, format!("cannot be made: {e}"), "name a folder that can be written to");
     fs::create_dir_all(folder).map_err(unwritable)?;
     let gpu = Gpu::open()?;
-    let is_turning = count > 1;
-    let camera = if is_turning { Camera::turntable(&scene, size) } else { Camera::of(&scene, size) };
-    let first = camera.view(&scene, &Pose::at_rest(&scene));
-    let mut painter = Painter::new(&gpu, scene, style, size, &first)?;
+    let aspect = size.0 as f32 / size.1 as f32;
+    let mut camera = Viewpoint::of(&scene, aspect);
+    if count > 1 {
+        camera = Viewpoint { node: None, orbit: Orbit::turntable(&scene, aspect, Framing::default()) };
+    }
+    let mut painter = Painter::new(&gpu, scene, style, size, camera)?;
     let mut readback = Readback::default();
     for index in 0..count {
-        let view = if is_turning { camera.turned(index as f32 / count as f32) } else { first };
+        painter.camera.orbit = camera.orbit.turned(index as f32 / count as f32 * TAU);
         let mut encoder = gpu.device.create_command_encoder(&Default::default());
-        painter.encode(&mut encoder, i64::from(index) + 1, &view)?;
+        painter.encode(&mut encoder, i64::from(index) + 1)?;
         gpu.queue.submit([encoder.finish()]);
         let picture = readback.read(&gpu, painter.picture().texture())?;
         let file = folder.join(format!("frame.{:04}.png", index + 1));

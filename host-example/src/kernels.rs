@@ -8,9 +8,7 @@ use std::sync::{Arc, Mutex, PoisonError};
 use isophote_files::error::{AtPlace, Error, Result};
 use isophote_loader::Plan;
 use isophote_loader::plan::{Format, Pass, Texture};
-
-/// WGSL rounds the size of a uniform block up to its alignment, which is at most this.
-const BLOCK_ALIGNMENT: u64 = 16;
+use isophote_loader::uniforms::block_size;
 
 /// Numbers of what was made and uploaded on a device so far. A warm frame makes nothing.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -92,15 +90,6 @@ impl Kernels {
         Counts { objects, uploads }
     }
 
-    /// Compiles all that a plan needs.
-    pub fn compile(&self, plan: &Plan) -> Result<()> {
-        let textures = plan.textures().map_err(refused)?;
-        for (index, pass) in (0..).zip(plan.passes().map_err(refused)?) {
-            self.get(plan, index, &pass, &textures)?;
-        }
-        Ok(())
-    }
-
     /// The kernel of pass `index`.
     pub fn get(&self, plan: &Plan, index: u32, pass: &Pass<'_>, textures: &[Texture<'_>]) -> Result<Kernel> {
         let mut compiled = self.compiled.lock().unwrap_or_else(PoisonError::into_inner);
@@ -158,7 +147,7 @@ fn layout_entries(
     let uniform = |block: &[u8]| wgpu::BindingType::Buffer {
         ty: wgpu::BufferBindingType::Uniform,
         has_dynamic_offset: false,
-        min_binding_size: NonZeroU64::new(block_size(block)),
+        min_binding_size: NonZeroU64::new(block_size(block) as u64),
     };
     let sampled = |at: &u32| wgpu::BindingType::Texture {
         sample_type: wgpu::TextureSampleType::Float {
@@ -187,11 +176,6 @@ fn layout_entries(
             count: None,
         })
         .collect()
-}
-
-/// Bytes that a uniform block takes.
-pub fn block_size(block: &[u8]) -> u64 {
-    (block.len() as u64).next_multiple_of(BLOCK_ALIGNMENT)
 }
 
 /// The format in the words of wgpu.

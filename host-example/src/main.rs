@@ -2,10 +2,8 @@
 
 #![forbid(unsafe_code)]
 
-mod camera;
 mod headless;
 mod painter;
-mod present;
 mod style;
 mod window;
 

@@ -3,12 +3,13 @@
 use isophote_example::frame_runner::FrameRunner;
 use isophote_example::guides;
 use isophote_example::kernels::Kernels;
+use isophote_example::plan_runner::ALL;
 use isophote_files::error::{AtPlace, Result};
 use isophote_loader::Library;
 use isophote_render::gpu::Gpu;
 use isophote_render::lighting::Lighting;
 use isophote_render::renderer::Renderer;
-use isophote_scene::camera::View;
+use isophote_scene::camera::Viewpoint;
 use isophote_scene::pose::Pose;
 use isophote_scene::{Scene, floor};
 
@@ -25,6 +26,8 @@ struct Stylized {
 
 /// Renderer and style of a scene.
 pub struct Painter {
+    /// The camera that the scene is seen from.
+    pub camera: Viewpoint,
     scene: Scene,
     pose: Pose,
     lighting: Lighting,
@@ -33,12 +36,12 @@ pub struct Painter {
 }
 
 impl Painter {
-    /// Uploads the scene and makes the style of that name ready for frames of a size. Light is chosen for `view`.
+    /// Uploads the scene and makes the style of that name ready for frames of a size. Light is chosen for the camera.
     ///
     /// # Errors
     /// [`isophote_files::error::Error::Input`] for scenes and styles that cannot be drawn,
     /// [`isophote_files::error::Error::Failure`] without the library or when the device refuses.
-    pub fn new(gpu: &Gpu, scene: Scene, style: &str, size: (u32, u32), view: &View) -> Result<Self> {
+    pub fn new(gpu: &Gpu, scene: Scene, style: &str, size: (u32, u32), camera: Viewpoint) -> Result<Self> {
         let library = Library::open()?;
         let mut renderer = Renderer::new(&gpu.device, &gpu.queue, &scene, size)?;
         if floor::lacks_floor(&scene) {
@@ -56,21 +59,12 @@ impl Painter {
             stylized = Some(Stylized { style, frames });
         }
         let pose = Pose::at_rest(&scene);
-        let lighting = Lighting::for_scene(&scene, &pose, view, None, None);
-        let mut painter = Self { scene, pose, lighting, renderer, stylized };
+        let view = camera.view(&scene, &pose);
+        let lighting = Lighting::for_scene(&scene, &pose, &view, None, None);
+        let mut painter = Self { camera, scene, pose, lighting, renderer, stylized };
         painter.bind()?;
         gpu.check()?;
         Ok(painter)
-    }
-
-    /// The scene.
-    pub fn scene(&self) -> &Scene {
-        &self.scene
-    }
-
-    /// The scene at the moment of the last frame.
-    pub fn pose(&self) -> &Pose {
-        &self.pose
     }
 
     /// Takes the moment of the next frame, in seconds of the scene's first animation.
@@ -103,7 +97,7 @@ impl Painter {
     ///
     /// # Errors
     /// [`isophote_files::error::Error::Failure`] when the device refuses.
-    pub fn encode(&mut self, encoder: &mut wgpu::CommandEncoder, number: i64, view: &View) -> Result<()> {
+    pub fn encode(&mut self, encoder: &mut wgpu::CommandEncoder, number: i64) -> Result<()> {
         let mut is_rebuilt = false;
         if let Some(Stylized { style, frames }) = &mut self.stylized {
             let is_edited = frames.request().frame != number;
@@ -113,8 +107,12 @@ impl Painter {
         if is_rebuilt {
             self.bind()?;
         }
-        self.renderer.encode(encoder, &self.scene, &self.pose, view, &self.lighting);
-        self.stylized.as_mut().map_or(Ok(()), |stylized| stylized.frames.encode(encoder))
+        let view = self.camera.view(&self.scene, &self.pose);
+        self.renderer.encode(encoder, &self.scene, &self.pose, &view, &self.lighting);
+        if let Some(Stylized { frames, .. }) = &mut self.stylized {
+            frames.encode(encoder, ALL)?;
+        }
+        Ok(())
     }
 
     /// The picture of the last frame: four channels of linear light, or one of grey.

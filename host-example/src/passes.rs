@@ -2,9 +2,10 @@
 
 use crate::kernels::{Kernel, Kernels, mistaken};
 use crate::textures::Slot;
-use crate::uniforms::{Block, Layout, Uniforms};
+use crate::uniforms::Uniforms;
 use isophote_files::error::{Error, Result};
 use isophote_loader::plan::Pass;
+use isophote_loader::uniforms::{Block, Bytes};
 
 /// Pass that can be recorded once it is bound.
 #[derive(Debug)]
@@ -22,12 +23,12 @@ pub struct ReadyPass {
 }
 
 impl ReadyPass {
-    /// A pass whose uniform bytes have the next places in `layout`.
-    pub fn new(kernel: Kernel, pass: &Pass<'_>, layout: &mut Layout) -> Self {
+    /// A pass whose uniform bytes have the next places in `uniforms`.
+    pub fn new(kernel: Kernel, pass: &Pass<'_>, uniforms: &mut Bytes) -> Self {
         Self {
             kernel,
-            grid: layout.place(pass.grid),
-            params: Some(pass.params).filter(|p| !p.is_empty()).map(|params| layout.place(params)),
+            grid: uniforms.place(pass.grid),
+            params: Some(pass.params).filter(|p| !p.is_empty()).map(|params| uniforms.place(params)),
             textures: pass.inputs.iter().chain(pass.outputs).copied().collect(),
             workgroups: pass.workgroups,
             groups: Vec::new(),

@@ -18,16 +18,22 @@
 //! so a sampler, in plans that are fast rather than exact. wgpu puts the
 //! barriers between passes; `tests/c/vulkan.c` does the same work by hand.
 
+use std::ops::Range;
 use std::sync::Arc;
 
-use crate::history::{self, Past, Rings};
+use crate::history::Rings;
 use crate::kernels::{Kernels, mistaken, refused};
 use crate::passes::{ReadyPass, unbound};
 use crate::textures::{self, COPIED, Slot};
-use crate::uniforms::{Layout, Uniforms};
+use crate::uniforms::Uniforms;
 use isophote_files::error::Result;
 use isophote_loader::Plan;
+use isophote_loader::history::{self, Past};
 use isophote_loader::plan::Role;
+use isophote_loader::uniforms::Bytes;
+
+/// The passes of a whole frame.
+pub const ALL: Range<usize> = 0..usize::MAX;
 
 /// A plan, ready to be recorded again and again.
 ///
@@ -73,15 +79,16 @@ impl PlanRunner {
     ) -> Result<Self> {
         let wanted = plan.textures().map_err(refused)?;
         let textures = textures::slots(kernels, &wanted, &past, old, &mut rings)?;
-        let mut layout = Layout::new(kernels.device());
+        let alignment = kernels.device().limits().min_uniform_buffer_offset_alignment;
+        let mut uniforms = Bytes::new(alignment);
         let mut passes = Vec::new();
         for (index, pass) in (0..).zip(plan.passes().map_err(refused)?) {
             if pass.inputs.iter().chain(pass.outputs).any(|at| *at as usize >= wanted.len()) {
                 return Err(mistaken(format!("kernel '{}' names an unknown texture", pass.kernel)));
             }
-            passes.push(ReadyPass::new(kernels.get(plan, index, &pass, &wanted)?, &pass, &mut layout));
+            passes.push(ReadyPass::new(kernels.get(plan, index, &pass, &wanted)?, &pass, &mut uniforms));
         }
-        let uniforms = Uniforms::new(kernels, &layout)?;
+        let uniforms = Uniforms::new(kernels, uniforms)?;
         let kernels = Arc::clone(kernels);
         let mut runner = Self { kernels, textures, passes, past, rings, uniforms };
         runner.repack(plan)?;
@@ -96,8 +103,8 @@ impl PlanRunner {
     pub fn repack(&mut self, plan: &Plan) -> Result<()> {
         let mut is_changed = false;
         for (ready, pass) in self.passes.iter().zip(plan.passes().map_err(refused)?) {
-            is_changed |= self.uniforms.put(ready.grid, pass.grid);
-            is_changed |= ready.params.is_some_and(|params| self.uniforms.put(params, pass.params));
+            is_changed |= self.uniforms.bytes.put(ready.grid, pass.grid);
+            is_changed |= ready.params.is_some_and(|params| self.uniforms.bytes.put(params, pass.params));
         }
         if is_changed {
             self.uniforms.upload(&self.kernels);
@@ -163,29 +170,16 @@ impl PlanRunner {
         output.and_then(|slot| slot.views.first()).ok_or_else(|| mistaken("the plan has no output".into()))
     }
 
-    /// Records all passes of a frame; the next call is of the next one.
+    /// Records passes of a frame, [all](ALL) or those of one of its submissions, and says whether the last is among them. The
+    /// next call is of the next frame then.
     ///
     /// # Errors
     /// [`Error::Failure`](isophote_files::error::Error::Failure) when the inputs are not bound.
-    pub fn encode(&mut self, encoder: &mut wgpu::CommandEncoder) -> Result<()> {
-        self.encode_some(encoder, 0, usize::MAX).map(|_| ())
-    }
-
-    /// Records so many passes of a frame from one on, for frames of several submissions, and says whether the last was among
-    /// them.
-    ///
-    /// # Errors
-    /// As [`PlanRunner::encode`].
-    pub fn encode_some(
-        &mut self,
-        encoder: &mut wgpu::CommandEncoder,
-        from: usize,
-        count: usize,
-    ) -> Result<bool> {
-        let end = from.saturating_add(count).min(self.passes.len());
+    pub fn encode(&mut self, encoder: &mut wgpu::CommandEncoder, passes: Range<usize>) -> Result<bool> {
+        let end = passes.end.min(self.passes.len());
         let descriptor = wgpu::ComputePassDescriptor { label: Some("stylize"), timestamp_writes: None };
         let mut compute = encoder.begin_compute_pass(&descriptor);
-        (from..end).try_for_each(|index| self.encode_pass(&mut compute, index))?;
+        (passes.start..end).try_for_each(|index| self.encode_pass(&mut compute, index))?;
         drop(compute);
         let is_whole = end == self.passes.len();
         if is_whole {
@@ -202,10 +196,5 @@ impl PlanRunner {
     pub fn encode_pass(&self, compute: &mut wgpu::ComputePass<'_>, index: usize) -> Result<()> {
         let pass = self.passes.get(index).ok_or_else(unbound)?;
         pass.encode(compute, if pass.groups.len() == self.rings.turns() { self.rings.turn() } else { 0 })
-    }
-
-    /// The kernels of its device.
-    pub fn kernels(&self) -> &Kernels {
-        &self.kernels
     }
 }

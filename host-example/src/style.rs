@@ -55,12 +55,6 @@ impl Style {
     /// # Errors
     /// [`Error::Failure`] when the library fails.
     pub fn wants_rest_positions(&self) -> Result<bool> {
-        for node in 0..self.graph.count() {
-            let spec = self.graph.spec(node).map_err(|e| e.at(&self.name, "choose another style"))?;
-            if spec.inputs.iter().any(|port| port.kind == Kind::Position) {
-                return Ok(true);
-            }
-        }
-        Ok(false)
+        self.graph.can_use(Kind::Position).map_err(|e| e.at(&self.name, "choose another style"))
     }
 }

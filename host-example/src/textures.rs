@@ -1,8 +1,9 @@
 //! Textures of a plan: those that passes write, and places for those of the host.
 
-use crate::history::{self, Past, Rings};
+use crate::history::Rings;
 use crate::kernels::{Kernels, texture_format};
 use isophote_files::error::Result;
+use isophote_loader::history::{self, Past};
 use isophote_loader::plan::{Format, Role, Texture};
 
 /// Uses of textures that passes write.

@@ -6,17 +6,16 @@ use std::time::Instant;
 use isophote_files::desktop;
 use isophote_files::error::{Error, Result};
 use isophote_render::gpu::Gpu;
+use isophote_render::present::Present;
 use isophote_scene::Scene;
-use isophote_scene::pose::Pose;
+use isophote_scene::camera::{Orbit, Viewpoint};
 use winit::application::ApplicationHandler;
 use winit::dpi::{PhysicalPosition, PhysicalSize};
 use winit::event::{ElementState, MouseButton, MouseScrollDelta, WindowEvent};
 use winit::event_loop::{ActiveEventLoop, EventLoop};
 use winit::window::{Window, WindowId};
 
-use crate::camera::Camera;
 use crate::painter::Painter;
-use crate::present::Present;
 
 /// Way to mend a desktop that gives no window.
 const FIX: &str = "start the example in a desktop session with a Vulkan driver, or give --frames DIR";
@@ -58,7 +57,6 @@ struct Stage {
     config: wgpu::SurfaceConfiguration,
     painter: Painter,
     present: Present,
-    camera: Camera,
     started: Instant,
     frame: i64,
 }
@@ -84,12 +82,11 @@ impl Stage {
         let config = surface.get_default_config(&gpu.adapter, size.0, size.1);
         let config = config.ok_or_else(|| desktop::no_window("the adapter cannot draw on it", FIX))?;
         surface.configure(&gpu.device, &config);
-        let camera = Camera::of(&scene, size);
-        let view = camera.view(&scene, &Pose::at_rest(&scene));
-        let painter = Painter::new(&gpu, scene, style, size, &view)?;
+        let camera = Viewpoint::of(&scene, size.0 as f32 / size.1 as f32);
+        let painter = Painter::new(&gpu, scene, style, size, camera)?;
         let present = Present::new(&gpu.device, config.format, painter.picture());
         let started = Instant::now();
-        Ok(Self { window, gpu, surface, config, painter, present, camera, started, frame: 0 })
+        Ok(Self { window, gpu, surface, config, painter, present, started, frame: 0 })
     }
 
     /// Takes over the size of the window.
@@ -98,6 +95,12 @@ impl Stage {
         self.surface.configure(&self.gpu.device, &self.config);
         self.painter.resize((self.config.width, self.config.height))?;
         self.gpu.check()
+    }
+
+    /// The camera that goes around the scene, through which it is seen from now on.
+    fn steer(&mut self) -> &mut Orbit {
+        self.painter.camera.node = None;
+        &mut self.painter.camera.orbit
     }
 
     /// Draws a frame and shows it: scene, style and presentation are one submission.
@@ -110,9 +113,8 @@ impl Stage {
         };
         self.frame += 1;
         self.painter.go_to(self.started.elapsed().as_secs_f32());
-        let view = self.camera.view(self.painter.scene(), self.painter.pose());
         let mut encoder = self.gpu.device.create_command_encoder(&Default::default());
-        self.painter.encode(&mut encoder, self.frame, &view)?;
+        self.painter.encode(&mut encoder, self.frame)?;
         let surface = shown.texture.create_view(&Default::default());
         self.present.encode(&self.gpu.device, &mut encoder, self.painter.picture(), &surface);
         self.gpu.queue.submit([encoder.finish()]);
@@ -134,7 +136,7 @@ impl App {
         let (Some(stage), Some(before)) = (&mut self.stage, &mut self.drag) else { return };
         if let Some(before) = before {
             let [x, y] = [position.x - before.x, position.y - before.y].map(|way| way as f32 * TURN);
-            stage.camera.rotate(-x, y);
+            stage.steer().rotate(-x, y);
         }
         *before = Some(position);
     }
@@ -145,7 +147,7 @@ impl App {
             MouseScrollDelta::PixelDelta(way) => way.y as f32 / 100.0,
         };
         if let Some(stage) = &mut self.stage {
-            stage.camera.zoom(STEP.powf(steps));
+            stage.steer().zoom(STEP.powf(steps));
         }
     }
 }

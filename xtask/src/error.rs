@@ -15,7 +15,7 @@ impl fmt::Display for Failure {
 /// The result of a chore.
 pub type Result<T> = std::result::Result<T, Failure>;
 
-/// Says what was being done when an error came from below.
+/// Description of the work that an error from below has ended.
 pub trait Context<T> {
     /// Puts a description in front of the error.
     ///

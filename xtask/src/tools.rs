@@ -21,7 +21,7 @@ pub struct HandedOn {
     pub arguments: Vec<String>,
 }
 
-/// Says what comes next, and how long the chore has run since its first heading.
+/// Prints the heading of the next step, and how long the chore has run since its first heading.
 pub fn heading(what: &str) {
     static STARTED: OnceLock<Instant> = OnceLock::new();
     let seconds = STARTED.get_or_init(Instant::now).elapsed().as_secs();

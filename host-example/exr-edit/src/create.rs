@@ -7,8 +7,8 @@ use exr::prelude::{
     AnyChannel, AnyChannels, Encoding, FlatSamples, Image, Layer, LayerAttributes, Text, Vec2, WritableImage,
 };
 
+use crate::content::Plane;
 use crate::error::{Error, Result};
-use crate::planes::Plane;
 
 /// Content of a new file.
 #[derive(Clone, Debug, Default)]

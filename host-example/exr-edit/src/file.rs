@@ -8,13 +8,12 @@ use std::sync::Arc;
 
 use crate::codec;
 use crate::compression;
+use crate::content::{self, Decoded, Edit, PartEdit};
 use crate::cursor::Cursor;
-use crate::edit::{self, Edit, PartEdit};
 use crate::error::{Error, Result};
 use crate::layout::{Block, Layout};
 use crate::limits::{Budget, Limits, Reserved};
 use crate::part::{Chunk, DEEP, MULTI_PART, Part, TILED, channel_list};
-use crate::planes::Decoded;
 
 /// Bit of the version field: names of more than [`SHORT_NAME`] bytes.
 const LONG_NAMES: u32 = 0x400;
@@ -138,7 +137,7 @@ impl File {
             if changes[number].replace(edit).is_some() {
                 return Err(Error::Argument(format!("part {number} has two edits")));
             }
-            let (chunks, reservation) = edit::encode(&self.bytes, part, decoded, edit, &self.budget)?;
+            let (chunks, reservation) = content::encode(&self.bytes, part, decoded, edit, &self.budget)?;
             data[number] = Some(chunks);
             reserved.push(reservation);
         }

@@ -49,23 +49,21 @@
 
 mod codec;
 mod compression;
+mod content;
 pub mod create;
 mod cursor;
-mod edit;
 mod error;
 mod file;
 mod layout;
 mod limits;
 mod part;
-mod planes;
 
-pub use edit::{Edit, PartEdit};
+pub use content::{Decoded, Edit, PartEdit, Plane};
 pub use error::{Error, Result};
 pub use file::File;
 pub use layout::{Channel, Sample, Window};
 pub use limits::Limits;
 pub use part::Part;
-pub use planes::{Decoded, Plane};
 
 /// The example of the front page is compiled with the others.
 #[cfg(doctest)]

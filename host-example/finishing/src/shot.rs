@@ -5,6 +5,7 @@ use std::f32::consts::TAU;
 use crate::stylize::Stylizer;
 use crate::stylize::style::Style;
 use isophote_example::kernels::Kernels;
+use isophote_example::plan_runner::ALL;
 use isophote_files::error::Result;
 use isophote_loader::Library;
 use isophote_pictures::floats::Picture;
@@ -15,7 +16,7 @@ use isophote_render::readback::Readback;
 use isophote_render::renderer::Renderer;
 use isophote_render::targets::{Target, Targets};
 use isophote_scene::Scene;
-use isophote_scene::camera::{Direction, Framing, Orbit, View};
+use isophote_scene::camera::{Direction, Framing, Orbit, View, Viewpoint};
 use isophote_scene::pose::Pose;
 
 /// Options of a shot, which say what is rendered of a scene.
@@ -57,7 +58,7 @@ pub struct Shot {
     scene: Scene,
     pose: Pose,
     lighting: Lighting,
-    camera: Camera,
+    camera: Viewpoint,
     /// Number of the frame drawn last, and what it was seen by.
     drawn: Option<(i64, View)>,
     gpu: Gpu,
@@ -90,8 +91,8 @@ impl Shot {
         }
         gpu.check()?;
         let pose = Pose::at_rest(&scene);
-        let camera = Camera::choose(&options, &scene);
-        let view = camera.view(&scene, &pose, 0.0);
+        let camera = viewpoint(&options, &scene);
+        let view = camera.view(&scene, &pose);
         let mut lighting =
             Lighting::for_scene(&scene, &pose, &view, options.light, options.background.environment());
         lighting.exposure *= options.exposure.exp2();
@@ -125,7 +126,11 @@ impl Shot {
     fn go_to(&mut self, number: i64) -> View {
         let Options { animation, start, fps, range: (first, count), .. } = self.options;
         self.pose.update(&self.scene, animation, start + (number - 1) as f32 / fps);
-        self.camera.view(&self.scene, &self.pose, (number - first) as f32 / count as f32)
+        if self.options.turntable {
+            let share = (number - first) as f32 / count as f32;
+            return self.camera.orbit.turned(share * TAU).view();
+        }
+        self.camera.view(&self.scene, &self.pose)
     }
 
     /// Renders and stylizes the frame of a number. It does not depend on those drawn before: its motion is that
@@ -180,7 +185,7 @@ impl Shot {
         let mut encoder = self.gpu.device.create_command_encoder(&Default::default());
         self.renderer.encode(&mut encoder, &self.scene, &self.pose, &view, &self.lighting);
         if let Some(stylizer) = &mut self.stylizer {
-            stylizer.encode(&mut encoder)?;
+            stylizer.encode(&mut encoder, ALL)?;
         }
         self.gpu.queue.submit([encoder.finish()]);
         Ok(())
@@ -203,30 +208,10 @@ impl Shot {
 }
 
 /// Camera that the pictures are taken from.
-enum Camera {
-    File(usize, Orbit),
-    Framing(Orbit),
-    Turntable(Orbit),
-}
-
-impl Camera {
-    fn choose(options: &Options, scene: &Scene) -> Self {
-        let aspect = options.size.0 as f32 / options.size.1 as f32;
-        match options.camera {
-            _ if options.turntable => Self::Turntable(Orbit::turntable(scene, aspect, options.framing)),
-            Some(node) => Self::File(node, Orbit::framing(scene, aspect, options.framing)),
-            None => Self::Framing(Orbit::framing(scene, aspect, options.framing)),
-        }
+fn viewpoint(options: &Options, scene: &Scene) -> Viewpoint {
+    let aspect = options.size.0 as f32 / options.size.1 as f32;
+    if options.turntable {
+        return Viewpoint { node: None, orbit: Orbit::turntable(scene, aspect, options.framing) };
     }
-
-    /// The view at a share of the sequence in [0, 1).
-    fn view(&self, scene: &Scene, pose: &Pose, share: f32) -> View {
-        match self {
-            Self::File(node, fallback) => {
-                View::from_node(scene, pose, *node).unwrap_or_else(|| fallback.view())
-            }
-            Self::Framing(orbit) => orbit.view(),
-            Self::Turntable(orbit) => orbit.turned(share * TAU).view(),
-        }
-    }
+    Viewpoint { node: options.camera, orbit: Orbit::framing(scene, aspect, options.framing) }
 }

@@ -1,4 +1,4 @@
-//! What files say of themselves and decoders keep to themselves: the kind of alpha and the shape of pixels.
+//! Facts in files that decoders keep to themselves: the kind of alpha and the shape of pixels.
 
 use crate::exr::Picture;
 use crate::meaning::Alpha;

@@ -21,7 +21,7 @@ const UNSIGNED: u16 = 1;
 const WHITE_POINT: u16 = 318;
 const PRIMARY_CHROMATICITIES: u16 = 319;
 
-/// What a file says of its fourth sample.
+/// Meaning of a fourth sample.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Fourth {
     /// Alpha that colour is multiplied by.

@@ -1,9 +1,8 @@
-//! In which space a picture is filtered.
+//! Working spaces: those in which pictures are filtered.
 
 use crate::convert::Conversion;
 use crate::exr::Picture;
 use crate::meaning::{ImageState, Meaning};
-use crate::pixels::Pixels;
 use crate::primaries::REC709;
 use crate::space::Space;
 
@@ -40,12 +39,9 @@ impl WorkingSpace {
         self.source.of_results(state).named(space)
     }
 
-    /// Numbers of the working space in another meaning.
-    pub fn leave(&self, pixels: Pixels, to: &Meaning) -> Pixels {
-        match Conversion::between(&self.working, to) {
-            Some(conversion) => conversion.apply(&pixels).0,
-            None => pixels,
-        }
+    /// The change from it to another meaning.
+    pub fn back(&self, to: &Meaning) -> Option<Conversion> {
+        Conversion::between(&self.working, to)
     }
 }
 
@@ -53,7 +49,7 @@ impl WorkingSpace {
 mod tests {
     use super::*;
     use crate::meaning::Alpha;
-    use crate::pixels::{Precision, Samples};
+    use crate::pixels::{Pixels, Precision, Samples};
     use crate::primaries::P3;
 
     fn picture(meaning: Meaning, samples: Vec<u8>) -> Picture {
@@ -69,14 +65,13 @@ mod tests {
         assert_eq!(working.space, Space::Linear);
         let (color, _) = working.there.as_ref().unwrap().apply(&picture.pixels);
         let same = working.of_results(ImageState::DisplayReferred, None);
-        let back = working.leave(color.clone(), &same).converted(Precision::U8);
-        assert_eq!(back, picture.pixels);
+        let back = working.back(&same).unwrap().apply(&color).0;
+        assert_eq!(back.converted(Precision::U8), picture.pixels);
         // In an EXR file it is light of Rec.709, multiplied by alpha.
         let light = working.of_results(ImageState::SceneReferred, None);
         assert!(light.is_usual() && light.alpha == Alpha::Premultiplied);
-        let [first, .., alpha] = working.leave(color.clone(), &light).to_f32()[4 * 200..][..4] else {
-            panic!()
-        };
+        let multiplied = working.back(&light).unwrap().apply(&color).0.to_f32();
+        let [first, .., alpha] = multiplied[4 * 200..][..4] else { panic!() };
         assert!((first - color.to_f32()[4 * 200] * alpha).abs() < 1e-6);
     }
 

@@ -206,7 +206,7 @@ fn write_exr(
     floats::save_exr(path, existing, &data, components(channels), precision, (chromaticities, aspect))
 }
 
-/// Says by a colour profile what numbers mean.
+/// Adds a colour profile of what numbers mean.
 fn say(encoder: &mut impl ImageEncoder, meaning: &Meaning, channels: u32) {
     if let Some(profile) = profile(meaning, channels) {
         // All encoders that are used keep profiles.

@@ -8,15 +8,15 @@ use std::sync::Arc;
 use std::time::{Duration, Instant};
 
 use image::{DynamicImage, Rgb32FImage, Rgba32FImage};
-use isophote_example::history::Past;
 use isophote_example::kernels::Kernels;
-use isophote_example::plan_runner::PlanRunner;
+use isophote_example::plan_runner::{ALL, PlanRunner};
 use isophote_finishing::apply::backend::Backend;
 use isophote_finishing::apply::filter::{self, Filter, MaskedStyle};
 use isophote_finishing::apply::frame_cache::{CachedFrame, Window};
 use isophote_finishing::apply::memory::Budget;
 use isophote_finishing::stylize::style::Style;
 use isophote_loader::abi::IsophoteRequest;
+use isophote_loader::history::Past;
 use isophote_loader::{Control, Input, Library};
 use isophote_pictures::exr::{Guide, Selection};
 use isophote_pictures::pixels::{Pixels, Precision, Samples};
@@ -117,7 +117,7 @@ fn on_the_device(frame: &Frame, name: &str) -> Vec<f32> {
     let guides = library.guide_bits(names).expect("the library knows them");
     let usual = style.request(&library, size).expect("a request");
     let request = frame.request(IsophoteRequest { guides, ..usual });
-    let plan = style.plan(&library, &request, 0).expect("a plan");
+    let plan = style.named().plan(&library, &request, 0).expect("a plan");
     let kernels = Kernels::new(gpu.device.clone(), gpu.queue.clone());
     let mut runner = PlanRunner::new(&kernels, &plan, Past::default()).expect("the device works");
     let mut views = vec![("color", uploaded(&gpu, size, 4, frame.color.as_flattened()))];
@@ -125,7 +125,7 @@ fn on_the_device(frame: &Frame, name: &str) -> Vec<f32> {
     let inputs: Vec<(&str, &wgpu::TextureView)> = views.iter().map(|(name, view)| (*name, view)).collect();
     runner.bind(&inputs).expect("the inputs fit");
     let mut encoder = gpu.device.create_command_encoder(&Default::default());
-    runner.encode(&mut encoder).expect("the plan is complete");
+    runner.encode(&mut encoder, ALL).expect("the plan is complete");
     gpu.queue.submit([encoder.finish()]);
     let output = runner.output().expect("an output").texture();
     Readback::default().read(&gpu, output).expect("the device works").data

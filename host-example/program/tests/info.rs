@@ -1,4 +1,4 @@
-//! What files say of themselves: `info` tells it, and `apply` goes by it: windows, the shape of pixels, the kind of alpha.
+//! Facts in files: `info` tells it, and `apply` goes by it: windows, the shape of pixels, the kind of alpha.
 
 mod support;
 

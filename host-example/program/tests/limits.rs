@@ -11,7 +11,7 @@ use std::process::{Command, Output};
 
 use support::{cube, errors, fails, folder, isophote, library, picture, succeeds};
 
-/// Says where the program lies.
+/// Path of the program.
 const PROGRAM: &str = env!("CARGO_BIN_EXE_isophote");
 
 /// The same command in a process that may have so many MiB of addresses.

@@ -6,6 +6,7 @@ use std::path::Path;
 use std::sync::Arc;
 
 use isophote_example::kernels::{Counts, Kernels};
+use isophote_example::plan_runner::ALL;
 use isophote_finishing::stylize::Stylizer;
 use isophote_finishing::stylize::preset::Lengths;
 use isophote_finishing::stylize::style::{Setting, Style};
@@ -68,7 +69,7 @@ impl Stage {
         let mut encoder = self.gpu.device.create_command_encoder(&Default::default());
         let view = self.orbit.turned(angle).view();
         self.renderer.encode(&mut encoder, &self.scene, &self.pose, &view, &self.lighting);
-        stylizer.encode(&mut encoder).expect("the style can be recorded");
+        stylizer.encode(&mut encoder, ALL).expect("the style can be recorded");
         self.gpu.queue.submit([encoder.finish()]);
     }
 

@@ -8,6 +8,7 @@
 //! | [`lighting`] | lights and exposure of a frame |
 //! | [`background`] | sky, colour or surroundings behind the scene |
 //! | [`targets`] | textures that a frame is drawn into |
+//! | [`present`] | pass that puts a picture on a window |
 //! | [`readback`] | textures to pictures in main memory |
 //! | [`timestamps`] | times of passes on the device |
 //! | [`buffers`], [`layouts`], [`pipelines`] | objects of the device, and how they are bound |
@@ -22,6 +23,7 @@ mod ground;
 pub mod layouts;
 pub mod lighting;
 pub mod pipelines;
+pub mod present;
 pub mod readback;
 pub mod renderer;
 mod rest;

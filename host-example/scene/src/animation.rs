@@ -99,13 +99,8 @@ impl Channel {
                 }
             }
             Interpolation::CubicSpline => {
-                let (t2, t3) = (t * t, t * t * t);
-                let basis = [
-                    2.0 * t3 - 3.0 * t2 + 1.0,
-                    (t3 - 2.0 * t2 + t) * span,
-                    3.0 * t2 - 2.0 * t3,
-                    (t3 - t2) * span,
-                ];
+                let [first, leaving, second, arriving] = hermite(t);
+                let basis = [first, leaving * span, second, arriving * span];
                 let (start, out_tangent) = (self.value(k), self.part(k, 2));
                 let (end, in_tangent) = (self.value(next), self.part(next, 0));
                 for (i, o) in out.iter_mut().enumerate() {
@@ -127,6 +122,13 @@ impl Channel {
         let start = (key * parts + part) * self.width;
         &self.values[start..start + self.width]
     }
+}
+
+/// Weights of a cubic Hermite spline at a share of the way from one value to the next: of the first, of the slope there,
+/// of the second, and of the slope there.
+pub fn hermite(t: f32) -> [f32; 4] {
+    let (t2, t3) = (t * t, t * t * t);
+    [2.0 * t3 - 3.0 * t2 + 1.0, t3 - 2.0 * t2 + t, 3.0 * t2 - 2.0 * t3, t3 - t2]
 }
 
 /// A unit quaternion from four numbers; identity where they have no direction.

@@ -269,6 +269,28 @@ impl Orbit {
     }
 }
 
+/// A camera of the file, or one that goes around the scene.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Viewpoint {
+    /// Node of the file's camera that is looked through.
+    pub node: Option<usize>,
+    /// The camera that is looked through where there is none.
+    pub orbit: Orbit,
+}
+
+impl Viewpoint {
+    /// The first camera of the file, or else one that has the whole scene in a picture of this aspect.
+    pub fn of(scene: &Scene, aspect: f32) -> Self {
+        Self { node: file_camera(scene), orbit: Orbit::framing(scene, aspect, Framing::default()) }
+    }
+
+    /// View of a scene from it.
+    pub fn view(&self, scene: &Scene, pose: &Pose) -> View {
+        let own = self.node.and_then(|node| View::from_node(scene, pose, node));
+        own.unwrap_or_else(|| self.orbit.view())
+    }
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;

@@ -5,7 +5,7 @@ use std::panic::{AssertUnwindSafe, catch_unwind};
 /// Runs a decoder, whose panic is taken as damage of what it reads.
 ///
 /// # Errors
-/// What the decoder says, or a clause saying that it failed.
+/// The decoder's own, or a clause saying that it failed.
 pub fn guarded<T>(decode: impl FnOnce() -> Result<T, String>) -> Result<T, String> {
     // What the decoder made is dropped, so nothing half made is seen.
     catch_unwind(AssertUnwindSafe(decode))

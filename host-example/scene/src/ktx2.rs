@@ -29,7 +29,7 @@ const BLOCK: u64 = 16;
 struct Header<'a> {
     width: u32,
     height: u32,
-    /// What the pixels are made of.
+    /// Form of the pixels.
     content: Content,
     /// The largest picture.
     data: &'a [u8],

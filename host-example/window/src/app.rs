@@ -75,11 +75,11 @@ pub struct App {
     pub failure: Option<Error>,
     revivals: u32,
     devices: usize,
-    /// When a device is to be opened anew.
+    /// Time at which a device is to be opened anew.
     revival: Option<Instant>,
     modifiers: ModifiersState,
     hidden: bool,
-    /// When the next frame is wanted, if nothing happens before.
+    /// Time at which the next frame is wanted, if nothing happens before.
     due: Option<Instant>,
     /// The title of the window, and since when it stands.
     titled: Option<(Instant, String)>,

@@ -73,7 +73,7 @@ impl Bindings {
     /// The declarations that a directive stands for; other text declares nothing.
     ///
     /// # Errors
-    /// What it should stand before.
+    /// Text that it should stand before.
     pub fn declare(&mut self, directive: Directive<'_>) -> Result<String, String> {
         let next = 2 + self.inputs + self.outputs;
         match directive {

@@ -145,6 +145,19 @@ impl Graph {
         Ok(unsafe { catalogue::node(&*spec) })
     }
 
+    /// True where a node of it can use pictures of a kind.
+    ///
+    /// # Errors
+    /// [`Error`](crate::Error) when the library fails.
+    pub fn can_use(&self, kind: Kind) -> Result<bool> {
+        for node in 0..self.count() {
+            if self.spec(node)?.inputs.iter().any(|port| port.kind == kind) {
+                return Ok(true);
+            }
+        }
+        Ok(false)
+    }
+
     /// Sets how precisely graphics devices compute it.
     ///
     /// # Errors

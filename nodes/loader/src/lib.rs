@@ -2,7 +2,8 @@
 //!
 //! This is all that a host in Rust needs of Isophote. Handles become types that destroy what they hold, statuses become
 //! [`Error`]s, pointers become slices and text, and images are whatever implements [`AsImage`]. The declarations are those
-//! of `isophote-abi`.
+//! of `isophote-abi`. For hosts that run plans themselves, [`history`] counts the images of past frames and [`uniforms`]
+//! places uniform bytes in a buffer.
 //!
 //! ```no_run
 //! # fn main() -> isophote_loader::Result<()> {
@@ -24,6 +25,7 @@ pub mod device;
 mod error;
 pub mod graph;
 pub mod guides;
+pub mod history;
 mod image;
 mod library;
 mod open;
@@ -35,6 +37,7 @@ pub mod process;
 pub mod sequence;
 pub mod style;
 mod text;
+pub mod uniforms;
 
 pub use catalogue::Catalogue;
 pub use device::Device;

@@ -7,9 +7,10 @@ use std::marker::PhantomData;
 use super::device::Device;
 use super::error::{Result, check};
 use super::graph::{Graph, GraphHandle};
+use super::history::Past;
 use super::image::{AsImage, AsTarget};
 use super::library::Library;
-use super::plan::Plan;
+use super::plan::{Plan, Role};
 use super::process::{self, Control, Report};
 use super::text;
 use isophote_abi::{
@@ -73,17 +74,32 @@ impl Library {
     ///
     /// # Errors
     /// [`Error`](crate::Error) when an input that is needed is open, or the size is impossible.
-    pub fn plan_in_order(
-        &self,
-        graph: &Graph,
-        request: &IsophoteRequest,
-        history: &IsophoteHistory,
-    ) -> Result<Plan> {
+    pub fn plan_frame(&self, graph: &Graph, request: &IsophoteRequest, known: u32) -> Result<Plan> {
+        if self.frames(graph)? == [0, 0] {
+            return graph.plan(request);
+        }
         let table = self.sequences()?;
+        let history = IsophoteHistory { past: known, max_motion: 0.0 };
         Plan::made(self.api, |error, plan| {
             // SAFETY: the handle is the graph's; request and history are read and the others written during the call.
-            unsafe { (table.plan_create)(graph.handle, request, history, std::ptr::null(), error, plan) }
+            unsafe {
+                (table.plan_create)(graph.handle, request, &raw const history, std::ptr::null(), error, plan)
+            }
         })
+    }
+
+    /// Images of frames before that a frame of `graph` reads, where all are known.
+    ///
+    /// # Errors
+    /// As [`Library::plan_frame`].
+    pub fn past(&self, graph: &Graph, request: &IsophoteRequest) -> Result<Past> {
+        let [frames, _] = self.frames(graph)?;
+        if frames == 0 {
+            return Ok(Past::default());
+        }
+        let plan = self.plan_frame(graph, request, frames)?;
+        let textures = plan.textures()?;
+        Ok(Past::of(textures.iter().filter(|t| t.role == Role::Input).map(|t| t.name)))
     }
 }
 

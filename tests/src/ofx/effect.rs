@@ -203,7 +203,7 @@ impl Instance<'_> {
         act(param.unwrap_or_else(|| panic!("{} has no {name}", self.plugin.identifier())))
     }
 
-    /// Says that something changed: of which type, and why.
+    /// Tells the plugin that something changed: of which type, and why.
     ///
     /// # Panics
     /// When the plugin does not take it.

@@ -115,7 +115,7 @@ thread_local! {
     static RENDERED: Cell<Option<f64>> = const { Cell::new(None) };
 }
 
-/// Says which time the calling thread renders, if any.
+/// Sets the time that the calling thread renders, if any.
 pub(super) fn render_at(time: Option<f64>) {
     RENDERED.set(time);
 }

@@ -42,7 +42,7 @@ pub fn refuse_after(count: Option<u32>) {
     MAKING_FAILS_AFTER.set(count);
 }
 
-/// Says whether the device is lost from now on.
+/// Sets whether the device is lost from now on.
 pub fn lose(is_lost: bool) {
     IS_LOST.set(is_lost);
 }

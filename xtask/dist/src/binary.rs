@@ -102,7 +102,7 @@ fn written(version: [u32; 3]) -> String {
     format!("{}.{}", version[0], version[1])
 }
 
-/// Says why a binary may not leave; nothing where it may. Drafts may keep their symbols.
+/// Reason why a binary may not leave; nothing where it may. Drafts may keep their symbols.
 pub fn fault(facts: &Facts, soname: Option<&str>, draft: bool) -> Option<String> {
     if let Some(newest) = facts.glibc.last().filter(|newest| **newest > NEWEST_GLIBC) {
         return Some(format!(

@@ -51,7 +51,7 @@ pub enum Error {
 }
 
 impl Error {
-    /// Says which file an error of the system is about.
+    /// Makes an error of the system one about a file.
     pub fn at(path: &Path) -> impl FnOnce(std::io::Error) -> Self {
         let path = path.to_owned();
         move |source| Self::File { path, source }

@@ -8,7 +8,7 @@ use super::frame_cache::Window;
 use super::memory::Needs;
 use super::picture_request::PictureRequest;
 use super::square;
-use super::stages::{history, stages};
+use super::stages::stages;
 use crate::stylize::style::Style;
 use isophote_files::error::{AtPlace, Error, Result};
 use isophote_loader::abi::IsophoteRequest;
@@ -126,6 +126,15 @@ fn frames(library: &Library, layers: &[Layer]) -> Result<[i64; 2]> {
         most = [0, 1].map(|side| i64::from(frames[side]).max(most[side]));
     }
     Ok(most)
+}
+
+/// Gives animated parameters of the looks their values at a frame, and says whether there are any.
+fn at_frame(layers: &[Layer], frame: i64) -> Result<bool> {
+    let mut is_animated = false;
+    for layer in layers {
+        is_animated |= layer.look.style.at_frame(frame)?;
+    }
+    Ok(is_animated)
 }
 
 impl Layer {
@@ -249,20 +258,12 @@ impl Filter {
     ) -> Result<Filtered> {
         let (own, source) = (&window.own, &window.own.source);
         if let Some(frame) = own.number {
-            for layer in &self.layers {
-                layer.look.style.at_frame(frame)?;
-            }
+            at_frame(&self.layers, frame)?;
         }
         let in_place = exr.filter(|_| format == Format::Exr);
         let count = if in_place.is_some() { source.pictures.len() } else { source.pictures.len().min(1) };
-        if in_place.is_some() && self.output_space.is_some() {
-            let problem =
-                "is not for EXR files made of themselves, whose headers say what all their layers mean";
-            return Err(Error::input(
-                "--output-space",
-                problem,
-                "leave it out, or write a .tif or .png file",
-            ));
+        if in_place.is_some() {
+            self.check_output_space()?;
         }
         let to = format.state(source.state());
         let scalar = self.layers.iter().all(|layer| layer.look.style.kind != Kind::Color);
@@ -291,10 +292,14 @@ impl Filter {
             let (mut result, replaced) =
                 self.layered(name, &job, (channels, precision), encoding, &mut report)?;
             filtered.replaced += replaced;
-            result = square::unmake(&self.library, name, picture, result)?;
+            if let Some(own) = &picture.own {
+                result = square::unmake(&self.library, name, (own, &picture.meaning), &result)?;
+            }
             if !scalar {
                 let meaning = format.kept(working.of_results(to, self.output_space));
-                result = working.leave(result, &meaning);
+                if let Some(back) = working.back(&meaning) {
+                    result = back.apply(&result).0;
+                }
                 if at == 0 {
                     filtered.meaning = meaning;
                 }
@@ -302,6 +307,15 @@ impl Filter {
             filtered.results.push(result);
         }
         Ok(filtered)
+    }
+
+    /// Refuses a space of results that go back into the file that they came from.
+    fn check_output_space(&self) -> Result<()> {
+        if self.output_space.is_none() {
+            return Ok(());
+        }
+        let problem = "is not for EXR files made of themselves, whose headers say what all their layers mean";
+        Err(Error::input("--output-space", problem, "leave it out, or write a .tif or .png file"))
     }
 
     /// The looks of one picture over each other, and how many samples were replaced.
@@ -366,7 +380,7 @@ impl Planner {
     /// # Errors
     /// [`Error::Input`] for sizes and graphs that the library refuses.
     pub fn filter_memory(&mut self, name: &str, frame: Option<i64>, size: (u32, u32)) -> Result<u64> {
-        let is_animated = frame.map_or(Ok(false), |frame| self.at_frame(frame))?;
+        let is_animated = frame.map_or(Ok(false), |frame| at_frame(&self.layers, frame))?;
         if let Some((_, bytes)) = self.last.filter(|(last, _)| *last == size && !is_animated) {
             return Ok(bytes);
         }
@@ -382,11 +396,7 @@ impl Planner {
             let all = guides.clone().chain(layer.guide());
             request.guides = self.library.guide_bits(all).map_err(refused)?;
             let frames = self.library.frames(&style.graph).map_err(refused)?;
-            let plan = match frames {
-                [0, 0] => style.graph.plan(&request),
-                [past, _] => self.library.plan_in_order(&style.graph, &request, &history(past)),
-            };
-            let plan = plan.map_err(refused)?;
+            let plan = self.library.plan_frame(&style.graph, &request, frames[0]).map_err(refused)?;
             let textures: u64 = plan.textures().map_err(refused)?.iter().map(Texture::bytes).sum();
             let mixed = if layer.is_mixed() || self.layers.len() > 1 { pixels * MIXED } else { 0 };
             most = most.max(textures + mixed);
@@ -397,22 +407,13 @@ impl Planner {
         Ok(bytes)
     }
 
-    /// Gives animated parameters their values at a frame, and says whether there are any.
-    fn at_frame(&self, frame: i64) -> Result<bool> {
-        let mut is_animated = false;
-        for layer in &self.layers {
-            is_animated |= layer.look.style.at_frame(frame)?;
-        }
-        Ok(is_animated)
-    }
-
     /// Frames before and after `frame` that it depends on.
     ///
     /// # Errors
     /// [`Error::Input`] when an animated parameter cannot have its value.
     pub fn frames(&self, frame: Option<i64>) -> Result<[i64; 2]> {
         let Some(frame) = frame else { return Ok([0, 0]) };
-        self.at_frame(frame)?;
+        at_frame(&self.layers, frame)?;
         frames(&self.library, &self.layers)
     }
 
@@ -450,7 +451,8 @@ impl Planner {
     /// # Errors
     /// As [`square::make`].
     pub fn square(&self, name: &str, source: &mut Source) -> Result<()> {
-        square::make(&self.library, name, source)
+        let is_square = source.pictures.iter().all(|picture| picture.meaning.pixel_aspect == 1.0);
+        if is_square { Ok(()) } else { square::make(&self.library, name, source) }
     }
 }
 

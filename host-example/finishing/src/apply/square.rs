@@ -4,7 +4,7 @@
 use isophote_files::error::{AtPlace, Result};
 use isophote_loader::Library;
 use isophote_loader::abi::{ISOPHOTE_ALPHA_PREMULTIPLIED, ISOPHOTE_ALPHA_STRAIGHT, IsophoteAlpha};
-use isophote_pictures::exr::{OwnPixels, Picture};
+use isophote_pictures::exr::OwnPixels;
 use isophote_pictures::meaning::Meaning;
 use isophote_pictures::pixels::{Pixels, Precision};
 use isophote_pictures::read::Source;
@@ -49,15 +49,20 @@ pub fn make(library: &Library, name: &str, source: &mut Source) -> Result<()> {
     Ok(())
 }
 
-/// A result in the pixels that its picture had.
+/// A result in the pixels that its picture had, with what that says of them.
 ///
 /// # Errors
 /// [`isophote_files::error::Error::Input`] for what the library refuses.
-pub fn unmake(library: &Library, name: &str, picture: &Picture, result: Pixels) -> Result<Pixels> {
-    let Some(OwnPixels { size, aspect, .. }) = picture.own else { return Ok(result) };
+pub fn unmake(
+    library: &Library,
+    name: &str,
+    (own, meaning): (&OwnPixels, &Meaning),
+    result: &Pixels,
+) -> Result<Pixels> {
+    let OwnPixels { size, aspect, .. } = *own;
     let mut own = Pixels::zeroed(size.0, size.1, result.channels(), result.precision());
-    let how = (aspect, alpha(&picture.meaning));
-    library.from_square(&result, how, &mut own, 0).map_err(|e| e.at(name, FIX))?;
+    let how = (aspect, alpha(meaning));
+    library.from_square(result, how, &mut own, 0).map_err(|e| e.at(name, FIX))?;
     Ok(own)
 }
 

@@ -1,15 +1,10 @@
-//! Stages that frames read of those before and after them.
+//! Memory of the stages that frames read of those before and after them.
 
 use crate::stylize::style::Style;
-use isophote_example::history::{is_stage, split};
 use isophote_loader::Library;
-use isophote_loader::abi::{IsophoteHistory, IsophoteRequest};
+use isophote_loader::abi::IsophoteRequest;
+use isophote_loader::history::{is_stage, split};
 use isophote_loader::plan::{Role, Texture};
-
-/// Plans for so many frames before the one that is computed.
-pub fn history(past: u32) -> IsophoteHistory {
-    IsophoteHistory { past, max_motion: 0.0 }
-}
 
 /// Bytes of the stages that a frame reads of those before and after it, which are at most so many, and of its own.
 pub fn stages(
@@ -22,7 +17,7 @@ pub fn stages(
     if past + future == 0 {
         return Ok(0);
     }
-    let plan = library.plan_in_order(&style.graph, request, &history(past))?;
+    let plan = library.plan_frame(&style.graph, request, past)?;
     let textures = plan.textures()?;
     let kept = textures.iter().filter(|t| t.role == Role::Output && is_stage(t.name));
     // Of farther frames only inputs are read.

@@ -11,14 +11,14 @@ pub mod style;
 pub mod suggest;
 pub mod value;
 
+use std::ops::Range;
 use std::sync::Arc;
 
 use self::style::{Setting, Style};
 use self::value::Value;
 use isophote_example::frame_runner::{FrameRunner, Named};
 use isophote_example::guides;
-use isophote_example::history::Past;
-use isophote_example::kernels::Kernels;
+use isophote_example::kernels::{Kernels, refused};
 use isophote_files::error::{AtPlace, Result};
 use isophote_loader::abi::IsophoteRequest;
 use isophote_loader::catalogue::Kind;
@@ -152,12 +152,20 @@ impl Stylizer {
         Ok(())
     }
 
-    /// Compiles what later frames need too, where they look at those before, so that none of them waits for it.
+    /// Compiles what later frames need too, where they look at those before, so that none of them waits for it. `kernels` and
+    /// `library` are those that it was made with.
     ///
     /// # Errors
     /// [`isophote_files::error::Error::Failure`] when the device refuses.
-    pub fn compile_all(&self) -> Result<()> {
-        self.frames.compile_all(self.style.named())
+    pub fn compile_all(&self, kernels: &Kernels, library: &Library) -> Result<()> {
+        for known in 1..=self.depth() {
+            let plan = self.style.named().plan(library, self.frames.request(), known)?;
+            let textures = plan.textures().map_err(refused)?;
+            for (index, pass) in (0..).zip(plan.passes().map_err(refused)?) {
+                kernels.get(&plan, index, &pass, &textures)?;
+            }
+        }
+        Ok(())
     }
 
     /// Reads these targets from now on, with the colour that is display-referred, which must have the size given
@@ -189,25 +197,13 @@ impl Stylizer {
         self.frames.bind(&guides::inputs(color, targets))
     }
 
-    /// Records the whole style on a frame; the next call is of the next one. Nothing is created and nothing submitted.
+    /// Records passes of the style on a frame, [all](isophote_example::plan_runner::ALL) or some; says whether the last is
+    /// among them, and the next call is of the next frame then. Nothing is created and nothing submitted.
     ///
     /// # Errors
     /// [`isophote_files::error::Error::Failure`] when nothing is bound.
-    pub fn encode(&mut self, encoder: &mut wgpu::CommandEncoder) -> Result<()> {
-        self.frames.encode(encoder)
-    }
-
-    /// As [`Stylizer::encode`], so many passes from one on; says whether the last was among them.
-    ///
-    /// # Errors
-    /// As [`Stylizer::encode`].
-    pub fn encode_some(
-        &mut self,
-        encoder: &mut wgpu::CommandEncoder,
-        from: usize,
-        count: usize,
-    ) -> Result<bool> {
-        self.frames.encode_some(encoder, from, count)
+    pub fn encode(&mut self, encoder: &mut wgpu::CommandEncoder, passes: Range<usize>) -> Result<bool> {
+        self.frames.encode(encoder, passes)
     }
 
     /// The passes with their textures.
@@ -217,25 +213,9 @@ impl Stylizer {
 }
 
 impl Style {
-    /// Graph with its name.
-    fn named(&self) -> Named<'_> {
+    /// Graph with its name, to be planned.
+    pub fn named(&self) -> Named<'_> {
         Named { name: &self.name, graph: &self.graph }
-    }
-
-    /// The plan of a frame where so many frames before it are known.
-    ///
-    /// # Errors
-    /// As [`Named::plan`].
-    pub fn plan(&self, library: &Library, request: &IsophoteRequest, known: usize) -> Result<Plan> {
-        self.named().plan(library, request, known)
-    }
-
-    /// Images of frames before that frames read, where all are known.
-    ///
-    /// # Errors
-    /// As [`Named::plan`].
-    pub fn past(&self, library: &Library, request: &IsophoteRequest) -> Result<Past> {
-        self.named().past(library, request)
     }
 }
 

@@ -250,13 +250,7 @@ impl Style {
     /// # Errors
     /// [`Error::Failure`] when the library fails.
     pub fn can_use(&self, kind: Kind) -> Result<bool> {
-        for node in 0..self.graph.count() {
-            let spec = self.graph.spec(node).map_err(|e| e.at(&self.name, "choose another style"))?;
-            if spec.inputs.iter().any(|port| port.kind == kind) {
-                return Ok(true);
-            }
-        }
-        Ok(false)
+        self.graph.can_use(kind).map_err(|e| e.at(&self.name, "choose another style"))
     }
 
     /// True where a node of the graph reads a guide that enters it by its name.

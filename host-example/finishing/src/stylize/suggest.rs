@@ -140,7 +140,7 @@ impl<'a> Names<'a> {
             .or_else(|| self.nearest(&wanted))
     }
 
-    /// What is called just so, apart from capitals, hyphens and the prefix of looks.
+    /// Node or look of exactly this name, apart from capitals, hyphens and the prefix of looks.
     fn named(&self, wanted: &str) -> Option<Meant> {
         let node = self.nodes.iter().find(|node| node.id == wanted).map(|node| Meant::plain(node.id));
         let look =

@@ -35,7 +35,7 @@ pub struct Clip {
     stream: Stream,
     /// Frames that ffmpeg does not read by itself.
     webp: Option<Webp>,
-    /// When frames are shown, in seconds from where the file begins and in order; empty where they are not found so.
+    /// Times at which frames are shown, in seconds from where the file begins and in order; empty where they are not found so.
     times: Vec<f64>,
     /// Frames, about where that is not known exactly.
     count: i64,

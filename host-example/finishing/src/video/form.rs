@@ -34,7 +34,7 @@ pub struct Form {
     pub options: Vec<&'static str>,
     /// Form of the pixels.
     pub pixels: &'static str,
-    /// From black to white: `tv` or `pc`.
+    /// Range from black to white: `tv` or `pc`.
     pub range: &'static str,
     /// The matrix between RGB and luma with chroma.
     pub matrix: &'static str,
@@ -47,7 +47,7 @@ pub struct Form {
 }
 
 impl Form {
-    /// For pictures like a stream's of so many channels, in this container, by the encoder that options name or the usual.
+    /// The form for pictures like a stream's of so many channels, in this container, by the encoder that options name or the usual.
     pub fn of(container: &'static str, stream: &Stream, channels: u32, options: Option<&str>) -> Self {
         // Few players show red, green and blue in these.
         let is_plain = stream.is_animation && PLAYED.contains(&container);

@@ -18,9 +18,9 @@ const UNEVEN: f64 = 0.02;
 pub struct Packets {
     /// All of them.
     total: u64,
-    /// When those are shown that are not only decoded, in seconds from where the file begins; nothing where it does not tell.
+    /// Times at which those are shown that are not only decoded, in seconds from where the file begins; nothing where it does not tell.
     shown: Vec<Option<f64>>,
-    /// When the last one has been shown, in seconds.
+    /// Time at which the last one has been shown, in seconds.
     end: f64,
     /// Start of the file, in seconds.
     start: f64,
@@ -69,7 +69,7 @@ impl Packets {
         packets
     }
 
-    /// When frames are shown, in order; nothing where the file does not tell of all.
+    /// Times at which frames are shown, in order; nothing where the file does not tell of all.
     pub fn times(&self) -> Vec<f64> {
         let mut times = self.shown.iter().copied().collect::<Option<Vec<f64>>>().unwrap_or_default();
         times.sort_unstable_by(f64::total_cmp);

@@ -47,7 +47,7 @@ pub fn probe(path: &Path) -> Result<Stream> {
     Ok(stream)
 }
 
-/// Says once what a video does not say in a way that is known here.
+/// Warns of facts that a video does not tell in a way that is known here.
 pub fn warn_of(path: &Path, unknown: &[&str]) {
     if !unknown.is_empty() {
         let (path, what) = (path.display(), unknown.join(", "));

@@ -13,7 +13,7 @@ const OPEN: [u8; 8] = [0x01, 0xFF, 0xFF, 0xFF, 0xFF, 0xFF, 0xFF, 0xFF];
 /// Times of frames.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct Times {
-    /// In seconds from the first.
+    /// Seconds from the first frame.
     pub shown: Vec<f64>,
     /// Seconds that the last frame lasts; nothing where nobody knows.
     pub last: Option<f64>,

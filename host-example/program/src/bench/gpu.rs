@@ -6,13 +6,13 @@ use std::time::Instant;
 use super::entry::{Entry, PassEntry};
 use super::timer::Timer;
 use super::{Subject, median, motion};
-use isophote_example::history::Past;
 use isophote_example::kernels::Kernels;
-use isophote_example::plan_runner::PlanRunner;
+use isophote_example::plan_runner::{ALL, PlanRunner};
 use isophote_files::error::{AtPlace, Result};
 use isophote_finishing::stylize::precision::Precision;
 use isophote_finishing::stylize::style::Style;
 use isophote_loader::abi::ISOPHOTE_GUIDE_MOTION;
+use isophote_loader::history::Past;
 use isophote_loader::plan::{Pass, Texture};
 use isophote_loader::{Library, Plan};
 use isophote_pictures::pixels::Pixels;
@@ -118,8 +118,8 @@ impl Bench {
             request.guides = ISOPHOTE_GUIDE_MOTION;
         }
         // Of one that is steady, frames in order of which those before are known.
-        let past = style.past(library, &request)?;
-        Ok((style.plan(library, &request, past.frames)?, past, frames))
+        let past = style.named().past(library, &request)?;
+        Ok((style.named().plan(library, &request, past.frames)?, past, frames))
     }
 
     /// A node that has run on a picture: its first runs compile, and find the frames that others are based on.
@@ -144,7 +144,7 @@ impl Bench {
     fn once(&self, runner: &mut PlanRunner) -> Result<f64> {
         let started = Instant::now();
         let mut encoder = self.gpu.device.create_command_encoder(&Default::default());
-        runner.encode(&mut encoder)?;
+        runner.encode(&mut encoder, ALL)?;
         self.gpu.queue.submit([encoder.finish()]);
         self.gpu.wait()?;
         Ok(started.elapsed().as_secs_f64())

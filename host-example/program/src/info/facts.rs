@@ -13,7 +13,7 @@ pub struct Facts(Vec<Fact>);
 struct Fact {
     name: &'static str,
     value: Value,
-    /// How people are told of it, where the value does not say it well.
+    /// Text for people, where the value does not say it well.
     text: Option<String>,
 }
 

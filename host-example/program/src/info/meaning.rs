@@ -1,4 +1,4 @@
-//! What the numbers of pictures and videos mean.
+//! Facts about the meaning of numbers of pictures and videos.
 
 use serde_json::json;
 

@@ -1,4 +1,4 @@
-//! What is understood of files, as facts for people and for programs.
+//! Facts about files, for people and for programs.
 
 mod facts;
 mod meaning;

@@ -1,4 +1,4 @@
-//! What is understood of a picture, or of the first frame of a sequence.
+//! Facts about a picture, or about the first frame of a sequence.
 
 use std::path::{Path, PathBuf};
 

@@ -1,4 +1,4 @@
-//! What is understood of a scene.
+//! Facts about a scene.
 
 use std::path::Path;
 

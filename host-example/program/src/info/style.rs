@@ -1,4 +1,4 @@
-//! What is understood of a preset or a graph.
+//! Facts about a preset or a graph.
 
 use std::path::Path;
 

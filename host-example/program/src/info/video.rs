@@ -1,4 +1,4 @@
-//! What is understood of a video.
+//! Facts about a video.
 
 use std::path::Path;
 

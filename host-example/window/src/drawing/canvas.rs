@@ -89,7 +89,7 @@ impl Canvas {
         Self { layout, pipeline, settings, bound: None, encode: u32::from(!format.is_srgb()) }
     }
 
-    /// Says what is drawn from now on.
+    /// Changes what is drawn from now on.
     pub fn set(&mut self, device: &wgpu::Device, queue: &wgpu::Queue, arrangement: &Arrangement<'_>) {
         let Arrangement { area, pictures: [left, right], split, exposure, middle, square } = arrangement;
         let place = |area: &Area| [area.x, area.y, area.width.max(1e-3), area.height.max(1e-3)];

@@ -208,8 +208,9 @@ impl LiveLook {
         } else if *done == usize::MAX {
             return Ok(true);
         }
-        let is_whole = stylizer.encode_some(encoder, *done, part.passes)?;
-        *done = if is_whole { usize::MAX } else { *done + part.passes };
+        let end = done.saturating_add(part.passes);
+        let is_whole = stylizer.encode(encoder, *done..end)?;
+        *done = if is_whole { usize::MAX } else { end };
         if is_whole {
             self.shown = Some((stylizer.output().clone(), stylizer.kind(), request.space));
         }
@@ -261,7 +262,7 @@ fn build(job: &BuildJob) -> Result<Ready> {
     precision.apply(&style)?;
     let request = IsophoteRequest { reference_height: style.lengths.reference_height(), ..*request };
     let stylizer = Stylizer::with_request(kernels, library, style, request)?;
-    stylizer.compile_all()?;
+    stylizer.compile_all(kernels, library)?;
     Ok(Ready {
         stylizer,
         recipe: recipe.clone(),

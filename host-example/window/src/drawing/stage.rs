@@ -58,7 +58,7 @@ pub struct Stage {
     passes: usize,
     /// Time that drawing the window took last, where the picture is drawn in parts.
     cost: Duration,
-    /// When the window was drawn last.
+    /// Time at which the window was drawn last.
     drawn: Instant,
 }
 
@@ -441,7 +441,7 @@ impl Stage {
         Ok(is_whole)
     }
 
-    /// Says what lies where on the canvas.
+    /// Places pictures on the canvas.
     fn arrange(&mut self, session: &Session) {
         let Some(source) = self.sources.present() else { return };
         let viewport = &session.viewport;

@@ -80,16 +80,16 @@ fn find(IdleRequest { library, look, request }: &IdleRequest) -> Result<HashSet<
         ..request
     });
     // One frame before shows what all show.
-    let known = style.past(library, &request)?.frames.min(1);
-    let now = Work::of(&style.plan(library, &request, known)?);
+    let known = style.named().past(library, &request)?.frames.min(1);
+    let now = Work::of(&style.named().plan(library, &request, known)?);
     for parameter in look.parameters(library)? {
         let present = look.value(&parameter);
         let set = |value: &Value| value.put(&style.graph, parameter.node, parameter.param.id);
         let has_effect = present.others(&parameter.param.kind).iter().any(|other| {
             set(other).is_ok() && {
-                let known = style.past(library, &request).map_or(0, |past| past.frames.min(1));
+                let known = style.named().past(library, &request).map_or(0, |past| past.frames.min(1));
                 // What cannot be planned is at least not the same.
-                style.plan(library, &request, known).map_or(true, |plan| Work::of(&plan) != now)
+                style.named().plan(library, &request, known).map_or(true, |plan| Work::of(&plan) != now)
             }
         });
         let is_back = set(&present).is_ok();

@@ -13,7 +13,7 @@ use isophote_files::error::{Error, Result};
 /// Time between two looks at the files.
 const PAUSE: Duration = Duration::from_millis(500);
 
-/// When a file was written and how long it is; none where there is none.
+/// Time at which a file was written, and its length; none where there is none.
 type Stamp = Option<(SystemTime, u64)>;
 
 /// A thread that looks at files twice a second and wakes the window when one has changed.

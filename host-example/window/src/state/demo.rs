@@ -6,6 +6,7 @@ use std::f32::consts::TAU;
 use glam::{Quat, Vec2, Vec3, Vec4};
 
 use isophote_files::error::Result;
+use isophote_scene::animation::hermite;
 use isophote_scene::geometry::smooth_normals;
 use isophote_scene::{Image, Material, Mesh, Primitive, Sampler, Scene, Texture, TextureUse, Vertex};
 
@@ -288,7 +289,7 @@ fn turned(name: &str, stuff: Stuff, place: Vec3, outline: &[(f32, f32)]) -> Mesh
     mesh(name, stuff, vertices, indices.chunks(3).flat_map(|c| [c[0], c[2], c[1]]).collect())
 }
 
-/// Points on a curve through those given (Catmull-Rom).
+/// Points on a spline through those given.
 fn smooth(outline: &[(f32, f32)]) -> Vec<Vec2> {
     const STEPS: usize = 5;
     let at = |index: isize| {
@@ -299,12 +300,10 @@ fn smooth(outline: &[(f32, f32)]) -> Vec<Vec2> {
     for index in 0..outline.len() as isize - 1 {
         let [a, b, c, d] = [-1, 0, 1, 2].map(|offset| at(index + offset));
         for step in 0..STEPS {
-            let t = step as f32 / STEPS as f32;
-            let curve = b * 2.0
-                + (c - a) * t
-                + (a * 2.0 - b * 5.0 + c * 4.0 - d) * t * t
-                + (b * 3.0 - a - c * 3.0 + d) * t * t * t;
-            points.push((curve * 0.5).max(Vec2::new(0.0, f32::MIN)));
+            let [first, leaving, second, arriving] = hermite(step as f32 / STEPS as f32);
+            // Slopes are those between the neighbours.
+            let curve = b * first + (c - a) * 0.5 * leaving + c * second + (d - b) * 0.5 * arriving;
+            points.push(curve.max(Vec2::new(0.0, f32::MIN)));
         }
     }
     points.push(at(outline.len() as isize - 1));

@@ -27,12 +27,12 @@ pub struct Notes {
 }
 
 impl Notes {
-    /// Says that something was done.
+    /// Adds a note of something that was done.
     pub fn say(&mut self, text: impl Into<String>) {
         self.add(text.into(), false);
     }
 
-    /// Says what went wrong, here and where the program was started.
+    /// Adds a note of what went wrong, here and where the program was started.
     pub fn complain(&mut self, error: &Error) {
         let text = error.to_string();
         if self.notes.iter().any(|note| note.text == text) {

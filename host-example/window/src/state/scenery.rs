@@ -11,7 +11,7 @@ use isophote_render::background::Background;
 use isophote_render::lighting::Lighting as Light;
 use isophote_scene::Scene;
 use isophote_scene::animation::Animation;
-use isophote_scene::camera::{self, Direction, Framing, Orbit, View};
+use isophote_scene::camera::{self, Direction, Framing, Orbit, View, Viewpoint};
 use isophote_scene::pose::Pose;
 
 /// Camera, light and ground that a scene is shown with.
@@ -94,9 +94,7 @@ pub struct Scenery {
     /// The camera that light was placed by.
     first_view: View,
     framing: Framing,
-    orbit: Orbit,
-    /// Node of the camera of the file that is looked through.
-    through: Option<usize>,
+    viewpoint: Viewpoint,
     /// Node of the one that a key looks through.
     file_camera: Option<usize>,
     time: f32,
@@ -108,18 +106,16 @@ impl Scenery {
     pub fn new(scene: Scene, staging: Staging, aspect: f32) -> Self {
         let Staging { framing, camera, lighting, ground, reading } = staging;
         let pose = Pose::at_rest(&scene);
-        let orbit = Orbit::framing(&scene, aspect, framing);
-        let from_file = camera.and_then(|node| View::from_node(&scene, &pose, node));
-        let first_view = from_file.unwrap_or_else(|| orbit.view());
+        let viewpoint = Viewpoint { node: camera, orbit: Orbit::framing(&scene, aspect, framing) };
+        let first_view = viewpoint.view(&scene, &pose);
         let mut scenery = Self {
             playing: !scene.animations.is_empty(),
             animation: 0,
             light: Light::default(),
-            through: camera,
             file_camera: camera.or_else(|| camera::file_camera(&scene)),
             first_view,
             framing,
-            orbit,
+            viewpoint,
             pose,
             lighting,
             ground,
@@ -188,8 +184,8 @@ impl Scenery {
 
     /// Frames the whole scene.
     pub fn frame_all(&mut self, aspect: f32) {
-        self.orbit = Orbit::framing(&self.scene, aspect, self.framing);
-        self.through = None;
+        let orbit = Orbit::framing(&self.scene, aspect, self.framing);
+        self.viewpoint = Viewpoint { node: None, orbit };
     }
 
     /// Nodes of the cameras of the file, with their names.
@@ -202,7 +198,7 @@ impl Scenery {
 
     /// Node of the camera of the file that is looked through.
     pub fn camera(&self) -> Option<usize> {
-        self.through
+        self.viewpoint.node
     }
 
     /// Looks through a camera of the file, or through one that the mouse turns.
@@ -210,47 +206,47 @@ impl Scenery {
         if node.is_none() {
             self.orbit();
         }
-        self.through = node;
+        self.viewpoint.node = node;
     }
 
     /// Looks through the file's camera, where it has one.
     pub fn use_file_camera(&mut self) {
-        self.through = self.file_camera;
+        self.viewpoint.node = self.file_camera;
     }
 
     /// The camera that the mouse turns. It takes over from where the file's camera stands.
     pub fn orbit(&mut self) -> &mut Orbit {
-        if let Some(view) =
-            self.through.take().and_then(|node| View::from_node(&self.scene, &self.pose, node))
-        {
-            let offset = view.eye() - self.orbit.target;
+        let Viewpoint { node, orbit } = &mut self.viewpoint;
+        if let Some(view) = node.take().and_then(|node| View::from_node(&self.scene, &self.pose, node)) {
+            let offset = view.eye() - orbit.target;
             let distance = offset.length();
             if distance.is_finite() && distance > 0.0 {
-                self.orbit.distance = distance;
-                self.orbit.azimuth = offset.x.atan2(offset.z);
-                self.orbit.elevation = (offset.y / distance).clamp(-1.0, 1.0).asin();
+                orbit.distance = distance;
+                orbit.azimuth = offset.x.atan2(offset.z);
+                orbit.elevation = (offset.y / distance).clamp(-1.0, 1.0).asin();
             }
         }
-        &mut self.orbit
+        orbit
     }
 
     /// Place of the camera that the mouse turns, in a picture of this aspect.
     pub fn framed(&self, aspect: f32) -> Framed {
         let usual = Framing::default();
+        let orbit = &self.viewpoint.orbit;
         let framing = Framing {
-            direction: Direction { azimuth: self.orbit.azimuth, elevation: self.orbit.elevation },
+            direction: Direction { azimuth: orbit.azimuth, elevation: orbit.elevation },
             distance: 1.0,
             target: None,
             ..self.framing
         };
         let fitting = Orbit::framing(&self.scene, aspect, framing);
-        let azimuth = self.orbit.azimuth - usual.direction.azimuth;
-        let aside = (fitting.target - self.orbit.target).length();
+        let azimuth = orbit.azimuth - usual.direction.azimuth;
+        let aside = (fitting.target - orbit.target).length();
         Framed {
             azimuth: azimuth.to_degrees(),
-            elevation: self.orbit.elevation.to_degrees(),
-            distance: (self.orbit.distance / fitting.distance).clamp(0.1, 100.0),
-            target: (aside > 1e-4 * self.orbit.distance).then_some(self.orbit.target),
+            elevation: orbit.elevation.to_degrees(),
+            distance: (orbit.distance / fitting.distance).clamp(0.1, 100.0),
+            target: (aside > 1e-4 * orbit.distance).then_some(orbit.target),
             fov: (self.framing.vertical_fov != usual.vertical_fov)
                 .then(|| self.framing.vertical_fov.to_degrees()),
         }
@@ -260,8 +256,7 @@ impl Scenery {
     /// elsewhere by itself.
     pub fn sun_from_here(&self) -> Option<Direction> {
         let rest = Pose::at_rest(&self.scene);
-        let through = self.through.and_then(|node| View::from_node(&self.scene, &rest, node));
-        let view = through.unwrap_or_else(|| self.orbit.view());
+        let view = self.viewpoint.view(&self.scene, &rest);
         let environment = self.lighting.background.environment();
         let usual = Light::for_scene(&self.scene, &rest, &view, None, environment).sun_direction;
         if usual.abs_diff_eq(self.light.sun_direction, 1e-3) {
@@ -286,7 +281,6 @@ impl Scenery {
 
     /// View from where the camera is.
     pub fn view(&self) -> View {
-        let through = self.through.and_then(|node| View::from_node(&self.scene, &self.pose, node));
-        through.unwrap_or_else(|| self.orbit.view())
+        self.viewpoint.view(&self.scene, &self.pose)
     }
 }

@@ -45,7 +45,7 @@ pub fn show(context: &Context, session: &mut Session) {
     context.request_repaint();
 }
 
-/// Says what would be lost, or what is waited for.
+/// Lists what would be lost, or what is waited for.
 fn reasons(ui: &mut Ui, session: &Session) {
     let mut say = |text: String| ui.add(egui::Label::new(text).wrap());
     let percent = session.work.exported.map(|share| format!("{:.0} %", (share * 100.0).floor()));

@@ -109,7 +109,7 @@ pub struct Kept {
     pub image: ImageId,
 }
 
-/// When images are needed no longer.
+/// Ends of the use of images.
 #[derive(Clone, Debug, Default, PartialEq, Eq)]
 pub struct Lifetimes {
     /// By pass: the images whose last use it is.
@@ -191,7 +191,7 @@ impl Plan {
         self.images[image.index()]
     }
 
-    /// When each image is needed no longer.
+    /// Ends of the use of its images.
     pub fn lifetimes(&self) -> &Lifetimes {
         &self.lifetimes
     }

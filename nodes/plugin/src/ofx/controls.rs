@@ -23,7 +23,7 @@ use std::ptr::null_mut;
 /// Side of the picture that plans are compared for.
 const SIDE: u32 = 1024;
 
-/// Says everything of a new instance, which may have the values of a saved project.
+/// Tells the host everything of a new instance, which may have the values of a saved project.
 pub fn created(effect: &Effect, host: &Host, instance: Handle) -> Outcome {
     // Some hosts have no values yet; the descriptor's word and all controls then stand.
     if let Ok(settings) = refresh(effect, host, instance, 0.0, true) {
@@ -32,7 +32,7 @@ pub fn created(effect: &Effect, host: &Host, instance: Handle) -> Outcome {
     Ok(kOfxStatOK)
 }
 
-/// Says what has become other, by what changed.
+/// Tells the host what has become other, by what changed.
 ///
 /// The user, and the host in the user's place (a paste, an undo, a script), may change anything. A clip that is
 /// connected changes which controls have an effect and, where it stands for an estimate, whether tiles may be rendered. Another time changes values that are animated: nothing
@@ -74,7 +74,7 @@ fn notice(host: &Host, instance: Handle, settings: &Settings, aloud: bool) {
 
 const ONE_FRAME: &str = "This host gives effects one frame at a time. Steadiness needs the frames around it and has no effect here.";
 
-/// Says which controls have an effect and, where `tiles`, whether tiles may be rendered.
+/// Tells the host which controls have an effect and, where `tiles`, whether tiles may be rendered.
 fn refresh(effect: &Effect, host: &Host, instance: Handle, time: f64, tiles: bool) -> Outcome<Settings> {
     let settings = Settings::read(effect, host, instance, time)?;
     if tiles {

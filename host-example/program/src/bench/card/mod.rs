@@ -104,7 +104,7 @@ struct Setup<'a> {
 }
 
 impl Card {
-    /// Says what comes next, does it, and notes why it could not be done.
+    /// Prints the name of a step, does it, and notes why it could not be done.
     fn step<T>(&mut self, what: &str, step: impl FnOnce() -> Result<T>) -> Result<Option<T>> {
         output::print(&format!("{what}\n"))?;
         let done = step();

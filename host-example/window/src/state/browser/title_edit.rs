@@ -28,7 +28,7 @@ pub struct TitleEdit {
 }
 
 impl Words {
-    /// Those of a title.
+    /// Words of a title.
     pub fn of(name: &str, title: &Title) -> Self {
         let about = title.about.clone().unwrap_or_default();
         Self { name: name.to_owned(), about, tags: title.tags.join(", ") }

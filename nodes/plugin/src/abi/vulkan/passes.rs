@@ -343,7 +343,7 @@ impl Slot {
     }
 }
 
-/// Says which passes must wait: those that read what was written since the last wait, or write what was used since.
+/// Marks the passes that must wait: those that read what was written since the last wait, or write what was used since.
 fn order(passes: &mut [Pass]) {
     let (mut read, mut written) = (Vec::new(), Vec::new());
     for pass in passes {

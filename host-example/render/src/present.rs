@@ -1,9 +1,10 @@
-//! The pass that puts the picture of a frame on the window.
+//! Presentation: the pass that puts the picture of a frame on a window.
 
-use isophote_render::layouts::{self, bind_view};
-use isophote_render::pipelines;
+use crate::layouts::{self, bind_view};
+use crate::pipelines;
 
 /// The pass, with the picture that it binds.
+#[derive(Debug)]
 pub struct Present {
     layout: wgpu::BindGroupLayout,
     pipeline: wgpu::RenderPipeline,
@@ -15,7 +16,8 @@ impl Present {
     pub fn new(device: &wgpu::Device, format: wgpu::TextureFormat, picture: &wgpu::TextureView) -> Self {
         let is_grey = picture.texture().format() == wgpu::TextureFormat::R32Float;
         let constants = format!("const IS_GREY = {is_grey};\nconst WANTS_ENCODED = {};\n", !format.is_srgb());
-        let module = pipelines::module(device, "present", &[&constants, include_str!("present.wgsl")]);
+        let module =
+            pipelines::module(device, "present", &[&constants, include_str!("../shaders/present.wgsl")]);
         let sampled = wgpu::TextureSampleType::Float { filterable: false };
         let layout = device.create_bind_group_layout(&wgpu::BindGroupLayoutDescriptor {
             label: Some("present"),
