@@ -39,7 +39,11 @@ impl ApplyArgs {
             }
             return Ok(false);
         }
-        if Pattern::new(files.input)?.is_none() || &*files.output == Path::new("-") {
+        if &*files.output == Path::new("-") {
+            let fix = "name a video such as out.mp4";
+            return Err(Error::input("-", "is for videos that are made of videos", fix));
+        }
+        if Pattern::new(files.input)?.is_none() {
             return Err(super::on_video::unlike(files));
         }
         let others = [
