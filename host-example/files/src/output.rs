@@ -2,6 +2,7 @@
 
 use std::fmt::Display;
 use std::io::{ErrorKind, Write};
+use std::sync::{Mutex, MutexGuard, PoisonError};
 
 use isophote_loader::printable;
 
@@ -29,8 +30,26 @@ pub fn printed(result: std::io::Result<()>) -> Result<()> {
     }
 }
 
+/// Warnings that are kept instead of being printed, while somebody wants them.
+static KEPT: Mutex<Option<Vec<String>>> = Mutex::new(None);
+
+fn kept() -> MutexGuard<'static, Option<Vec<String>>> {
+    KEPT.lock().unwrap_or_else(PoisonError::into_inner)
+}
+
+/// The result of some work, with its warnings, which are not printed.
+pub fn with_warnings<T>(work: impl FnOnce() -> T) -> (T, Vec<String>) {
+    *kept() = Some(Vec::new());
+    let result = work();
+    (result, kept().take().unwrap_or_default())
+}
+
 /// Prints a warning on a line of standard error.
 pub fn warn(warning: impl Display) {
+    if let Some(kept) = kept().as_mut() {
+        kept.push(warning.to_string());
+        return;
+    }
     // Where nobody can be warned the work goes on.
     let _ = writeln!(std::io::stderr(), "warning: {}", printable(&warning.to_string()));
 }

@@ -15,6 +15,7 @@ use embedded_graphics::text::{Baseline, Text};
 use image::imageops::{FilterType, resize};
 use image::{ImageBuffer, Rgb, RgbImage, Rgba};
 
+use crate::apply::square;
 use isophote_files::error::{Error, Result};
 use isophote_files::files::{self, Existing};
 use isophote_pictures::convert::Conversion;
@@ -66,11 +67,12 @@ pub fn cells(path: &Path, label: &str, width: u32) -> Result<Vec<Cell>> {
         let whole = ImageBuffer::<Rgba<f32>, _>::from_raw(wide, high, numbers).ok_or_else(|| {
             Error::file(path, "does not hold as many pixels as it says", "use an intact file")
         })?;
-        let high = (u64::from(high) * u64::from(width) / u64::from(wide)).clamp(1, 1 << 16) as u32;
+        let across = f64::from(wide) * square::aspect(&picture.meaning);
+        let down = ((f64::from(high) * f64::from(width) / across) as u32).clamp(1, 1 << 16);
         // Enlarged pixels are to be seen, reduced ones to be averaged.
-        let filter = if width > wide { FilterType::Nearest } else { FilterType::Triangle };
-        let small = resize(&whole, width, high, filter);
-        let picture = RgbImage::from_fn(width, high, |x, y| {
+        let filter = if width > wide && down >= high { FilterType::Nearest } else { FilterType::Triangle };
+        let small = resize(&whole, width, down, filter);
+        let picture = RgbImage::from_fn(width, down, |x, y| {
             let Rgba([r, g, b, a]) = *small.get_pixel(x, y);
             let over = |c: f32, ground: u8| (c * 255.0 + (1.0 - a) * f32::from(ground) + 0.5) as u8;
             Rgb([over(r, GROUND[0]), over(g, GROUND[1]), over(b, GROUND[2])])

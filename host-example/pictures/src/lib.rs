@@ -20,7 +20,7 @@
 pub mod cicp;
 mod colours;
 pub mod convert;
-mod display;
+pub mod display;
 mod exif;
 pub mod exr;
 pub mod floats;

@@ -219,6 +219,18 @@ fn a_run_that_goes_well_says_one_line_unless_it_is_to_be_quiet() {
     let (said, _) = succeeds(&mut run(at, &render));
     assert!(said.starts_with("t.png: 32x24, ") && said.lines().count() == 1, "{said}");
     assert_eq!(succeeds(run(at, &render).arg("--quiet")).0, "");
+    // A folder gets pictures with the scene's name.
+    let (said, _) = succeeds(&mut run(at, &["render", "triangle.gltf", "new/", "--size", "32x24"]));
+    assert!(said.contains("triangle.png: 32x24, ") && at.join("new/triangle.png").is_file(), "{said}");
+    fails(
+        &mut run(at, &["render", "triangle.gltf", "new", "--size", "32x24"]),
+        2,
+        &["triangle.png", "--force"],
+    );
+    succeeds(&mut run(at, &["render", "triangle.gltf", "new", "--size", "32x24", "--frames", "2"]));
+    assert!(at.join("new/triangle.0002.png").is_file());
+    fails(&mut run(at, &["render", "triangle.gltf", "other/", "--encode", "-c:v ffv1"]), 2, &["--encode"]);
+    assert!(!at.join("other").exists());
 }
 
 #[test]
@@ -226,9 +238,10 @@ fn a_video_that_is_to_be_a_picture_is_told_what_to_name() {
     let Some(folder) = video_folder() else { return };
     fs::write(folder.path().join("clip.mp4"), "no video yet").expect("a file");
     let to_picture = ["apply", "ink", "clip.mp4", "out.png"];
-    fails(&mut run(folder.path(), &to_picture), 2, &["out.mp4", "ffmpeg -i clip.mp4", "out.####.png"]);
-    let to_video = ["apply", "ink", "shot.####.png", "out.mp4"];
-    fails(&mut run(folder.path(), &to_video), 2, &["out.####.png", "ffmpeg", "out.mp4"]);
+    fails(&mut run(folder.path(), &to_picture), 2, &["out.mp4", "a video has many", "out.####.png"]);
+    save(folder.path(), &["shot.png"]);
+    let to_video = ["apply", "ink", "shot.png", "out.mp4"];
+    fails(&mut run(folder.path(), &to_video), 2, &["out.mp4", "shot.####.png", "out.png"]);
 }
 
 #[test]

@@ -14,6 +14,7 @@ use isophote_finishing::apply::backend::Backend;
 use isophote_finishing::apply::filter::{self, Filter, MaskedStyle};
 use isophote_finishing::apply::frame_cache::{CachedFrame, Window};
 use isophote_finishing::apply::memory::Budget;
+use isophote_finishing::apply::square;
 use isophote_finishing::stylize::style::Style;
 use isophote_loader::abi::IsophoteRequest;
 use isophote_loader::history::Past;
@@ -66,7 +67,8 @@ fn applied(path: &Path, name: &str, space: Option<Space>, backend: Backend) -> P
     let library = library();
     let style = Style::load(&library, name, &[]).expect("a style");
     let wanted = filter::usable_guides(&library, &style).expect("the library answers");
-    let source = read::read(path, &Selection { wanted, ..Selection::default() }).expect("a picture");
+    let mut source = read::read(path, &Selection { wanted, ..Selection::default() }).expect("a picture");
+    square::make(&library, "picture", &mut source).expect("square pixels");
     let budget = Budget::new(u64::MAX, 1);
     let format = if source.exr.is_some() { Format::Exr } else { Format::Tiff };
     let own = Arc::new(CachedFrame::new(None, source, true, budget.share()));
@@ -156,6 +158,9 @@ fn is_the_same(path: &Path, space: Option<Space>) -> Arc<Frame> {
     // It reads colour, normals, depth and object numbers.
     let expected = applied(path, "cartoon", space, Backend::Cpu);
     let made = stylized(&frame, "cartoon", (expected.channels(), expected.precision()));
+    let mut source = read::read(path, &Selection::default()).expect("a picture");
+    square::make(&library(), "picture", &mut source).expect("square pixels");
+    let made = square::unmake(&library(), "picture", &source.pictures[0], made).expect("the file's pixels");
     assert!(made == expected, "{} is another picture", path.display());
     frame
 }
@@ -208,6 +213,37 @@ fn pictures_are_what_apply_hands_over() {
     let light = is_the_same(&at("light.tif"), Some(Space::Acescg));
     assert_eq!((light.request.space, light.replaced), (Space::Acescg, 1));
     is_the_same(&at("rgb.png"), Some(Space::Linear));
+}
+
+#[test]
+fn cases_of_pixels_that_are_not_square_are_shown_as_square_ones() {
+    let folder = folder();
+    library();
+    let case = support::root().join("tests/data/cases/pixel_aspect");
+    let name = b"pixelAspectRatio\0float\0\x04\0\0\0";
+    let bytes = fs::read(case.join("imp2.exr")).expect("the case");
+    let at = bytes.windows(name.len()).position(|b| b == name).expect("an aspect") + name.len();
+    for aspect in [2.0_f32, 0.5] {
+        let path = folder.path().join(format!("{aspect}.exr"));
+        let mut bytes = bytes.clone();
+        bytes[at..at + 4].copy_from_slice(&aspect.to_le_bytes());
+        fs::write(&path, bytes).expect("the folder is writable");
+        let source = read::read(&path, &Selection::default()).expect("a picture");
+        let own = &source.pictures[0].pixels;
+        let frame = is_the_same(&path, None);
+        let shape = frame.width as f32 / frame.height as f32;
+        assert_eq!(shape, own.width() as f32 / own.height() as f32 * aspect);
+        // Looks at any size know how high full-size pixels are.
+        let usual = library().request((1, 1)).expect("a request");
+        assert_eq!(frame.request_of_all(1.0, usual).scale, frame.height as f32 / own.height() as f32);
+    }
+    if has_ffmpeg() {
+        let document = Document::open(&case.join("sar.mp4"), &Options::default()).expect("a video");
+        let frame = document.wait(1).expect("a frame");
+        // 720 by 480 pixels that are 8 wide and 9 high.
+        let shape = f64::from(frame.width) / f64::from(frame.height);
+        assert!((shape - 4.0 / 3.0).abs() < 0.01, "{}x{}", frame.width, frame.height);
+    }
 }
 
 /// A frame of the cube with everything that `render` knows.

@@ -240,6 +240,33 @@ fn scenes_videos_and_presets_tell_what_they_hold() {
 }
 
 #[test]
+fn warnings_are_told_once() {
+    let folder = folder();
+    let told = |file: &Path, words: &str| {
+        for json in [true, false] {
+            let mut command = isophote();
+            let (text, errors) =
+                succeeds(command.arg("info").arg(file).args(Some("--json").filter(|_| json)));
+            assert_eq!((text.matches(words).count(), errors.as_str()), (1, ""), "{text}");
+        }
+        assert_eq!(info(file)["warnings"].as_array().map(Vec::len), Some(1));
+    };
+    let case = root().join("tests/data/cases/exr_color_interop/c_srgbid.exr");
+    let name = b"colorInteropID\0string\0";
+    let mut bytes = fs::read(case).expect("the case");
+    let at = bytes.windows(name.len()).position(|b| b == name).expect("an id") + name.len() + 4;
+    bytes[at..at + 2].copy_from_slice(b"zz");
+    for number in [1, 2] {
+        fs::write(folder.path().join(format!("a.{number}.exr")), &bytes).expect("the folder is writable");
+    }
+    told(&folder.path().join("a.1.exr"), "is not known");
+    told(&folder.path().join("a.#.exr"), "is not known");
+    if has_ffmpeg() {
+        told(&root().join("tests/data/cases/video_interlaced/inter.mp4"), "is interlaced");
+    }
+}
+
+#[test]
 fn files_that_are_missing_or_damaged_are_told() {
     let folder = folder();
     let file = |name: &str| {

@@ -20,10 +20,12 @@ fn a_saved_preset_gives_what_its_settings_give() {
     let folder = folder();
     let run = |arguments: &[&str]| succeeds(isophote().current_dir(folder.path()).args(arguments));
     picture(48, 32).save(folder.path().join("in.png")).expect("the picture can be written");
-    preset(
+    let said = preset(
         folder.path(),
         &["save", "cartoon", "a.json", "--set", "posterize=3", "--set", "line_color=#aa2200"],
     );
+    assert_eq!(said, "a.json: cartoon with 2 parameters\n");
+    assert_eq!(preset(folder.path(), &["save", "cartoon", "quiet.json", "--quiet"]), "");
     // A preset is the start of another, and everything may be written out.
     preset(folder.path(), &["save", "a.json", "b.json", "--all", "--set", "sigma_d=2"]);
     run(&["apply", "b.json", "in.png", "by_preset.png", "--backend", "cpu"]);

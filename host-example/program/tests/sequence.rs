@@ -1,5 +1,5 @@
 //! `apply` on sequences: which frames, what is skipped, what is left when it is stopped, and presets with
-//! keyframes.
+//! keyframes; and from videos to sequences and back.
 
 mod support;
 
@@ -10,7 +10,8 @@ use std::time::{Duration, Instant};
 
 use serde_json::Value;
 
-use support::{IN_PIXELS, fails, folder, isophote, listing, succeeds};
+use support::video::{case, clip, difference, ffmpeg, probe};
+use support::{IN_PIXELS, fails, folder, isophote, listing, succeeds, video_folder};
 
 /// Writes frames that differ; returns their names.
 fn frames(folder: &Path, numbers: impl Iterator<Item = u32>, size: usize) -> Vec<String> {
@@ -382,4 +383,95 @@ fn farm_templates_run_the_command() {
     fails(&mut farm(&["--", "apply", "gaussian", "in.0001.exr", "o.exr"]), 2, &["is no sequence"]);
     fails(&mut farm(&["--", "nodes"]), 2, &["is not apply"]);
     fails(&mut farm(&["--", "apply"]), 2, &["the command", "is wrong"]);
+}
+
+#[test]
+fn frames_of_a_video_become_numbered_pictures() {
+    let Some(folder) = video_folder() else { return };
+    let at = folder.path();
+    clip(at, "video.mp4", "-pix_fmt yuv420p -t 0.2");
+    let (text, warnings) = succeeds(&mut apply(at, &["gaussian", "video.mp4", "out.####.png"]));
+    assert!(text.contains("6 frames written") && text.contains("out.####.png"), "{text}");
+    assert!(warnings.contains("sound") && warnings.lines().count() == 1, "{warnings}");
+    // The same as of pictures that ffmpeg takes out.
+    ffmpeg(
+        at,
+        "-i video.mp4 -vf scale=flags=bicubic+accurate_rnd+full_chroma_int+full_chroma_inp -pix_fmt rgb24 in.%04d.png",
+    );
+    succeeds(&mut apply(at, &["gaussian", "in.####.png", "own.####.png"]));
+    for number in 1..=6 {
+        let open = |name: &str| image::open(at.join(format!("{name}.000{number}.png"))).expect("a picture");
+        let [made, own] = [open("out"), open("own")];
+        assert_eq!((made.color(), made.width()), (own.color(), 160));
+        let sum: u64 =
+            made.as_bytes().iter().zip(own.as_bytes()).map(|(a, b)| u64::from(a.abs_diff(*b))).sum();
+        assert!(sum < made.as_bytes().len() as u64, "frame {number} differs by {sum}");
+    }
+    let before = listing(at);
+    assert!(
+        before.contains(&"out.0006.png".into()) && !before.contains(&"out.0007.png".into()),
+        "{before:?}"
+    );
+    // A run that was interrupted goes on, and nothing is replaced unasked.
+    fails(&mut apply(at, &["ink", "video.mp4", "out.####.png"]), 2, &["out.0001.png", "--skip-existing"]);
+    fs::remove_file(at.join("out.0004.png")).expect("a picture");
+    let (text, _) = succeeds(&mut apply(at, &["ink", "video.mp4", "out.####.png", "--skip-existing"]));
+    assert!(text.contains("1 frames written") && text.contains("5 there already"), "{text}");
+    assert_eq!(listing(at), before);
+    let few = ["ink", "video.mp4", "few.%03d.exr", "--frames", "2,4"];
+    succeeds(&mut apply(at, &few));
+    let made: Vec<String> = listing(at).into_iter().filter(|name| name.starts_with("few")).collect();
+    assert_eq!(made, ["few.002.exr", "few.004.exr"]);
+    fails(&mut apply(at, &["ink", "video.mp4", "far.#.jpg", "--frames", "9"]), 2, &["video.mp4", "frame 6"]);
+    let (_, warnings) = succeeds(&mut apply(
+        at,
+        &["ink", case("video_vfr/vfr.mp4").to_str().expect("a name"), "vfr.###.jpg", "--frames", "1"],
+    ));
+    assert!(warnings.contains("unequally long"), "{warnings}");
+    succeeds(&mut apply(
+        at,
+        &["ink", case("pixel_aspect/sar.mp4").to_str().expect("a name"), "sar.#.png", "--frames", "1"],
+    ));
+    let source =
+        isophote_pictures::read::read(&at.join("sar.1.png"), &Default::default()).expect("a picture");
+    assert!((source.pictures[0].meaning.pixel_aspect - 8.0 / 9.0).abs() < 0.001);
+}
+
+#[test]
+fn numbered_pictures_become_a_video() {
+    let Some(folder) = video_folder() else { return };
+    let at = folder.path();
+    clip(at, "video.mp4", "-pix_fmt yuv420p -t 0.2");
+    ffmpeg(at, "-i video.mp4 in.%04d.png");
+    let before = listing(at);
+    for (args, words) in [
+        (&["ink", "in.0001.png", "out.mp4"][..], &["out.mp4", "numbered pictures"][..]),
+        (&["ink", "in.####.png", "-"], &["made of videos", "out.mp4"]),
+        (&["ink", "in.####.png", "out.####.png", "--fps", "9"], &["--fps"]),
+        (&["ink", "in.####.png", "out.mp4", "--fps", "0"], &["--fps"]),
+        (&["ink", "in.####.png", "out.mp4", "--into", "a"], &["--into"]),
+        (&["ink", "in.####.png", "no/out.mp4"], &["no/out.mp4"]),
+        (&["ink", "in.####.png", "out.mp4", "--frames", "5-7"], &["in.####.png", "7"]),
+    ] {
+        fails(&mut apply(at, args), 2, words);
+    }
+    assert_eq!(listing(at), before, "nothing half-written is left");
+    let film = ["gaussian", "in.####.png", "out.mp4", "--set", "sigma=0", "--fps", "12"];
+    let (text, _) = succeeds(&mut apply(at, &film));
+    assert!(text.contains("6 frames written") && text.contains("out.mp4"), "{text}");
+    assert_eq!(probe(&at.join("out.mp4"), "v:0", "width,height,r_frame_rate,nb_frames"), "160,90,12/1,6");
+    let difference = difference(at, "video.mp4", "out.mp4");
+    assert!(difference < 3.0, "{difference} of 255");
+    fails(&mut apply(at, &film), 2, &["out.mp4", "--force"]);
+    succeeds(&mut apply(at, &[&film[..], &["--skip-existing"]].concat()));
+    // Pixels keep their shape, and masks and steadiness know the frames.
+    fs::copy(case("pixel_aspect/imp2.exr"), at.join("wide.1.exr")).expect("the folder is writable");
+    fs::copy(case("pixel_aspect/imp2.exr"), at.join("wide.2.exr")).expect("the folder is writable");
+    let steady = ["--steadiness", "0.5", "--motion", "estimate"];
+    succeeds(&mut apply(at, &[&["cartoon", "wide.#.exr", "wide.mkv"][..], &steady].concat()));
+    assert_eq!(probe(&at.join("wide.mkv"), "v:0", "sample_aspect_ratio,r_frame_rate"), "2:1,24/1");
+    let mut job = isophote();
+    job.current_dir(at).args(["farm", "openjd", "--", "apply", "ink", "in.####.png", "job.mp4"]);
+    let output = job.output().expect("the program runs");
+    assert!(!output.status.success(), "frames of one video are shared by jobs");
 }

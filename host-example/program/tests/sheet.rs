@@ -5,7 +5,7 @@ mod support;
 use std::path::Path;
 
 use image::{Rgb, RgbImage};
-use support::{fails, folder, isophote, listing, succeeds};
+use support::{fails, folder, isophote, listing, root, succeeds};
 
 const GROUND: Rgb<u8> = Rgb([46, 46, 48]);
 
@@ -41,6 +41,15 @@ fn pictures_stand_side_by_side_over_their_names() {
     let named =
         sheet(folder.path(), &["u.png", "a.png", "b.png", "--width", "40", "--columns", "1", "--label", "x"]);
     assert_ne!(below, named);
+}
+
+#[test]
+fn cases_of_pixels_that_are_not_square_have_their_shape() {
+    let folder = folder();
+    let case = root().join("tests/data/cases/pixel_aspect/imp2.exr");
+    let shown = sheet(folder.path(), &["s.png", case.to_str().expect("a name"), "--width", "80"]);
+    // As wide as they are high, of pixels twice as wide as high.
+    assert_eq!(shown.dimensions(), (12 + 92, 12 + 40 + 26));
 }
 
 #[test]

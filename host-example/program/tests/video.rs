@@ -3,58 +3,16 @@
 mod support;
 
 use std::fs;
-use std::path::{Path, PathBuf};
+use std::path::Path;
 use std::process::{Command, Stdio};
 
+use support::video::{case, clip, difference, ffmpeg, probe};
 use support::{IN_PIXELS, fails, isophote, listing, root, succeeds, video_folder};
-
-fn ffmpeg(folder: &Path, args: &str) {
-    let mut command = Command::new("ffmpeg");
-    succeeds(command.current_dir(folder).args(["-v", "error", "-y"]).args(args.split(' ')));
-}
-
-/// Output of ffprobe about a stream.
-fn probe(file: &Path, stream: &str, entries: &str) -> String {
-    let mut command = Command::new("ffprobe");
-    command.args(["-v", "error", "-select_streams", stream, "-show_entries", &format!("stream={entries}")]);
-    succeeds(command.args(["-of", "csv=p=0"]).arg(file)).0.trim().to_owned()
-}
-
-/// A second of moving stripes with a tone.
-fn clip(folder: &Path, name: &str, more: &str) {
-    let source = "-f lavfi -i testsrc2=s=160x90:r=30000/1001:d=1,eq=saturation=0.2:contrast=0.7 -f lavfi -i sine=f=440:d=1";
-    ffmpeg(folder, &format!("{source} -c:v libx264 -qp 0 -c:a aac {more} {name}"));
-}
 
 fn apply(folder: &Path, args: &[&str]) -> Command {
     let mut command = isophote();
     command.current_dir(folder).arg("apply").args(args).args(IN_PIXELS).args(["--backend", "cpu"]);
     command
-}
-
-/// Mean difference of the lightness of two videos, of 255.
-fn difference(folder: &Path, a: &str, b: &str) -> f64 {
-    let frames = |name: &str| {
-        let mut command = Command::new("ffmpeg");
-        command.current_dir(folder).args([
-            "-v",
-            "error",
-            "-i",
-            name,
-            "-fps_mode",
-            "passthrough",
-            "-f",
-            "rawvideo",
-            "-pix_fmt",
-            "gray",
-            "-",
-        ]);
-        command.output().expect("ffmpeg runs").stdout
-    };
-    let (a, b) = (frames(a), frames(b));
-    assert_eq!(a.len(), b.len(), "as many frames of the same size");
-    let sum: u64 = a.iter().zip(&b).map(|(a, b)| u64::from(a.abs_diff(*b))).sum();
-    sum as f64 / a.len() as f64
 }
 
 #[test]
@@ -146,7 +104,11 @@ fn bad_videos_are_refused_and_nothing_is_left() {
     refused(&["ink", "cut.mp4", "out.mp4"], &["cut.mp4", "ffmpeg"]);
     refused(&["ink", "sound.mp4", "out.mp4"], &["sound.mp4", "no pictures"]);
     refused(&["ink", "video.mp4", "video.mp4"], &["is the input"]);
-    refused(&["ink", "video.mp4", "out.png"], &["out.png", "a video becomes a video"]);
+    refused(&["ink", "video.mp4", "out.png"], &["out.png", "a video has many", "out.####.png"]);
+    refused(&["ink", "video.mp4", "out.####.tga"], &["out.####.tga", "not a kind of picture"]);
+    refused(&["ink", "video.mp4", "out.####.png", "--frames", "0-2"], &["--frames", "is 1"]);
+    refused(&["ink", "video.mp4", "out.####.png", "--encode", "-c:v ffv1"], &["--encode"]);
+    refused(&["ink", "video.mp4", "out.mp4", "--fps", "12"], &["--fps"]);
     refused(&["ink", "video.mp4", "no/out.mp4"], &["no/out.mp4"]);
     refused(&["ink", "video.mp4", "out.mp4", "--frames", "1-2"], &["--frames"]);
     refused(&["ink", "video.mp4", "out.mp4", "--encode", "-c:v nonsense"], &["out.mp4", "nonsense"]);
@@ -210,10 +172,6 @@ fn raw(file: &Path, form: &str, decoder: &[&str]) -> Vec<u8> {
     command.args(["-v", "error"]).args(decoder).arg("-i").arg(file);
     command.args(["-map", "0:V:0", "-fps_mode", "passthrough", "-f", "rawvideo", "-pix_fmt", form, "-"]);
     command.output().expect("ffmpeg runs").stdout
-}
-
-fn case(name: &str) -> PathBuf {
-    root().join("tests/data/cases").join(name)
 }
 
 /// Greatest difference of two videos, of 255.
@@ -387,7 +345,13 @@ fn cases_of_containers_are_videos() {
         let sum: u64 = before.iter().zip(&after).map(|(a, b)| u64::from(a.abs_diff(*b))).sum();
         assert!(before.len() == after.len() && sum < 8 * before.len() as u64, "{input} has other frames");
     }
-    fails(&mut apply(at, &["ink", "moving.png", "out.png"]), 2, &["a video becomes a video", ".apng"]);
+    fails(&mut apply(at, &["ink", "moving.png", "out.png"]), 2, &["a video has many", ".apng"]);
+    // Their frames are pictures with alpha.
+    for input in ["a.gif", "a.webp", "moving.png"] {
+        succeeds(&mut apply(at, &["ink", input, "frame.##.tif", "--force"]));
+        let frames = listing(at).iter().filter(|name| name.starts_with("frame.")).count();
+        assert_eq!(frames, 15, "{input}");
+    }
     ffmpeg(at, "-i a.gif -frames:v 1 still.webp");
     succeeds(&mut apply(at, &["ink", "still.webp", "still.png"]));
 }

@@ -18,6 +18,11 @@ pub fn aspect(meaning: &Meaning) -> f64 {
     if (0.01..=100.0).contains(&aspect) { aspect } else { 1.0 }
 }
 
+/// True where the pixels of all pictures are square already.
+pub fn is_square(source: &Source) -> bool {
+    source.pictures.iter().all(|picture| aspect(&picture.meaning) == 1.0)
+}
+
 /// Makes the pixels of all pictures square, with their guides and masks. Those that are stay as they are.
 ///
 /// # Errors

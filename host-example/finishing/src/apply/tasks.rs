@@ -4,6 +4,7 @@ use std::path::{Path, PathBuf};
 
 use clap::ValueEnum;
 
+use super::filter::MaskedStyle;
 use isophote_files::error::{Error, Result};
 use isophote_files::frames::{self, FrameList, Pattern};
 use isophote_files::output;
@@ -66,18 +67,7 @@ impl Tasks {
             let task = Task { frame: None, input: input.to_owned(), output: output.to_owned() };
             return Ok(Self { ready: vec![task], missing: Vec::new(), sequence: None });
         };
-        let (ready, missing) = match list {
-            Some(list) => list.frames().iter().partition(|frame| from.file(**frame).is_file()),
-            None => {
-                let frames = from.on_disk()?;
-                let holes = if from.is_of_tiles() { Vec::new() } else { frames::holes(&frames) };
-                (frames, holes)
-            }
-        };
-        if ready.is_empty() {
-            // A pattern that no file has is the likelier mistake.
-            from.on_disk()?;
-        }
+        let found = found(&from, list)?;
         let Some(to) = Pattern::in_name(output)? else {
             return Err(Error::file(
                 output,
@@ -86,17 +76,37 @@ impl Tasks {
             ));
         };
         let to = to.like(&from);
-        check_missing(input, &missing, on_missing)?;
-        if ready.is_empty() {
-            return Err(Error::file(input, "has none of the frames asked for", "give other --frames"));
-        }
+        check_missing(input, &found, on_missing)?;
+        Ok(Self::of_frames(from, &found, |frame| to.file(frame)))
+    }
+
+    /// The frames of the pattern `input`, as [`Tasks::find`] finds them, which all go into one file.
+    ///
+    /// # Errors
+    /// [`Error::Input`] where it is a picture by itself, and as [`Tasks::find`].
+    pub fn into_one(
+        input: &Path,
+        output: &Path,
+        list: Option<&FrameList>,
+        on_missing: OnMissing,
+    ) -> Result<Self> {
+        let Some(from) = Pattern::new(input)? else {
+            let problem = format!("is one picture, which makes no video such as {}", output.display());
+            return Err(Error::file(input, problem, "name a sequence such as shot.####.png"));
+        };
+        let found = found(&from, list)?;
+        check_missing(input, &found, on_missing)?;
+        Ok(Self::of_frames(from, &found, |_| output.to_owned()))
+    }
+
+    fn of_frames(from: Pattern, found: &Found, output: impl Fn(i64) -> PathBuf) -> Self {
         let task =
-            |frame: &i64| Task { frame: Some(*frame), input: from.file(*frame), output: to.file(*frame) };
-        Ok(Self {
-            ready: ready.iter().map(task).collect(),
-            missing: missing.iter().map(task).collect(),
+            |frame: &i64| Task { frame: Some(*frame), input: from.file(*frame), output: output(*frame) };
+        Self {
+            ready: found.ready.iter().map(task).collect(),
+            missing: found.missing.iter().map(task).collect(),
             sequence: Some(from),
-        })
+        }
     }
 
     /// Pictures that have nothing to do with each other; at least one.
@@ -114,6 +124,15 @@ impl Tasks {
         self.sequence.is_some()
     }
 
+    /// Warns of keyframes of looks that no frame of a sequence reaches.
+    pub fn warn_of_keys_beyond(&self, looks: &[MaskedStyle]) {
+        if self.is_sequence() {
+            let all = self.ready.iter().chain(&self.missing);
+            let frames: Vec<i64> = all.filter_map(|task| task.frame).collect();
+            looks.iter().for_each(|look| look.style.warn_of_keys_beyond(&frames));
+        }
+    }
+
     /// Word for them in messages.
     pub fn noun(&self) -> &'static str {
         if !self.is_sequence() && self.are_several() { "pictures" } else { "frames" }
@@ -125,9 +144,32 @@ impl Tasks {
     }
 }
 
-/// Refuses missing frames, or warns of them.
-fn check_missing(input: &Path, missing: &[i64], on_missing: OnMissing) -> Result<()> {
-    if missing.is_empty() {
+/// Numbers of frames.
+struct Found {
+    ready: Vec<i64>,
+    missing: Vec<i64>,
+}
+
+/// The frames of a pattern: those of `list`, or all that are on disk.
+fn found(from: &Pattern, list: Option<&FrameList>) -> Result<Found> {
+    let (ready, missing) = match list {
+        Some(list) => list.frames().iter().partition(|frame| from.file(**frame).is_file()),
+        None => {
+            let frames = from.on_disk()?;
+            let holes = if from.is_of_tiles() { Vec::new() } else { frames::holes(&frames) };
+            (frames, holes)
+        }
+    };
+    if ready.is_empty() {
+        // A pattern that no file has is the likelier mistake.
+        from.on_disk()?;
+    }
+    Ok(Found { ready, missing })
+}
+
+/// Refuses missing frames, or warns of them, and refuses a run of none.
+fn check_missing(input: &Path, Found { ready, missing }: &Found, on_missing: OnMissing) -> Result<()> {
+    if missing.is_empty() && !ready.is_empty() {
         return Ok(());
     }
     let problem = format!("has no files of the frames {}", frames::summary(missing));
@@ -135,5 +177,8 @@ fn check_missing(input: &Path, missing: &[i64], on_missing: OnMissing) -> Result
         return Err(Error::file(input, problem, "give other --frames, or --on-missing skip"));
     }
     output::warn(format_args!("{}: {problem}", input.display()));
+    if ready.is_empty() {
+        return Err(Error::file(input, "has none of the frames asked for", "give other --frames"));
+    }
     Ok(())
 }

@@ -45,6 +45,11 @@ impl Ratio {
         Self::new(thousandths as u32, 1000)?.as_rate().filter(|r| (r.value() - rate).abs() <= 0.001)
     }
 
+    /// The sides of a pixel of this aspect, to a ten-thousandth.
+    pub fn of_aspect(aspect: f64) -> Option<Self> {
+        Self::new((aspect * 10_000.0).round() as u32, 10_000)
+    }
+
     /// Its two numbers the other way round.
     pub fn inverse(self) -> Self {
         Self { above: self.below, below: self.above }

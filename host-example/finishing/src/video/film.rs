@@ -23,14 +23,14 @@ pub struct Film<'a> {
 }
 
 impl<'a> Film<'a> {
-    /// Starts to encode frames like `first`, so many a second, into the file `place`, which will become `output`; `options`
-    /// are those of the encoder instead of the usual ones.
+    /// Starts to encode frames like `first`, so many a second and of pixels of this aspect, into the file `place`, which will
+    /// become `output`; `options` are those of the encoder instead of the usual ones.
     ///
     /// # Errors
     /// [`Error::Input`] for pictures of a single row or column, [`Error::Failure`] without ffmpeg.
     pub fn start(
         first: &Pixels,
-        rate: f64,
+        (rate, aspect): (f64, f64),
         (output, place): (&'a Path, &Path),
         options: Option<&'a str>,
     ) -> Result<Self> {
@@ -41,7 +41,8 @@ impl<'a> Film<'a> {
         let channels = if first.channels() == 1 { 1 } else { 3 };
         let rate = Ratio::of_rate(rate)
             .ok_or_else(|| Error::file(output, format!("cannot have {rate} frames a second"), "use 24"))?;
-        let stream = Stream::of_frames((size.0 & !1, size.1 & !1), rate);
+        let usual = Stream::of_frames((size.0 & !1, size.1 & !1), rate);
+        let stream = Stream { aspect: Ratio::of_aspect(aspect).unwrap_or(Ratio::ONE), ..usual };
         let encoding = Encoding { stream: &stream, channels, more: None, times: None, output, options };
         Ok(Self { output, size, channels, encoder: Encoder::start(&encoding, place)? })
     }

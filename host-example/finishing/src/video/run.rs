@@ -1,4 +1,4 @@
-//! A video from end to end: decoded, filtered and encoded at the same time.
+//! A video from end to end: decoded, filtered and encoded, or written as pictures, at the same time.
 
 use std::collections::VecDeque;
 use std::io::Read;
@@ -11,7 +11,8 @@ use super::decode::{self, OnError};
 use super::encode::{Encoder, Encoding, More};
 use super::input::Input;
 use super::process::{End, Process, at};
-use super::stream::Stream;
+use super::results::{Numbered, Results, Turn};
+use super::stream::{Stream, depth};
 use super::tracks::Tracks;
 use crate::apply::filter::Filter;
 use crate::apply::frame_cache::{CachedFrame, Window};
@@ -22,11 +23,10 @@ use crate::apply::square;
 use crate::apply::tasks::Task;
 use isophote_files::error::{Error, Result};
 use isophote_files::files::{self, Existing};
+use isophote_files::output;
 use isophote_files::stop::Stop;
-use isophote_pictures::meaning::Meaning;
 use isophote_pictures::pixels::{Pixels, Precision};
 use isophote_pictures::read::Source;
-use isophote_pictures::write::Format;
 
 /// Advice about a video that is damaged.
 const DAMAGED: &str = "use an intact file, or give --on-error skip to write what can be read";
@@ -38,8 +38,10 @@ const AHEAD: usize = 2;
 pub struct VideoJob<'a> {
     /// Input: a file, or `-`.
     pub input: &'a Path,
-    /// Output: a file, or `-`.
+    /// Output: a file, or `-`, or the pattern of pictures.
     pub output: &'a Path,
+    /// Pictures that are written instead of a video.
+    pub pictures: Option<Numbered<'a>>,
     /// Treatment of a file that is there.
     pub existing: Existing,
     /// Options of the encoder instead of the usual ones.
@@ -56,7 +58,7 @@ pub struct VideoJob<'a> {
     pub stop: &'a Stop,
 }
 
-/// Filters a video. The output gets its name when it is whole.
+/// Filters a video. The output, or each of its pictures, gets its name when it is whole.
 ///
 /// # Errors
 /// [`Error::Input`] for what ffmpeg does not read or write; [`Error::Failure`] without ffmpeg, when it or the filter fails,
@@ -67,31 +69,25 @@ pub fn run(job: &VideoJob<'_>, filter: &mut Filter) -> Result<()> {
     if let Some(missing) = missing.as_ref().filter(|_| job.on_error == OnError::Fail) {
         return Err(job.damaged(missing));
     }
-    let frames = usize::try_from(input.stream.frames).unwrap_or(usize::MAX);
+    let wanted = job.pictures.and_then(|pictures| pictures.frames).map(|list| list.frames().len());
+    let frames = wanted.unwrap_or_else(|| usize::try_from(input.stream.frames).unwrap_or(usize::MAX));
     let report = Report::about(frames, job.json && !is_pipe(job.output));
     let report = report.quietly(job.quiet).of_result(job.output, None);
     let work = |place: &Path| job.all(filter, &mut input, missing, place, &report);
-    let done = if is_pipe(job.output) {
+    let done = if is_pipe(job.output) || job.pictures.is_some() {
         work(job.output)
     } else {
         files::write_by_path(job.output, job.existing, work)
     };
-    if done.is_err() {
+    if done.is_err() && job.pictures.is_none() {
         report.nothing_written();
     }
     report.end(done.is_ok() && !is_pipe(job.output));
     done
 }
 
-/// Frames that went through the filter.
-struct Filtered {
-    count: u64,
-    /// Encoder that they went to; nothing where there were none.
-    encoder: Option<Encoder>,
-}
-
 impl VideoJob<'_> {
-    /// Decodes, filters and encodes to `place`. Of the input something may be missing, in words.
+    /// Decodes, filters and encodes to `place`, or to pictures. Of the input something may be missing, in words.
     fn all(
         &self,
         filter: &mut Filter,
@@ -119,24 +115,32 @@ impl VideoJob<'_> {
             let (output, options, times) = (self.output, self.encode, times.as_ref());
             Encoder::start(&Encoding { stream, channels, more, times, output, options }, place)
         };
-        let (filtered, cut) = std::thread::scope(|scope| {
+        if times.is_some() && self.pictures.is_some() {
+            output::warn(format_args!(
+                "{}: its frames last unequally long, and pictures do not tell how long",
+                self.name()
+            ));
+        }
+        let mut results = match self.pictures {
+            Some(pictures) => Results::Pictures(pictures, self.input),
+            None => Results::Video(&encoder, None),
+        };
+        let ((count, is_over), cut) = std::thread::scope(|scope| {
             // It ends with the stream, or with the decoder.
             let relaying = input.pipe().zip(into).map(|(pipe, into)| scope.spawn(move || pipe.relay(into)));
             let (send, decoded) = sync_channel(AHEAD);
             let reading = scope.spawn(move || read(stream, &mut from, &send, &is_over));
-            let filtered = self.filter(filter, (decoded, &budget, &stream.meaning()), &encoder, report);
+            let filtered = self.filter(filter, (decoded, &budget, stream), &mut results, report);
             let read = reading.join().map_err(|_| broken("decoding"));
             let cut = relaying.map_or(Ok(None), |relaying| relaying.join().map_err(|_| broken("reading")));
             let filtered = filtered?;
             read?;
             Ok::<_, Error>((filtered, cut?))
         })?;
-        let Filtered { count, encoder } = filtered;
-        if encoder.as_ref().is_none_or(Encoder::is_open) {
-            self.check(input, count, missing.or(cut), &decoder.finish(), report)?;
+        if results.is_open() && !is_over {
+            self.check(input, count.unsigned_abs(), missing.or(cut), &decoder.finish(), report)?;
         }
-        let none = || Error::file(self.input, "has no frames that can be decoded", "name a video");
-        encoder.ok_or_else(none)?.end()
+        results.end(count, self.input)
     }
 
     /// Checks that all frames of the input were decoded well; where what is damaged is skipped, says what it was.
@@ -178,18 +182,22 @@ impl VideoJob<'_> {
         if is_pipe(self.input) { "standard input".to_owned() } else { self.input.display().to_string() }
     }
 
-    /// Filters all frames and hands them to an encoder, which is started for frames of so many channels.
+    /// Filters all frames and hands the results on. Returns how many frames there were, and whether there may be more that
+    /// nobody wants.
     fn filter(
         &self,
         filter: &mut Filter,
-        (decoded, budget, meaning): (Receiver<Pixels>, &Budget, &Meaning),
-        start: &dyn Fn(u32) -> Result<Encoder>,
+        (decoded, budget, stream): (Receiver<Pixels>, &Budget, &Stream),
+        results: &mut Results<'_>,
         report: &Report,
-    ) -> Result<Filtered> {
+    ) -> Result<(i64, bool)> {
         let name = self.input.display().to_string();
         let [past, future] = filter.frames()?;
-        let library = filter.library();
-        let hold = |(pixels, number)| {
+        let (library, meaning) = (filter.library(), stream.meaning());
+        // Pictures have no more bits than the video.
+        let is_rounded = self.pictures.is_some() && depth(stream.pixels) <= 8;
+        let hold = |(pixels, number): (Pixels, i64)| {
+            let pixels = if is_rounded { pixels.converted(Precision::U8) } else { pixels };
             let mut source = Source::alone(pixels, meaning.clone());
             self.masks.add(&mut source, Some(number))?;
             square::make(&library, &name, &mut source)?;
@@ -198,12 +206,17 @@ impl VideoJob<'_> {
         };
         let mut decoded = decoded.into_iter().zip(1..).map(hold);
         let mut frames: VecDeque<Arc<CachedFrame<'_>>> = VecDeque::new();
-        let (mut encoder, mut count) = (None::<Encoder>, 0);
+        let mut count = 0;
         loop {
             if self.stop.is_requested() {
-                return Err(Error::failure(format!("stopped after {count} frames"), "start again"));
+                let fix = self.pictures.map_or("start again", |all| all.consent.resuming());
+                return Err(Error::failure(format!("stopped after {count} frames"), fix));
             }
             let number = count + 1;
+            let turn = results.turn(number);
+            if turn == Turn::Over {
+                return Ok((count, true));
+            }
             while frames.back().and_then(|last| last.number).is_none_or(|last| last < number + future) {
                 let Some(next) = decoded.next().transpose()? else { break };
                 frames.push_back(next);
@@ -211,21 +224,24 @@ impl VideoJob<'_> {
             frames.retain(|held| held.number >= Some(number - past));
             let Some(own) = frames.iter().find(|held| held.number == Some(number)) else { break };
             count = number;
-            let window = Window { own: Arc::clone(own), frames: frames.iter().cloned().collect() };
-            let filtered = filter.run(&name, &window, None, Format::Png, &mut |_| {})?;
-            let Some(result) = filtered.results.into_iter().next() else { return Err(broken("filtering")) };
-            let result = result.converted(Precision::U16);
-            if encoder.is_none() {
-                encoder = Some(start(result.channels())?);
+            let output = self.pictures.map_or_else(|| self.output.into(), |all| all.pattern.file(count));
+            let task = Task { frame: Some(count), input: self.input.into(), output };
+            if turn == Turn::There {
+                report.frame(&task, &Outcome::Skipped);
             }
-            if encoder.as_mut().is_some_and(|encoder| !encoder.put(&result)) {
-                // It has ended, and says why.
+            if turn != Turn::Made {
+                continue;
+            }
+            let window = Window { own: Arc::clone(own), frames: frames.iter().cloned().collect() };
+            let filtered = filter.run(&name, &window, None, results.format(), &mut |_| {})?;
+            let replaced = filtered.replaced;
+            if !results.put(count, filtered, &own.source)? {
+                // The encoder has ended, and says why.
                 break;
             }
-            let task = Task { frame: Some(count), input: self.input.into(), output: self.output.into() };
-            report.frame(&task, &Outcome::Written(filtered.replaced));
+            report.frame(&task, &Outcome::Written(replaced));
         }
-        Ok(Filtered { count: count.unsigned_abs(), encoder })
+        Ok((count, false))
     }
 }
 

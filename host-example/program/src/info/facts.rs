@@ -28,6 +28,28 @@ impl Facts {
         self.0.push(Fact { name, value: value.into(), text: Some(text.into()) });
     }
 
+    /// Adds warnings about a file to those that are there, each of them once and without the file's name.
+    pub fn warn(&mut self, file: &str, warnings: Vec<String>) {
+        const NAME: &str = "warnings";
+        if !self.0.iter().any(|fact| fact.name == NAME) {
+            self.add(NAME, Value::Array(Vec::new()));
+        }
+        let all = self.0.iter_mut().find(|fact| fact.name == NAME);
+        let Some(Value::Array(all)) = all.map(|fact| &mut fact.value) else { return };
+        for warning in warnings {
+            // Frames of a sequence have names of their own.
+            let is_told = |known: &Value| {
+                known
+                    .as_str()
+                    .is_some_and(|known| warning == known || warning.ends_with(&format!(": {known}")))
+            };
+            if !all.iter().any(is_told) {
+                let text = warning.strip_prefix(&format!("{file}: ")).unwrap_or(&warning);
+                all.push(text.into());
+            }
+        }
+    }
+
     /// The facts as an object of JSON.
     ///
     /// # Errors

@@ -10,6 +10,7 @@ mod video;
 use std::path::Path;
 
 use isophote_files::error::{Error, Result};
+use isophote_files::output;
 use isophote_finishing::video::is_video;
 
 use self::facts::Facts;
@@ -28,15 +29,18 @@ pub fn of(path: &Path) -> Result<Facts> {
         return Err(Error::file(path, "stands for a stream, which is read once", "name a file"));
     }
     let mut facts = Facts::default();
-    facts.add("file", path.display().to_string());
-    if SCENES.contains(&extension.as_str()) {
-        scene::add(&mut facts, path)?;
-    } else if extension == "json" {
-        style::add(&mut facts, path)?;
-    } else if is_video(path) {
-        video::add(&mut facts, path)?;
-    } else {
-        picture::add(&mut facts, path)?;
+    let file = path.display().to_string();
+    facts.add("file", file.clone());
+    let (result, warnings) = output::with_warnings(|| match extension.as_str() {
+        scene if SCENES.contains(&scene) => scene::add(&mut facts, path),
+        "json" => style::add(&mut facts, path),
+        _ if is_video(path) => video::add(&mut facts, path),
+        _ => picture::add(&mut facts, path),
+    });
+    if result.is_err() {
+        warnings.iter().for_each(output::warn);
     }
+    result?;
+    facts.warn(&file, warnings);
     Ok(facts)
 }

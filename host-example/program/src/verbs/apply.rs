@@ -1,5 +1,6 @@
 //! `isophote apply`: a node, graph or preset on a picture or a sequence of frames, without any scene.
 
+mod film;
 mod guiding;
 mod naming;
 mod on_video;
@@ -10,7 +11,7 @@ use std::path::{Path, PathBuf};
 
 use clap::{Args, ValueHint};
 
-use super::shared::{ForceArgs, LengthArgs, PrecisionArgs, QuietArgs};
+use super::shared::{ForceArgs, LengthArgs, PrecisionArgs, QuietArgs, parse_rate};
 use isophote_files::error::{Error, Result};
 use isophote_files::files::{self, Existing};
 use isophote_files::frames::FrameList;
@@ -22,7 +23,7 @@ use isophote_finishing::apply::backend::Backend;
 use isophote_finishing::apply::dry_run::DryRun;
 use isophote_finishing::apply::filter::{Filter, MaskedStyle, Planner};
 use isophote_finishing::apply::looks::{self, Entry};
-use isophote_finishing::apply::masks::{MaskChoice, Masks};
+use isophote_finishing::apply::masks::MaskChoice;
 use isophote_finishing::apply::memory::{self, Budget, Bytes, Needs, too_large};
 use isophote_finishing::apply::reader::{FrameSource, Reader};
 use isophote_finishing::apply::report::{self, Outcome, Report};
@@ -49,8 +50,9 @@ pub struct ApplyArgs {
     /// standard input. A folder of pictures where the results go to a folder.
     #[arg(required_unless_present_any = ["preset", "layered", "to"], value_hint = ValueHint::AnyPath)]
     pub input: Option<PathBuf>,
-    /// The result: .png, .jpg, .tif or .exr, for a sequence with #### as well; for a video another one, or - for YUV4MPEG on
-    /// standard output. A folder, such as out/, gets files of the same names. [default: a file beside the picture with the style
+    /// The result: .png, .jpg, .tif or .exr, for a sequence with #### as well; for a video another one, - for YUV4MPEG on
+    /// standard output, or pictures of its frames, such as out.####.png, numbered from 1. A sequence becomes a video where one
+    /// is named, such as out.mp4. A folder, such as out/, gets files of the same names. [default: a file beside the picture with the style
     /// in its name, such as photo.cartoon.png; with --in-place the picture itself]
     #[arg(value_hint = ValueHint::AnyPath)]
     pub output: Option<PathBuf>,
@@ -69,7 +71,8 @@ pub struct ApplyArgs {
     /// is: [{"style": "watercolor"}, {"preset": "hero.json", "params": {"sigma": 2}, "mask": "cryptomatte:hero", "invert": false}].
     #[arg(long, value_name = "FILE", value_hint = ValueHint::FilePath, conflicts_with_all = ["preset", "set", "mask"])]
     pub layered: Option<PathBuf>,
-    /// Frames of the sequence, such as 1001-1100x2,1200 [default: all that are on disk].
+    /// Frames of the sequence, such as 1001-1100x2,1200 [default: all that are on disk]; of a video that becomes pictures, whose
+    /// first is 1, all.
     #[arg(long, value_name = "LIST", allow_hyphen_values = true)]
     pub frames: Option<FrameList>,
     /// Frames that are missing in the sequence: refuse to start, or leave them out.
@@ -174,6 +177,9 @@ pub struct ApplyArgs {
     /// keeps alpha and exact red, green and blue where that can].
     #[arg(long, value_name = "OPTIONS", allow_hyphen_values = true)]
     pub encode: Option<String>,
+    /// Frames per second of a video that is made of pictures [default: 24].
+    #[arg(long, value_name = "N", value_parser = parse_rate)]
+    pub fps: Option<f64>,
     /// Treatment of a video that is damaged or cut short: fail, or write what can be read of it and warn.
     #[arg(long, value_enum, default_value_t = OnError::Fail)]
     pub on_error: OnError,
@@ -189,20 +195,21 @@ pub struct ApplyArgs {
 /// when the library or the device fails. Each output is written as a whole or not at all.
 pub fn run(args: &ApplyArgs) -> Result<()> {
     let files = args.files()?;
-    if video::is_video(files.input) || video::becomes_video(&files.output) {
+    if video::is_video(files.input) {
         return args.run_on_video(&files);
     }
-    if args.on_error == OnError::Skip {
-        return Err(Error::input("--on-error", "is for videos", "leave it out"));
-    }
+    let is_film = args.makes_film(&files)?;
     let tasks = args.tasks()?;
-    let format = Format::of(&tasks.ready[0].output)?;
+    if is_film && args.skip_existing && files.output.is_file() {
+        return Ok(());
+    }
+    let format = if is_film { Format::Png } else { Format::of(&tasks.ready[0].output)? };
     format.check_space(args.output_space)?;
     let library = Library::open()?;
     let threads = limits::start_threads(args.threads as usize)?;
     let entries = args.entries()?;
     let looks = args.looks(&library, files.style, &entries)?;
-    warn_of_keys_beyond(&tasks, &looks);
+    tasks.warn_of_keys_beyond(&looks);
     let choices = args.masks(&entries);
     let masks = args.maps(&choices, &looks)?;
     masks.check(Some(&tasks))?;
@@ -210,19 +217,16 @@ pub fn run(args: &ApplyArgs) -> Result<()> {
     let motion = args.motion_files(&tasks, &selection)?;
     let opened = args.open_first(&tasks, &selection)?;
     let backend = if args.dry_run { Backend::Cpu } else { args.backend };
-    let planner = Planner::new(library.clone(), args.looks(&library, files.style, &entries)?)?;
-    let mut planner = planner.with_flow(args.flow.is_some());
+    let own = args.looks(&library, files.style, &entries)?;
+    let mut planner = Planner::new(library.clone(), own)?.with_flow(args.flow.is_some());
     args.check_results(&tasks, &planner, &choices)?;
     let guides = args.guides_found(&tasks, &selection, opened.as_ref(), &planner)?;
-    let filter = Filter::new(library.clone(), looks, backend, args.space, args.threads)?;
-    let filter = filter.into_space(args.output_space);
+    let filter =
+        Filter::new(library.clone(), looks, backend, args.space, args.threads)?.into_space(args.output_space);
     let most = args.memory.unwrap_or_else(memory::usual);
     let needs = args.needs(&mut planner, &tasks, opened.as_ref(), most)?;
     if args.dry_run {
-        let (skip_existing, json) = (args.skip_existing, args.json);
-        let run = DryRun { tasks: &tasks, selection: &selection, most, skip_existing, json };
-        let refused = run.print(&mut planner, needs)?;
-        report::check_failed(files.input, refused, &tasks, args.consent())?;
+        args.print_plan((&tasks, &selection, most), &mut planner, needs)?;
         return output::print(&guides);
     }
     let stop = Stop::on_signals();
@@ -230,31 +234,22 @@ pub fn run(args: &ApplyArgs) -> Result<()> {
         stop.ends_the_process("the picture");
     }
     let report = args.report(&tasks).of_result(&files.output, opened.as_ref().and_then(Opened::size));
-    let is_parallel = tasks.are_several() && threads == Threads::Several;
+    let is_parallel = tasks.are_several() && !is_film && threads == Threads::Several;
     let mut filters = filters(filter, is_parallel, || args.looks(&library, files.style, &entries))?;
     let budget = Budget::new(most.0, filters.len());
-    let frame_source = FrameSource {
-        frames: tasks.sequence.as_ref(),
-        motion: motion.as_ref(),
-        selection: &selection,
-        masks: &masks,
-        budget: &budget,
-    };
+    let (frames, motion) = (tasks.sequence.as_ref(), motion.as_ref());
+    let (selection, masks, budget) = (&selection, &masks, &budget);
+    let frame_source = FrameSource { frames, motion, selection, masks, budget };
     let run = Run { tasks: &tasks.ready, consent: args.consent(), threads, report: &report, stop: &stop };
-    let result = run.all(&mut filters, Reader::new(frame_source, planner, &tasks.ready, opened));
+    let reader = Reader::new(frame_source, planner, &tasks.ready, opened);
+    let result = match is_film {
+        true => args.film(&mut filters[0], reader, &tasks.ready, (&report, &stop)),
+        false => run.all(&mut filters, reader),
+    };
     let counts = report.end(result.is_ok());
     result?;
     counts.check(files.input, &tasks, args.consent())?;
     output::print(&guides)
-}
-
-/// Warns of keyframes of looks that no frame of a sequence reaches.
-fn warn_of_keys_beyond(tasks: &Tasks, looks: &[MaskedStyle]) {
-    if tasks.is_sequence() {
-        let frames: Vec<i64> =
-            tasks.ready.iter().chain(&tasks.missing).filter_map(|task| task.frame).collect();
-        looks.iter().for_each(|look| look.style.warn_of_keys_beyond(&frames));
-    }
 }
 
 /// The filter alone, or as many like it as are best side by side.
@@ -294,6 +289,22 @@ impl ApplyArgs {
             report.frame(task, &Outcome::Missing);
         }
         report
+    }
+
+    /// Prints what would be done within so much memory.
+    ///
+    /// # Errors
+    /// As [`DryRun::print`]; the error of a run of which something would fail.
+    fn print_plan(
+        &self,
+        (tasks, selection, most): (&Tasks, &Selection, Bytes),
+        planner: &mut Planner,
+        needs: Option<Needs>,
+    ) -> Result<()> {
+        let (skip_existing, json) = (self.skip_existing, self.json);
+        let run = DryRun { tasks, selection, most, skip_existing, json };
+        let refused = run.print(planner, needs)?;
+        report::check_failed(self.files()?.input, refused, tasks, self.consent())
     }
 
     /// Memory that the first picture needs, where that can be known: no more than there is.
@@ -349,13 +360,6 @@ impl ApplyArgs {
         self.timed(looks)
     }
 
-    /// Masks of where it is done.
-    fn masks(&self, entries: &[Entry]) -> Vec<MaskChoice> {
-        let choice = |source: &MaskSource| MaskChoice { source: source.clone(), invert: self.invert };
-        let own = self.mask.iter().map(choice);
-        own.chain(entries.iter().filter_map(|entry| entry.mask.clone())).collect()
-    }
-
     /// The looks with what the command line says of time and lengths. Of several, one that knows of time is enough.
     fn timed(&self, mut looks: Vec<MaskedStyle>) -> Result<Vec<MaskedStyle>> {
         let mut refused = Vec::new();
@@ -374,24 +378,6 @@ impl ApplyArgs {
         }
     }
 
-    /// Maps over the pictures: masks, and the flow map.
-    ///
-    /// # Errors
-    /// As [`Masks::new`]; [`Error::Input`] for a flow map that no style would follow.
-    fn maps(&self, choices: &[MaskChoice], looks: &[MaskedStyle]) -> Result<Masks> {
-        if self.flow.is_some() {
-            let mut followed = false;
-            for look in looks {
-                followed |= look.style.takes("flow")?;
-            }
-            if !followed {
-                let fix = "choose another style, or connect @flow in its graph";
-                return Err(Error::input("--flow", "the style follows no flow map", fix));
-            }
-        }
-        Masks::new(choices, self.mask_from.as_deref(), self.on_unknown)?.with_flow(self.flow.as_deref())
-    }
-
     /// The frames that are read and written.
     ///
     /// # Errors
@@ -401,7 +387,11 @@ impl ApplyArgs {
             Some(pictures) => Tasks::of_pictures(pictures),
             None => {
                 let files = self.files()?;
-                Tasks::find(files.input, &files.output, self.frames.as_ref(), self.on_missing)?
+                if video::becomes_video(&files.output) {
+                    self.film_tasks(&files)?
+                } else {
+                    Tasks::find(files.input, &files.output, self.frames.as_ref(), self.on_missing)?
+                }
             }
         };
         match tasks.ready.iter().find(|task| task.output.is_dir()) {
@@ -416,8 +406,13 @@ impl ApplyArgs {
     /// As [`Tasks::find`]; [`Error::Input`] when the input is no sequence.
     pub fn frame_numbers(&self) -> Result<Vec<i64>> {
         let tasks = self.tasks()?;
+        let files = self.files()?;
         if !tasks.is_sequence() {
-            return Err(Error::file(self.files()?.input, "is no sequence", "write shot.####.exr"));
+            return Err(Error::file(files.input, "is no sequence", "write shot.####.exr"));
+        }
+        if video::becomes_video(&files.output) {
+            let fix = "name pictures such as out.####.exr";
+            return Err(Error::file(&files.output, "is one video, which no jobs can share", fix));
         }
         Ok(tasks.ready.iter().filter_map(|task| task.frame).collect())
     }

@@ -11,6 +11,7 @@ use isophote_finishing::apply::filter::Planner;
 use isophote_finishing::apply::masks::MaskChoice;
 use isophote_finishing::apply::tasks::{Task, Tasks};
 use isophote_finishing::stylize::style;
+use isophote_finishing::video;
 use isophote_pictures::exr::MaskSource;
 
 /// The word for motion that is estimated.
@@ -115,8 +116,10 @@ impl ApplyArgs {
     /// # Errors
     /// As [`Consent::check`].
     pub fn check_results(&self, tasks: &Tasks, planner: &Planner, masks: &[MaskChoice]) -> Result<()> {
-        let made: Vec<Made<'_>> = tasks.ready.iter().map(Task::made).collect();
-        self.consent().check(&made, tasks.are_several(), || {
+        let mut made: Vec<Made<'_>> = tasks.ready.iter().map(Task::made).collect();
+        // All frames of a video are in one file.
+        made.dedup_by_key(|made| made.to);
+        self.consent().check(&made, tasks.are_several() && !video::becomes_video(made[0].to), || {
             let mut frames = BTreeSet::new();
             for task in &tasks.ready {
                 let Some(number) = task.frame else { continue };

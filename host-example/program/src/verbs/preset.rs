@@ -6,7 +6,7 @@ use std::path::{Path, PathBuf};
 use clap::{Args, Subcommand};
 use serde_json::Value;
 
-use super::shared::ForceArgs;
+use super::shared::{ForceArgs, QuietArgs};
 use isophote_files::error::{AtPlace, Error, Result};
 use isophote_files::identity::is_same;
 use isophote_files::replacing::{Consent, Inputs, Made};
@@ -94,6 +94,8 @@ struct SaveArgs {
     in_place: bool,
     #[command(flatten)]
     force: ForceArgs,
+    #[command(flatten)]
+    quiet: QuietArgs,
 }
 
 impl SaveArgs {
@@ -220,7 +222,21 @@ fn save(library: &Library, args: &SaveArgs) -> Result<()> {
     }
     let text = preset::text(&preset)?;
     let write = |existing| files::write_bytes(file, existing, text.as_bytes());
-    args.consent().write(made(args), |_| false, write).map(drop)
+    args.consent().write(made(args), |_| false, write)?;
+    if args.quiet.quiet { Ok(()) } else { output::print(&summary(file, &preset)) }
+}
+
+/// The line on a preset that is as it should be.
+fn summary(file: &Path, preset: &Preset) -> String {
+    let frames: Vec<i64> = preset.params.iter().flat_map(|(_, track)| track.frames()).collect();
+    let animated = match (frames.iter().min(), frames.iter().max()) {
+        (Some(first), Some(last)) => format!(", keyframes {first} to {last}"),
+        _ => String::new(),
+    };
+    let count = preset.params.len();
+    let plural = if count == 1 { "" } else { "s" };
+    let style = preset::style_shown(preset);
+    format!("{}: {style} with {count} parameter{plural}{animated}\n", file.display())
 }
 
 /// The path of a graph file as a preset names it: relative where both lie in one folder, whole otherwise.
@@ -275,18 +291,7 @@ fn check(library: &Library, files: &[PathBuf]) -> Result<()> {
     for file in files {
         match source::read(file).and_then(|text| Style::faults(library, file, &text)) {
             Ok((preset, faults)) if faults.is_empty() => {
-                let frames: Vec<i64> = preset.params.iter().flat_map(|(_, track)| track.frames()).collect();
-                let animated = match (frames.iter().min(), frames.iter().max()) {
-                    (Some(first), Some(last)) => format!(", keyframes {first} to {last}"),
-                    _ => String::new(),
-                };
-                let count = preset.params.len();
-                output::print(&format!(
-                    "{}: {} with {count} parameter{}{animated}\n",
-                    file.display(),
-                    preset::style_shown(&preset),
-                    if count == 1 { "" } else { "s" }
-                ))?;
+                output::print(&summary(file, &preset))?;
             }
             Ok((_, faults)) => {
                 wrong += 1;

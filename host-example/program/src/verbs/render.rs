@@ -1,10 +1,11 @@
 //! `isophote render`: a scene to a sequence of pictures.
 
+use std::fs;
 use std::path::{Path, PathBuf};
 
 use clap::Args;
 
-use super::shared::{ForceArgs, LengthArgs, PrecisionArgs, QuietArgs, SceneArgs, parse_size};
+use super::shared::{ForceArgs, LengthArgs, PrecisionArgs, QuietArgs, SceneArgs, is_folder, parse_size};
 use isophote_files::error::{Error, Result};
 use isophote_files::files::{self, Existing};
 use isophote_files::frames::{FrameList, Pattern};
@@ -25,7 +26,7 @@ use isophote_render::targets::{Target, Targets};
 use isophote_scene::Scene;
 
 /// Options of `render`.
-#[derive(Args, Debug)]
+#[derive(Args, Clone, Debug)]
 pub struct RenderArgs {
     #[command(flatten)]
     scene: SceneArgs,
@@ -33,8 +34,12 @@ pub struct RenderArgs {
     staging: StagingArgs,
     /// The picture: .png; or .exr with the scene-linear colour, normals, depth, object numbers, motion and rest
     /// positions. out.####.exr, out.@@@@.exr or out.%04d.exr for a sequence; .#### is added where it lacks. A video that
-    /// ffmpeg writes, such as .mp4, .mov, .mkv or .webm, on black where the background is transparent.
+    /// ffmpeg writes, such as .mp4, .mov, .mkv or .webm, on black where the background is transparent. A folder, such as
+    /// out/, gets a .png file with the scene's name.
     out: PathBuf,
+    /// The folder of the picture, which is made where it is not there.
+    #[arg(skip)]
+    folder: Option<PathBuf>,
     /// Size of the picture in pixels.
     #[arg(long, value_name = "WxH", default_value = "1280x720", value_parser = parse_size)]
     size: (u32, u32),
@@ -87,6 +92,9 @@ pub struct RenderArgs {
 /// # Errors
 /// [`Error::Input`] for bad input before anything is rendered, [`Error::Failure`] when the device fails.
 pub fn run(args: &RenderArgs) -> Result<()> {
+    if is_folder(&args.out) {
+        return run(&args.within());
+    }
     args.check()?;
     let library = args.is_stylized().then(Library::open).transpose()?;
     limits::start_threads(0)?;
@@ -124,6 +132,12 @@ pub fn run(args: &RenderArgs) -> Result<()> {
 }
 
 impl RenderArgs {
+    /// The same with a picture in the folder that was named as the result.
+    fn within(&self) -> Self {
+        let name = Path::new(self.scene.scene.file_name().unwrap_or_default()).with_extension("png");
+        Self { out: self.out.join(name), folder: Some(self.out.clone()), ..self.clone() }
+    }
+
     /// Renders every frame to a file of its own.
     fn pictures(&self, shot: &mut Shot, stop: &Stop, report: &Report) -> Result<()> {
         let results = self.results()?;
@@ -206,8 +220,8 @@ impl RenderArgs {
                 let film = match &mut film {
                     Some(film) => film,
                     None => {
-                        let rate = f64::from(self.fps);
-                        film.insert(Film::start(&frame, rate, (&self.out, place), self.encode.as_deref())?)
+                        let pace = (f64::from(self.fps), 1.0);
+                        film.insert(Film::start(&frame, pace, (&self.out, place), self.encode.as_deref())?)
                     }
                 };
                 if !film.put(&frame)? {
@@ -242,6 +256,9 @@ impl RenderArgs {
                 "is for videos",
                 "leave it out, or name a video such as out.mp4",
             ));
+        }
+        if let Some(folder) = self.folder.as_ref().filter(|folder| !folder.is_dir()) {
+            fs::create_dir_all(folder).map_err(|e| files::unwritable(folder, Some(e.kind()), e))?;
         }
         files::check_writable(&self.out, Existing::Replace)?;
         self.check_results()?;

@@ -1,6 +1,6 @@
 //! Arguments that several verbs have.
 
-use std::path::PathBuf;
+use std::path::{Path, PathBuf};
 
 use clap::Args;
 use clap::builder::{PossibleValue, PossibleValuesParser, TypedValueParser};
@@ -16,7 +16,7 @@ use isophote_pictures::pixels::MOST_PIXELS;
 use isophote_scene::Scene;
 
 /// The scene of `render`.
-#[derive(Args, Debug)]
+#[derive(Args, Clone, Debug)]
 pub struct SceneArgs {
     /// The scene: .gltf, .glb or .obj.
     pub scene: PathBuf,
@@ -115,4 +115,19 @@ pub fn parse_size(text: &str) -> std::result::Result<(u32, u32), String> {
         .ok_or_else(|| {
             format!("write width and height such as 1280x720; at most {MOST_PIXELS} pixels in all")
         })
+}
+
+/// A number of frames a second.
+///
+/// # Errors
+/// Advice what to write instead.
+pub fn parse_rate(text: &str) -> std::result::Result<f64, String> {
+    let rate = text.parse().ok().filter(|rate| (0.001..=1000.0).contains(rate));
+    rate.ok_or_else(|| "write frames per second such as 24".into())
+}
+
+/// True where a result is a folder: one that is there, or whose name ends as those of folders do.
+pub fn is_folder(output: &Path) -> bool {
+    let ends = |byte: &u8| std::path::is_separator(char::from(*byte));
+    output.is_dir() || output.as_os_str().as_encoded_bytes().last().is_some_and(ends)
 }

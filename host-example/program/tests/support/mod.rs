@@ -5,6 +5,7 @@
 #[cfg(target_os = "linux")]
 pub mod others;
 pub mod places;
+pub mod video;
 #[cfg(target_os = "linux")]
 pub mod window;
 

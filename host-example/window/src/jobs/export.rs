@@ -20,6 +20,7 @@ use crate::state::progress::{Progress, State};
 use isophote_files::error::{Error, Result};
 use isophote_files::files::{self, Existing};
 use isophote_files::frames::Pattern;
+use isophote_finishing::apply::square;
 use isophote_finishing::video::{self, Film};
 use isophote_pictures::exr::Selection;
 use isophote_pictures::read;
@@ -308,7 +309,10 @@ impl Shared {
                 let Some(picture) = source.pictures.first() else { continue };
                 let film = match &mut film {
                     Some(film) => film,
-                    None => film.insert(Film::start(&picture.pixels, job.rate, (&job.output, place), None)?),
+                    None => {
+                        let pace = (job.rate, square::aspect(&picture.meaning));
+                        film.insert(Film::start(&picture.pixels, pace, (&job.output, place), None)?)
+                    }
                 };
                 if !film.put(&picture.pixels)? {
                     break;

@@ -1,13 +1,15 @@
-//! Guides and motion of a run of `isophote apply`: which a style can use, and which were found.
+//! Guides, masks and motion of a run of `isophote apply`: which a style can use, and which were found.
 
 use super::ApplyArgs;
 use isophote_files::error::{Error, Result};
 use isophote_files::frames::Pattern;
 use isophote_files::output;
 use isophote_finishing::apply::filter::{self, MaskedStyle, Planner};
+use isophote_finishing::apply::looks::Entry;
+use isophote_finishing::apply::masks::{MaskChoice, Masks};
 use isophote_finishing::apply::tasks::Tasks;
 use isophote_loader::Library;
-use isophote_pictures::exr::{Guide, Selection};
+use isophote_pictures::exr::{Guide, MaskSource, Selection};
 use isophote_pictures::read::Opened;
 
 impl ApplyArgs {
@@ -19,6 +21,31 @@ impl ApplyArgs {
         }
         wanted.retain(|guide| !(self.estimates_motion() && guide.is_motion()));
         Ok(wanted)
+    }
+
+    /// Masks of where it is done.
+    pub(super) fn masks(&self, entries: &[Entry]) -> Vec<MaskChoice> {
+        let choice = |source: &MaskSource| MaskChoice { source: source.clone(), invert: self.invert };
+        let own = self.mask.iter().map(choice);
+        own.chain(entries.iter().filter_map(|entry| entry.mask.clone())).collect()
+    }
+
+    /// Maps over the pictures: masks, and the flow map.
+    ///
+    /// # Errors
+    /// As [`Masks::new`]; [`Error::Input`] for a flow map that no style would follow.
+    pub(super) fn maps(&self, choices: &[MaskChoice], looks: &[MaskedStyle]) -> Result<Masks> {
+        if self.flow.is_some() {
+            let mut followed = false;
+            for look in looks {
+                followed |= look.style.takes("flow")?;
+            }
+            if !followed {
+                let fix = "choose another style, or connect @flow in its graph";
+                return Err(Error::input("--flow", "the style follows no flow map", fix));
+            }
+        }
+        Masks::new(choices, self.mask_from.as_deref(), self.on_unknown)?.with_flow(self.flow.as_deref())
     }
 
     /// The files of motion vectors.

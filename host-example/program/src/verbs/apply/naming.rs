@@ -45,12 +45,6 @@ pub fn beside(style: &Path, input: &Path) -> Result<PathBuf> {
     Ok(input.with_file_name(stem))
 }
 
-/// True where a result is a folder: one that is there, or whose name ends as those of folders do.
-pub fn is_folder(output: &Path) -> bool {
-    let ends = |byte: &u8| std::path::is_separator(char::from(*byte));
-    output.is_dir() || output.as_os_str().as_encoded_bytes().last().is_some_and(ends)
-}
-
 /// True where two paths lie in one folder.
 pub fn are_neighbours(a: &Path, b: &Path) -> bool {
     let folder = |path: &Path| {

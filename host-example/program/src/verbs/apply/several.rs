@@ -6,6 +6,7 @@ use std::fs;
 use std::path::{Path, PathBuf};
 
 use super::{ApplyArgs, Files, naming};
+use crate::verbs::shared::is_folder;
 use isophote_files::error::{Error, Result};
 use isophote_files::files;
 use isophote_files::frames::{self, Pattern};
@@ -42,7 +43,7 @@ impl ApplyArgs {
         let (inputs, output, folder) = match (self.to.as_deref(), rest) {
             (_, []) => return Err(no_picture()),
             (Some(to), inputs) => (inputs, None, Some(to)),
-            (None, [inputs @ .., folder]) if !inputs.is_empty() && naming::is_folder(folder) => {
+            (None, [inputs @ .., folder]) if !inputs.is_empty() && is_folder(folder) => {
                 (inputs, None, Some(*folder))
             }
             (None, [_]) => (rest, None, None),

@@ -7,7 +7,9 @@ use crate::state::document::frame::Frame;
 use isophote_files::error::{Error, Result};
 use isophote_files::frames::Pattern;
 use isophote_files::limits;
+use isophote_finishing::apply::square;
 use isophote_finishing::video::Clip;
+use isophote_loader::Library;
 use isophote_pictures::exr::Selection;
 use isophote_pictures::read::{self, Opened, Source};
 use isophote_pictures::space::Space;
@@ -83,7 +85,16 @@ pub fn decoded(path: &Path, number: Option<i64>, opened: Opened, space: Option<S
     let mut source = opened.decode(path)?;
     // Nothing is written back.
     source.exr = None;
-    Frame::of(&name, source, number, space)
+    shown(&name, source, number, space)
+}
+
+/// The frame that is shown: of square pixels, which are those that looks are made of.
+fn shown(name: &str, mut source: Source, number: Option<i64>, space: Option<Space>) -> Result<Frame> {
+    source.pictures.truncate(1);
+    if !square::is_square(&source) {
+        square::make(&Library::open()?, name, &mut source)?;
+    }
+    Frame::of(name, source, number, space)
 }
 
 /// Decodes frames from the first up to the second number, and those that lie before.
@@ -99,7 +110,7 @@ fn decode(
     while let Some((at, pixels)) = clip.take()? {
         if sink.wants(at) {
             let source = Source::alone(pixels, clip.stream().meaning());
-            sink.put(at, Frame::of(&name, source, Some(at), reading.space));
+            sink.put(at, shown(&name, source, Some(at), reading.space));
         }
         if at >= number || sink.is_elsewhere(at + 1..=number) {
             return Ok(());

@@ -110,7 +110,7 @@ impl Renderer {
         let usual =
             style.request(&self.library, size).map_err(|e| e.at(&style.name, "choose another picture"))?;
         let IsophoteRequest { width, height, .. } = usual;
-        let scale = picture.scale(width);
+        let scale = picture.scale(width) * picture.frame.request.scale;
         Ok(IsophoteRequest { width, height, scale, ..picture.frame.request(usual) })
     }
 

@@ -95,6 +95,7 @@ impl Frame {
     pub fn request_of_all(&self, scale: f32, usual: IsophoteRequest) -> IsophoteRequest {
         let guides = self.guides.iter().fold(0, |all, image| all | image.guide.bit());
         let Self { width, height, .. } = *self;
+        let scale = scale * self.request.scale;
         IsophoteRequest { width, height, scale, guides, frame: 0, ..self.request(usual) }
     }
 
