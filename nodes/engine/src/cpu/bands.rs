@@ -58,8 +58,8 @@ fn split(window: Rect, full: [i32; 2], outputs: &mut [Image], rows: usize) -> Ve
         })
         .collect();
     for image in outputs {
-        let (stride, window) = (image.stride(), image.window());
-        let at = |y: i32| (y - window.y0) as usize * stride;
+        let (stride, whole) = (image.stride(), image.window());
+        let at = |y: i32| (y - whole.y0) as usize * stride;
         let target = &mut image.data_mut()[at(window.y0)..at(window.y1)];
         for (band, part) in bands.iter_mut().zip(target.chunks_mut(rows * stride)) {
             if let Ok(band) = band.get_mut() {
