@@ -11,6 +11,7 @@
 //! | [`convert`] | changes from one meaning to another |
 //! | [`working`] | space in which a picture is filtered |
 //! | [`read`] | PNG, JPEG, TIFF, WebP, HDR and EXR files to pictures |
+//! | [`webp`] | frames of animated WebP files |
 //! | [`write`](mod@write) | pictures to files |
 //! | [`exr`] | layers, guides, masks and mattes of EXR files |
 //! | [`mix`] | mixing of two pictures by a mask |
@@ -37,6 +38,7 @@ mod said;
 pub mod space;
 mod tiff;
 mod tiff_write;
+pub mod webp;
 pub mod working;
 pub mod write;
 

@@ -123,6 +123,12 @@ fn chromaticities(numbers: &[u32]) -> Option<Chromaticities> {
     Change::new(found, REC709).map(|_| found)
 }
 
+/// True where chunks other than a profile can say what numbers mean: chromaticities in them are not negative, as those of
+/// ACES2065-1 are.
+pub fn can_say(meaning: &Meaning) -> bool {
+    meaning.primaries.iter().all(|v| *v >= 0.0)
+}
+
 /// A file with chunks that say what its numbers mean, where that is not what is assumed without. Code points say it all; gamma
 /// and chromaticities say it to older programs as well as they can.
 pub fn with_meaning(mut file: Vec<u8>, meaning: &Meaning) -> Vec<u8> {
@@ -145,8 +151,7 @@ pub fn with_meaning(mut file: Vec<u8>, meaning: &Meaning) -> Vec<u8> {
     if let Some(gamma) = gamma {
         chunk(&mut said, *b"gAMA", &number(gamma).to_be_bytes());
         let [rx, ry, gx, gy, bx, by, wx, wy] = meaning.primaries;
-        // Negative ones, as those of ACES2065-1, cannot be written.
-        if meaning.primaries.iter().all(|v| *v >= 0.0) {
+        if can_say(meaning) {
             let data: Vec<u8> =
                 [wx, wy, rx, ry, gx, gy, bx, by].iter().flat_map(|v| number(*v).to_be_bytes()).collect();
             chunk(&mut said, *b"cHRM", &data);

@@ -159,10 +159,12 @@ pub fn write(
 fn png_file(pixels: &Pixels, meaning: &Meaning) -> std::result::Result<Vec<u8>, String> {
     let mut bytes = Vec::new();
     let mut encoder = image::codecs::png::PngEncoder::new(&mut bytes);
-    let is_said = match meaning.profile_of(pixels.channels()) {
-        Some(profile) => encoder.set_icc_profile(profile.to_vec()).is_ok(),
-        None => false,
+    let channels = pixels.channels();
+    let profile = match png::can_say(meaning) {
+        true => meaning.profile_of(channels).map(<[u8]>::to_vec),
+        false => profile(meaning, channels),
     };
+    let is_said = profile.is_some_and(|profile| encoder.set_icc_profile(profile).is_ok());
     // PNG wants the larger byte first; the encoder takes the machine's order.
     as_text(encoder.write_image(pixels.bytes(), pixels.width(), pixels.height(), color_type(pixels)))?;
     let bytes = if is_said { bytes } else { png::with_meaning(bytes, meaning) };
