@@ -169,7 +169,7 @@ fn places_to_write() {
     let mut places = vec![
         ("missing/out.png", "cannot be written"),
         ("file/out.png", "cannot be written"),
-        ("out.gif", "is not a kind of picture"),
+        ("out.bmp", "is not a kind of picture"),
         ("out", "is not a kind of picture"),
     ];
     if cfg!(target_os = "linux") {

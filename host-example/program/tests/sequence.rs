@@ -441,7 +441,7 @@ fn frames_of_a_video_become_numbered_pictures() {
 fn numbered_pictures_become_a_video() {
     let Some(folder) = video_folder() else { return };
     let at = folder.path();
-    clip(at, "video.mp4", "-pix_fmt yuv420p -t 0.2");
+    clip(at, "video.mp4", "-pix_fmt yuv420p -t 0.2 -colorspace bt709");
     ffmpeg(at, "-i video.mp4 in.%04d.png");
     let before = listing(at);
     for (args, words) in [
