@@ -83,8 +83,11 @@ pub fn luminance(chromaticities: Option<Chromaticities>) -> [f32; 3] {
 /// CIE XYZ of linear RGB; nothing for primaries on a line and the like.
 fn xyz_from_rgb(c: Chromaticities) -> Option<Matrix> {
     let c = c.map(f64::from);
-    let column = |x: f64, y: f64| [x / y, 1.0, (1.0 - x - y) / y];
-    let [r, g, b, w] = [0, 2, 4, 6].map(|at: usize| column(c[at], c[at + 1]));
+    let unit = |x: f64, y: f64| [x / y, 1.0, (1.0 - x - y) / y];
+    // A primary may be without luminance, as two of CIE XYZ itself are. White is not.
+    let column = |x: f64, y: f64| if y == 0.0 { [x, y, 1.0 - x - y] } else { unit(x, y) };
+    let [r, g, b] = [0, 2, 4].map(|at: usize| column(c[at], c[at + 1]));
+    let w = unit(c[6], c[7]);
     let primaries = [[r[0], g[0], b[0]], [r[1], g[1], b[1]], [r[2], g[2], b[2]]];
     let scale = apply(&inverse(&primaries)?, w);
     let matrix = primaries.map(|row| [row[0] * scale[0], row[1] * scale[1], row[2] * scale[2]]);
@@ -132,6 +135,20 @@ mod tests {
             assert!(back.iter().zip([0.2, 0.9, 0.4]).all(|(a, b)| (a - b).abs() < 1e-5), "{back:?}");
         }
         assert_eq!(Change::new([0.3; 8], REC709), None);
+    }
+
+    #[test]
+    fn primaries_may_be_those_of_xyz() {
+        let xyz: Chromaticities = [1.0, 0.0, 0.0, 1.0, 0.0, 0.0, 1.0 / 3.0, 1.0 / 3.0];
+        assert_eq!(luminance(Some(xyz)), [0.0, 1.0, 0.0]);
+        let change = Change::new(xyz, REC709).unwrap();
+        let white = change.apply([1.0; 3]);
+        assert!(white.iter().all(|v| (v - 1.0).abs() < 1e-5), "{white:?}");
+        let there = Change::new(REC709, xyz).unwrap().apply([0.2, 0.9, 0.4]);
+        let back = change.apply(there);
+        assert!(back.iter().zip([0.2, 0.9, 0.4]).all(|(a, b)| (a - b).abs() < 1e-5), "{back:?}");
+        // White without luminance is none.
+        assert_eq!(Change::new([0.64, 0.33, 0.30, 0.60, 0.15, 0.06, 0.3, 0.0], REC709), None);
     }
 
     #[test]

@@ -46,12 +46,16 @@ fn only_looks(extension: &str) -> bool {
         || matches!(extension, "KHR_animation_pointer" | "KHR_texture_basisu" | "EXT_texture_avif")
 }
 
+fn is_understood(extension: &str) -> bool {
+    UNDERSTOOD.contains(&extension) || cfg!(feature = "compressed") && COMPRESSED.contains(&extension)
+}
+
 /// All extensions of a file, each once, and whether it is understood.
 pub fn all(used: &[String], required: &[String]) -> Vec<(String, bool)> {
     let mut all: Vec<(String, bool)> = Vec::new();
     for name in used.iter().chain(required) {
         if all.iter().all(|(known, _)| known != name) {
-            all.push((name.clone(), UNDERSTOOD.contains(&name.as_str())));
+            all.push((name.clone(), is_understood(name)));
         }
     }
     all
@@ -65,11 +69,8 @@ pub fn check(used: &[String], required: &[String]) -> Result<Vec<String>, String
     let unknown = |names: &[String]| {
         let mut unknown: Vec<String> = Vec::new();
         for name in names {
-            let name = name.as_str();
-            let compressed = cfg!(feature = "compressed") && COMPRESSED.contains(&name);
-            let known = compressed || UNDERSTOOD.contains(&name) || LAYERS.contains(&name);
-            let name = &name.to_owned();
-            if !known && !unknown.contains(name) {
+            let is_known = is_understood(name) || LAYERS.contains(&name.as_str());
+            if !is_known && !unknown.contains(name) {
                 unknown.push(name.clone());
             }
         }
