@@ -88,14 +88,16 @@ fn has_extension(path: &Path, extension: &str) -> bool {
 pub fn is_moving_webp(path: &Path) -> bool {
     const MOVES: u8 = 2;
     let mut start = [0; 21];
+    // Pipes are not opened: whoever does that waits for their other end.
     let is_read = has_extension(path, WEBP)
+        && path.is_file()
         && File::open(path).and_then(|mut file| file.read_exact(&mut start)).is_ok();
     is_read && start.starts_with(b"RIFF") && &start[8..16] == b"WEBPVP8X" && start[20] & MOVES != 0
 }
 
 /// True for a PNG file that says before its pixels that it moves; nothing for what cannot be read.
 fn is_moving_png(path: &Path) -> Option<bool> {
-    let mut file = BufReader::new(File::open(path).ok().filter(|_| path.is_file())?);
+    let mut file = BufReader::new(path.is_file().then(|| File::open(path).ok())??);
     let mut start = [0; PNG.len()];
     file.read_exact(&mut start).ok()?;
     if start != *PNG {
