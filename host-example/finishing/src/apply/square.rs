@@ -39,8 +39,8 @@ pub fn make(library: &Library, name: &str, source: &mut Source) -> Result<()> {
         let to_square = To { library, aspect, alpha: alpha(&picture.meaning), size: square };
         let (channels, precision) = (picture.pixels.channels(), picture.pixels.precision());
         let pixels = to_square.made("color", &picture.pixels, (channels, precision)).map_err(refused)?;
+        let known = library.guides().map_err(refused)?;
         for (name, guide) in &mut picture.guides {
-            let known = library.guides().map_err(refused)?;
             let channels = known.iter().find(|known| known.id == *name).map(|known| known.channels);
             let channels = channels.unwrap_or(guide.channels());
             *guide = to_square.made(name, guide, (channels, Precision::F32)).map_err(refused)?;
