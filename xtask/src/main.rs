@@ -1,5 +1,6 @@
 //! The project's chores, `cargo xtask <chore>`: one module for each.
 
+mod address;
 mod bench;
 mod bundle;
 mod card;
@@ -79,7 +80,7 @@ enum Chore {
     Stubs(python::StubsOptions),
     /// Writes CONTRIBUTING's table of crates from their manifests and sources
     Crates(crates::Options),
-    /// Writes the README's list of nodes from their declarations
+    /// Writes the README's addresses and its list of nodes
     Readme(readme::Options),
     /// Makes the page and the npm package that stylize in browsers
     Web(web::Options),

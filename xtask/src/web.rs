@@ -3,6 +3,7 @@
 //! All of it lies below `target/web`: `package` is the package as it is published, `isophote.html` the page. Bundler,
 //! three.js and Playwright are in `nodes/web/node_modules`, in the versions of `package-lock.json`.
 
+use crate::address;
 use crate::error::{Context, Failure, Result};
 use crate::packing;
 use crate::setup::{self, BROWSER, C_COMPILER, NODE, WASM};
@@ -206,6 +207,10 @@ fn stage(planner: &Path, package: &Path) -> Result<()> {
     }
     copy_folder(&folder().join("package"), package)?;
     copy(planner, &package.join("isophote.wasm"))?;
+    let manifest = package.join("package.json");
+    let text = fs::read_to_string(&manifest).context(|| format!("cannot read {}", manifest.display()))?;
+    fs::write(&manifest, address::filled(&text))
+        .context(|| format!("cannot write {}", manifest.display()))?;
     for licence in ["LICENSE-APACHE", "LICENSE-MIT"] {
         copy(&root().join(licence), &package.join(licence))?;
     }
