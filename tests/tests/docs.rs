@@ -20,7 +20,7 @@ fn docs(out: &Path, more: &[&str]) -> Output {
     static TURN: Mutex<()> = Mutex::new(());
     let _turn = TURN.lock().unwrap_or_else(PoisonError::into_inner);
     let mut docs = Command::new(built().join("xtask"));
-    docs.arg("docs").arg("--out").arg(out).args(["--size", "96x64"]).args(more);
+    docs.arg("docs").arg("--out").arg(out).args(["--size", "96x64", "--frames", "2"]).args(more);
     docs.env("CARGO_TARGET_DIR", built().parent().unwrap()).current_dir(library::root());
     docs.output().unwrap()
 }
@@ -33,7 +33,10 @@ fn said(output: &Output) -> String {
 fn the_site_is_made_and_all_its_commands_run() {
     let folder = TempDir::new().unwrap();
     let site = folder.path().join("site");
-    let output = docs(&site, &[]);
+    let app = folder.path().join("app.html");
+    std::fs::write(&app, "<script>1</script>").unwrap();
+    let output = docs(&site, &["--page", app.to_str().unwrap()]);
+    std::fs::remove_file(app).unwrap();
     let said = said(&output);
     assert!(output.status.success(), "{said}");
     let line = said.lines().find(|line| line.contains("blocks of commands run")).unwrap();
@@ -56,6 +59,18 @@ fn the_site_is_made_and_all_its_commands_run() {
         }
     }
     controls_do_something(&site);
+    looks_are_shown_on_both_subjects(&site);
+    let start = page("index.html");
+    assert!(start.contains("href=\"app/index.html\"") && site.join("app/index.html").is_file());
+    // Each moves, is small, and stands beside a still for those who want less motion.
+    assert!(start.matches(".webp\"").count() >= 3, "{start}");
+    assert_eq!(start.matches(".webp\"").count(), start.matches("(prefers-reduced-motion: reduce)").count());
+    for file in std::fs::read_dir(site.join("pictures")).unwrap().map(|entry| entry.unwrap().path()) {
+        if file.extension().is_some_and(|e| e == "webp") {
+            let bytes = std::fs::read(&file).unwrap();
+            assert!(bytes.windows(4).filter(|part| part == b"ANMF").count() == 2, "{}", file.display());
+        }
+    }
     // Made under another name, which is gone.
     assert_eq!(std::fs::read_dir(folder.path()).unwrap().count(), 1);
 }
@@ -77,6 +92,17 @@ fn controls_do_something(site: &Path) {
         }
     }
     assert!(all > 60 && same.is_empty(), "pictures of these controls show nothing: {same:?}");
+}
+
+/// Every look has a picture of the scene and one of the photograph, which differ.
+fn looks_are_shown_on_both_subjects(site: &Path) {
+    let page = std::fs::read_to_string(site.join("artists/looks.html")).unwrap();
+    for look in isophote::preset::LOOKS {
+        let pictures = ["scene", "photo"].map(|subject| format!("pictures/look-{}-{subject}.jpg", look.id));
+        assert!(pictures.iter().all(|picture| page.contains(picture)), "{}", look.id);
+        let [scene, photo] = pictures.map(|picture| std::fs::read(site.join(picture)).unwrap());
+        assert!(scene != photo, "{}", look.id);
+    }
 }
 
 /// A copy of the pages with one of them changed.

@@ -2,17 +2,21 @@
 
 use crate::error::{Error, Result};
 use crate::page::{DOCUMENTS, Page};
-use crate::{reference, styles};
+use crate::{glossary, reference, styles};
 use isophote::registry;
 use std::path::Path;
 
 /// Pages written for the site: part, place, title.
-const WRITTEN: [(&str, &str, &str); 26] = [
+const WRITTEN: [(&str, &str, &str); 31] = [
     ("", "index", "Isophote"),
     ("", "install", "Install"),
+    ("", "windows", "Windows"),
+    ("", "macos", "macOS"),
     ("For artists", "artists/first-look", "First look in five minutes"),
     ("For artists", "artists/window", "The artist's window"),
     ("For artists", "artists/recipes", "Recipes"),
+    ("For artists", "artists/lines", "Too many lines, too few"),
+    ("For artists", "artists/slow", "It is slow"),
     ("For artists", "artists/looks", "Looks"),
     ("For artists", "artists/styles", "Styles"),
     ("For compositors", "compositors/install", "Install the plugin"),
@@ -34,6 +38,7 @@ const WRITTEN: [(&str, &str, &str); 26] = [
     ("For contributors", "contributors/start", "Where to begin"),
     ("For contributors", "contributors/dependencies", "Dependencies"),
     ("Nodes", "nodes/index", "All nodes"),
+    ("Nodes", "nodes/symbols", "Symbols of the thesis"),
 ];
 
 /// All pages; texts of pages are in `sources`, documents below `root`.
@@ -47,6 +52,7 @@ pub fn pages(sources: &Path, root: &Path) -> Result<Vec<Page>> {
         let text = read(&sources.join(format!("{path}.md")))?;
         let text = text.replace("<!-- nodes -->", &reference::contents());
         let text = text.replace("<!-- styles -->", &styles::contents());
+        let text = text.replace("<!-- symbols -->", &glossary::tables());
         let (path, title) = (path.to_owned(), title.to_owned());
         pages.push(Page { path, title, part, text, document: None });
     }

@@ -52,6 +52,12 @@ impl Error {
         move |source| Self::File { path, source }
     }
 
+    /// Makes an error of a decoder or encoder one about a file.
+    pub fn picture(path: &Path) -> impl FnOnce(image::ImageError) -> Self {
+        let path = path.to_owned();
+        move |source| Self::Picture { path, source }
+    }
+
     /// Something about a page.
     pub fn page(page: impl ToString, problem: impl ToString) -> Self {
         Self::Page { page: page.to_string(), problem: problem.to_string() }

@@ -2,6 +2,7 @@
 //! elsewhere.
 
 use crate::error::{Error, Result};
+use crate::markdown::APP;
 use std::collections::{BTreeMap, BTreeSet};
 use std::path::{Path, PathBuf};
 
@@ -22,7 +23,9 @@ pub fn check(site: &Path) -> Result<Counts> {
     let mut files = Vec::new();
     list(site, &mut files)?;
     let mut pages = BTreeMap::new();
-    for file in files.iter().filter(|file| file.extension().is_some_and(|e| e == "html")) {
+    let app = site.join(APP);
+    // The page for browsers is a program: it may have a script, and its tests are its own.
+    for file in files.iter().filter(|file| file.extension().is_some_and(|e| e == "html") && **file != app) {
         pages.insert(file.clone(), std::fs::read_to_string(file).map_err(Error::at(file))?);
     }
     let names: BTreeMap<&PathBuf, BTreeSet<&str>> =
@@ -30,10 +33,12 @@ pub fn check(site: &Path) -> Result<Counts> {
     let (mut counts, mut broken) = (Counts::default(), Vec::new());
     for (file, text) in &pages {
         let shown = file.strip_prefix(site).unwrap_or(file).display();
-        if text.contains("<script") || values(text, "src").any(|src| src.contains("//")) {
+        if text.contains("<script")
+            || values(text, "src").chain(values(text, "srcset")).any(|src| src.contains("//"))
+        {
             broken.push(format!("{shown} loads something from elsewhere, or a script"));
         }
-        for link in values(text, "href").chain(values(text, "src")) {
+        for link in values(text, "href").chain(values(text, "src")).chain(values(text, "srcset")) {
             if link.contains("://") || link.starts_with("mailto:") {
                 counts.outer += 1;
                 continue;
@@ -117,6 +122,7 @@ mod tests {
             (r##"<a href="c.html">c</a>"##, "a/d.html: c.html"),
             (r##"<a href="b.html#there">b</a>"##, "a/d.html: b.html#there"),
             (r##"<img src="q.jpg">"##, "a/d.html: q.jpg"),
+            (r##"<source srcset="q.jpg">"##, "a/d.html: q.jpg"),
             (r##"<a href="#gone">b</a>"##, "a/d.html: #gone"),
             (r##"<img src="https://x.org/p.png">"##, "from elsewhere"),
             ("<script>1</script>", "a script"),

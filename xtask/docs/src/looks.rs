@@ -1,7 +1,8 @@
-//! The looks that ship with the program, as a grid of what each makes of the frame.
+//! The looks that ship with the program, as a grid of what each makes of the frame of the scene and of a photograph.
 
 use crate::error::{Error, Result};
 use crate::page::escaped;
+use crate::shot::Subject;
 use isophote::{preset, registry};
 use std::fmt::Write as _;
 
@@ -13,6 +14,13 @@ pub struct LookCard {
     name: String,
     about: String,
     style: String,
+}
+
+impl LookCard {
+    /// Stem of the picture that it makes of one.
+    pub fn picture(&self, of: Subject) -> String {
+        format!("look-{}-{}", self.id, of.id())
+    }
 }
 
 /// All looks, in their order.
@@ -37,12 +45,15 @@ pub fn contents(looks: &[LookCard]) -> String {
             let end = if style.is_empty() { "" } else { "</div>\n\n" };
             style = &look.style;
             let label = registry::find(style).map_or(style, |node| node.label);
-            let _ = write!(text, "{end}## {label}\n\n<div class=\"row\">");
+            let _ = write!(text, "{end}## {label}\n\n<div class=\"row wide\">");
         }
         let _ = write!(
             text,
-            "<figure><img src=\"../pictures/look-{id}.jpg\" alt=\"{name}\" loading=\"lazy\"><figcaption><b>{name}</b> \
-             <code>look:{id}</code><br>{about}</figcaption></figure>",
+            "<figure><div class=\"pair\"><img src=\"../pictures/{scene}.jpg\" alt=\"{name} on a scene\" loading=\"lazy\">\
+             <img src=\"../pictures/{photo}.jpg\" alt=\"{name} on a photograph\" loading=\"lazy\"></div><figcaption>\
+             <b>{name}</b> <code>look:{id}</code><br>{about}</figcaption></figure>",
+            scene = look.picture(Subject::Scene),
+            photo = look.picture(Subject::Photo),
             id = look.id,
             name = escaped(&look.name),
             about = escaped(&look.about)

@@ -4,13 +4,16 @@
 
 mod book;
 mod error;
+mod glossary;
 mod links;
 mod looks;
 mod maker;
 mod markdown;
+mod moving;
 mod page;
 mod reference;
 mod scratch;
+mod series;
 mod shot;
 mod shots;
 mod studio;
@@ -20,10 +23,10 @@ mod template;
 use book::pages;
 use clap::Parser;
 use error::{Error, Result};
-use looks::LookCard;
-use markdown::{Rendered, place_of_copied, place_of_made, render};
+use markdown::{APP, Rendered, Site, place_of_copied, place_of_made, render};
 use page::Page;
 use scratch::Seed;
+use shot::Shot;
 use std::path::{Path, PathBuf};
 use std::process::{Command, ExitCode};
 use studio::{Studio, finish, small};
@@ -37,7 +40,13 @@ struct Options {
     out: PathBuf,
     /// Size at which pictures are made; large ones are shown smaller
     #[arg(long, value_name = "WxH", default_value = "600x400")]
-    size: String,
+    size: Size,
+    /// Number of frames of moving pictures
+    #[arg(long, value_name = "N", default_value_t = 24)]
+    frames: u32,
+    /// The page for browsers, as `cargo xtask web` makes it, to be a part of the site
+    #[arg(long, value_name = "FILE")]
+    page: Option<PathBuf>,
     /// Folder of the pages that are written
     #[arg(long, value_name = "DIR", hide = true)]
     pages: Option<PathBuf>,
@@ -59,6 +68,21 @@ struct Options {
     /// Folder of the Python that has Blender as a module; without it, what needs Blender is not run
     #[arg(long, value_name = "DIR", hide = true)]
     blender: Option<PathBuf>,
+}
+
+/// Width and height.
+#[derive(Clone, Copy, Debug)]
+struct Size(u32, u32);
+
+impl std::str::FromStr for Size {
+    type Err = String;
+
+    fn from_str(text: &str) -> std::result::Result<Self, String> {
+        let sides = text.split_once('x').and_then(|(w, h)| Some(Self(w.parse().ok()?, h.parse().ok()?)));
+        sides
+            .filter(|Self(w, h)| (16..=4096).contains(w) && (16..=4096).contains(h))
+            .ok_or_else(|| format!("{text} is no size such as 600x400"))
+    }
 }
 
 fn main() -> ExitCode {
@@ -87,10 +111,14 @@ fn run(options: &Options) -> Result<()> {
     // What is wrong with pages is found before pictures are made.
     let looks = looks::all()?;
     let mut pages = pages(&sources, &root)?;
+    let mut shots = shots::all(&looks)?;
     for page in &mut pages {
         page.text = page.text.replace("<!-- looks -->", &looks::contents(&looks));
+        moving::fill(page)?;
+        shots.extend(series::fill(page)?);
     }
-    let rendered: Vec<Rendered> = pages.iter().map(|page| render(page, &root)).collect::<Result<_>>()?;
+    let around = Site { root: &root, has_app: options.page.is_some() };
+    let rendered: Vec<Rendered> = pages.iter().map(|page| render(page, around)).collect::<Result<_>>()?;
     write(&site, &pages, &rendered)?;
 
     println!("commands of pages");
@@ -107,7 +135,8 @@ fn run(options: &Options) -> Result<()> {
     let counts = commands(&seed, &pages, &rendered, [&root, scratch.path(), &site])?;
 
     println!("pictures of nodes and looks");
-    photograph(options, &looks, scratch.path(), &pictures)?;
+    photograph(options, &shots, scratch.path(), &pictures)?;
+    add_app(options, &root, &site)?;
     let links = links::check(&site)?;
     let size = size_of(&pictures)?;
     replace(&out)?;
@@ -126,15 +155,33 @@ fn run(options: &Options) -> Result<()> {
     Ok(())
 }
 
-/// Makes the pictures of nodes, controls and looks, all of one frame of the demo scene.
-fn photograph(options: &Options, looks: &[LookCard], scratch: &Path, pictures: &Path) -> Result<()> {
-    let subject = scratch.join("subject.exr");
+/// Makes all pictures: of a frame of the demo scene, of a photograph, and of the scene as it turns.
+fn photograph(options: &Options, shots: &[Shot], scratch: &Path, pictures: &Path) -> Result<()> {
+    let Size(width, height) = options.size;
+    let scene = scratch.join("scene.exr");
     let mut command = Command::new(&options.host);
-    command.arg("render").arg(&options.scene).arg(&subject).args(["--size", &options.size]);
+    command.arg("render").arg(&options.scene).arg(&scene).args(["--size", &format!("{width}x{height}")]);
     finish(&mut command)?;
-    let studio = Studio { host: &options.host, subject: &subject, scratch };
-    let shots = shots::all(looks)?;
-    studio.make(&shots, pictures)
+    let photo = scratch.join("photo.png");
+    studio::resized(&Path::new(env!("CARGO_MANIFEST_DIR")).join("pictures/coffee.jpg"), &photo, width)?;
+    let studio = Studio { host: &options.host, scene: &scene, photo: &photo, scratch };
+    studio.make(shots, pictures)?;
+    println!("moving pictures");
+    let small = studio::WIDEST_BESIDE.min(width);
+    // Wide, as turntables are best seen.
+    let size = (small, small * 9 / 16);
+    let stage =
+        moving::Stage { host: &options.host, scene: &options.scene, scratch, frames: options.frames, size };
+    moving::make(&stage, pictures)
+}
+
+/// Puts the page for browsers into the site, if it was named.
+fn add_app(options: &Options, root: &Path, site: &Path) -> Result<()> {
+    let Some(page) = &options.page else { return Ok(()) };
+    let (from, to) = (root.join(page), site.join(APP));
+    let folder = to.parent().unwrap_or(site);
+    std::fs::create_dir_all(folder).map_err(Error::at(folder))?;
+    std::fs::copy(&from, &to).map(drop).map_err(Error::at(&from))
 }
 
 /// Bytes of the files in a folder.

@@ -7,8 +7,25 @@ use pulldown_cmark::{CodeBlockKind, Event, HeadingLevel, Options, Parser, Tag, T
 use std::collections::BTreeMap;
 use std::path::{Component, Path, PathBuf};
 
-/// Address at which files of the repository are read.
-const REPOSITORY: &str = concat!(env!("CARGO_PKG_REPOSITORY"), "/blob/main/");
+/// Address of the repository.
+const REPOSITORY: &str = env!("CARGO_PKG_REPOSITORY");
+
+/// Addresses that pages name as `address:NAME`, from that of the repository.
+const ADDRESSES: [(&str, &str); 2] =
+    [("repository", REPOSITORY), ("downloads", concat!(env!("CARGO_PKG_REPOSITORY"), "/releases"))];
+
+/// Place of the page for browsers, `address:page`, on the site, where it is built in, and else the page about it.
+pub const APP: &str = "app/index.html";
+const ABOUT_APP: &str = "web/page.html";
+
+/// Surroundings of a page.
+#[derive(Clone, Copy, Debug)]
+pub struct Site<'a> {
+    /// The repository.
+    pub root: &'a Path,
+    /// True where the page for browsers is a part of the site.
+    pub has_app: bool,
+}
 
 /// A page as HTML.
 #[derive(Debug, Default)]
@@ -60,7 +77,7 @@ impl Block {
 ///
 /// # Errors
 /// [`Error::Page`] for links that lead to no file of the repository.
-pub fn render(page: &Page, root: &Path) -> Result<Rendered> {
+pub fn render(page: &Page, site: Site<'_>) -> Result<Rendered> {
     let options = Options::ENABLE_TABLES | Options::ENABLE_STRIKETHROUGH;
     let mut rendered = Rendered::default();
     let mut names = BTreeMap::new();
@@ -70,7 +87,7 @@ pub fn render(page: &Page, root: &Path) -> Result<Rendered> {
     for event in Parser::new_ext(&page.text, options) {
         match event {
             Event::Start(Tag::Link { link_type, dest_url, title, id }) => {
-                let dest_url = target(&dest_url, page, root)?.into();
+                let dest_url = target(&dest_url, page, site)?.into();
                 events.push(Event::Start(Tag::Link { link_type, dest_url, title, id }));
             }
             Event::Start(Tag::Image { link_type, dest_url, title, id }) => {
@@ -149,10 +166,17 @@ fn unique(slug: String, names: &mut BTreeMap<String, u32>) -> String {
 }
 
 /// Target of a link of the Markdown on the site.
-fn target(link: &str, page: &Page, root: &Path) -> Result<String> {
+fn target(link: &str, page: &Page, site: Site<'_>) -> Result<String> {
     let is_outside = link.contains("://") || link.starts_with("mailto:") || link.starts_with('#');
     if is_outside {
         return Ok(link.to_owned());
+    }
+    if let Some(name) = link.strip_prefix("address:") {
+        let place = if site.has_app { APP } else { ABOUT_APP };
+        let page = (name == "page").then(|| format!("{}{place}", to_top(&page.path)));
+        let known =
+            ADDRESSES.iter().find(|(known, _)| *known == name).map(|(_, address)| (*address).to_owned());
+        return page.or(known).ok_or_else(|| Error::page(name, "is no address that pages know"));
     }
     let (path, anchor) = link.split_once('#').map_or((link, String::new()), |(p, a)| (p, format!("#{a}")));
     let file = match (path.strip_prefix("repo:"), page.document) {
@@ -163,10 +187,10 @@ fn target(link: &str, page: &Page, root: &Path) -> Result<String> {
     if let Some(place) = page_of(&file) {
         return Ok(format!("{}{place}.html{anchor}", to_top(&page.path)));
     }
-    if !root.join(&file).exists() {
+    if !site.root.join(&file).exists() {
         return Err(Error::page(&page.path, format!("the repository has no {file}, which {link} names")));
     }
-    Ok(format!("{REPOSITORY}{file}{anchor}"))
+    Ok(format!("{REPOSITORY}/blob/main/{file}{anchor}"))
 }
 
 /// A path of the repository from that of another, with `..` taken out.
@@ -213,14 +237,14 @@ mod tests {
         Page { path, title, part: "", text: text.to_owned(), document }
     }
 
-    fn root() -> PathBuf {
-        Path::new(env!("CARGO_MANIFEST_DIR")).join("../..")
+    fn site() -> Site<'static> {
+        Site { root: Path::new(concat!(env!("CARGO_MANIFEST_DIR"), "/../..")), has_app: false }
     }
 
     #[test]
     fn headings_are_named_as_on_github() {
         let text = "# Bytes on `x_y`, twice: A/B\n## Same\n## Same\n";
-        let rendered = render(&page(text, None), &root()).unwrap();
+        let rendered = render(&page(text, None), site()).unwrap();
         assert!(rendered.html.contains("<h1 id=\"bytes-on-x_y-twice-ab\">"), "{}", rendered.html);
         let ids: Vec<&str> = rendered.headings.iter().map(|(_, id)| id.as_str()).collect();
         assert_eq!(ids, ["same", "same-1"]);
@@ -229,12 +253,14 @@ mod tests {
     #[test]
     fn links_lead_to_pages_and_to_the_repository() {
         let of = |link: &str, document| {
-            render(&page(&format!("[x]({link})"), document), &root()).map(|rendered| rendered.html)
+            render(&page(&format!("[x]({link})"), document), site()).map(|rendered| rendered.html)
         };
         for (link, document, expected) in [
             ("../c.md#d", None, "href=\"../c.html#d\""),
             ("#d", None, "href=\"#d\""),
             ("https://a.org/b", None, "href=\"https://a.org/b\""),
+            ("address:downloads", None, concat!("href=\"", env!("CARGO_PKG_REPOSITORY"), "/releases\"")),
+            ("address:page", None, "href=\"../web/page.html\""),
             ("repo:include/isophote.h", None, "/blob/main/include/isophote.h\""),
             ("repo:CONTRIBUTING.md", None, "href=\"../contributors/contributing.html\""),
             ("README.md#nodes", Some("CONTRIBUTING.md"), "/blob/main/README.md#nodes\""),
@@ -247,13 +273,16 @@ mod tests {
             let html = of(link, document).unwrap();
             assert!(html.contains(expected), "{link}: {html}");
         }
-        assert!(of("repo:no/such/file", None).is_err());
+        assert!(of("repo:no/such/file", None).is_err() && of("address:moon", None).is_err());
+        let with_app = Site { has_app: true, ..site() };
+        let rendered = render(&page("[x](address:page)", None), with_app).unwrap();
+        assert!(rendered.html.contains("href=\"../app/index.html\""), "{}", rendered.html);
     }
 
     #[test]
     fn blocks_are_kept_with_what_is_said_of_them() {
         let text = "```sh\na | b\n```\n\n```sh by-hand\nc\n```\n\n```json file=x.json\n{}\n```\n\n![p](made:out.png)\n";
-        let rendered = render(&page(text, None), &root()).unwrap();
+        let rendered = render(&page(text, None), site()).unwrap();
         let [run, hand, file] = rendered.blocks.as_slice() else { panic!("{:?}", rendered.blocks) };
         assert!(run.is_shell() && !run.is_by_hand() && run.text == "a | b\n");
         assert!(hand.is_shell() && hand.is_by_hand());

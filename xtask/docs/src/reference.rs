@@ -109,7 +109,7 @@ fn explained(param: &Param) -> String {
 }
 
 /// Text within a table.
-fn cell(text: &str) -> String {
+pub fn cell(text: &str) -> String {
     text.replace('|', "\\|")
 }
 

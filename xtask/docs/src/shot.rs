@@ -1,14 +1,35 @@
-//! One picture of the site: what is applied, and with which values.
+//! One picture of the site: what is applied to what, and with which values.
 
 /// One picture.
 #[derive(Clone, Debug)]
 pub struct Shot {
     /// Stem of its file.
     pub name: String,
+    /// The picture that is filtered.
+    pub subject: Subject,
     /// A node, a look, or a graph.
     pub style: Style,
     /// Parameters with their values.
     pub set: Vec<(&'static str, String)>,
+}
+
+/// Picture that is filtered.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Subject {
+    /// A frame of the demo scene, with everything that guides filters.
+    Scene,
+    /// A photograph.
+    Photo,
+}
+
+impl Subject {
+    /// Its name in files and marks of pages.
+    pub fn id(self) -> &'static str {
+        match self {
+            Self::Scene => "scene",
+            Self::Photo => "photo",
+        }
+    }
 }
 
 /// Style that is applied.

@@ -2,7 +2,7 @@
 
 use crate::error::Result;
 use crate::looks::LookCard;
-use crate::shot::{Shot, Style};
+use crate::shot::{Shot, Style, Subject};
 use crate::{maker, reference, styles};
 use isophote::registry;
 
@@ -18,23 +18,31 @@ pub fn all(looks: &[LookCard]) -> Result<Vec<Shot>> {
                 Some(graph) => Style::Graph(graph.to_string()),
                 None => Style::Named(node.id.to_owned()),
             };
-            shots.push(Shot { name: reference::picture(node), style, set: Vec::new() });
+            let (name, subject) = (reference::picture(node), Subject::Scene);
+            shots.push(Shot { name, subject, style, set: Vec::new() });
         }
         if styles::is_style(node) {
             shots.extend(styles::shots(node));
         }
     }
-    shots.extend(looks.iter().map(|look| Shot {
-        name: format!("look-{}", look.id),
-        style: Style::Named(format!("look:{}", look.id)),
-        set: Vec::new(),
-    }));
-    shots.push(before());
+    for subject in [Subject::Scene, Subject::Photo] {
+        shots.extend(looks.iter().map(|look| Shot {
+            name: look.picture(subject),
+            subject,
+            style: Style::Named(format!("look:{}", look.id)),
+            set: Vec::new(),
+        }));
+        shots.push(before(subject));
+    }
     Ok(shots)
 }
 
-/// The frame itself, as a filter that does nothing shows it.
-fn before() -> Shot {
+/// The picture itself, as a filter that does nothing shows it.
+fn before(subject: Subject) -> Shot {
+    let name = match subject {
+        Subject::Scene => "before".to_owned(),
+        Subject::Photo => format!("before-{}", subject.id()),
+    };
     let set = vec![("mix", "0".to_owned())];
-    Shot { name: "before".into(), style: Style::Named("gaussian".into()), set }
+    Shot { name, subject, style: Style::Named("gaussian".into()), set }
 }

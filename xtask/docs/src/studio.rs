@@ -1,7 +1,7 @@
-//! Makes pictures: what nodes, controls and looks make of one frame of the demo scene, as small JPEG files.
+//! Makes pictures: what nodes, controls and looks make of one frame of the demo scene or of a photograph, as small JPEG files.
 
 use crate::error::{Error, Result};
-use crate::shot::{Shot, Style};
+use crate::shot::{Shot, Style, Subject};
 use image::DynamicImage;
 use image::codecs::jpeg::JpegEncoder;
 use image::imageops::FilterType;
@@ -19,14 +19,16 @@ const QUALITY: u8 = 82;
 pub const WIDEST: u32 = 960;
 
 /// The widest of those that stand beside each other.
-const WIDEST_BESIDE: u32 = 480;
+pub const WIDEST_BESIDE: u32 = 480;
 
 /// Maker of pictures.
 pub struct Studio<'a> {
     /// The sample host.
     pub host: &'a Path,
     /// The frame, with everything that guides filters.
-    pub subject: &'a Path,
+    pub scene: &'a Path,
+    /// The photograph.
+    pub photo: &'a Path,
     /// A folder for what is in between.
     pub scratch: &'a Path,
 }
@@ -66,8 +68,12 @@ impl Studio<'_> {
                 file
             }
         };
+        let subject = match shot.subject {
+            Subject::Scene => self.scene,
+            Subject::Photo => self.photo,
+        };
         let mut command = Command::new(self.host);
-        command.arg("apply").arg(style).arg(self.subject).arg(&made);
+        command.arg("apply").arg(style).arg(subject).arg(&made);
         // Lengths are those of so small a picture: marks as fine as on large ones would not be seen.
         command.args(["--lengths", "pixels", "--backend", "cpu", "--threads", "1"]);
         for (param, value) in &shot.set {
@@ -92,22 +98,29 @@ pub fn finish(command: &mut Command) -> Result<()> {
     Err(Error::Program { command: format!("{command:?}"), said })
 }
 
+/// A picture at another width, as any kind of file.
+///
+/// # Errors
+/// [`Error::Picture`] where it cannot be read or written.
+pub fn resized(from: &Path, to: &Path, width: u32) -> Result<()> {
+    let picture = image::open(from).map_err(Error::picture(from))?;
+    let picture =
+        if picture.width() > width { picture.resize(width, u32::MAX, FilterType::Lanczos3) } else { picture };
+    picture.save(to).map_err(Error::picture(to))
+}
+
 /// A picture as a small JPEG file, at most so wide.
 ///
 /// # Errors
 /// [`Error::Picture`] where it cannot be read or written.
 pub fn small(from: &Path, to: &Path, widest: u32) -> Result<()> {
-    let at = |path: &Path| {
-        let path = path.to_owned();
-        move |source| Error::Picture { path, source }
-    };
-    let mut picture = image::open(from).map_err(at(from))?;
+    let mut picture = image::open(from).map_err(Error::picture(from))?;
     if picture.width() > widest {
         picture = picture.resize(widest, u32::MAX, FilterType::Lanczos3);
     }
     let mut file = BufWriter::new(File::create(to).map_err(Error::at(to))?);
     let encoder = JpegEncoder::new_with_quality(&mut file, QUALITY);
-    DynamicImage::ImageRgb8(picture.to_rgb8()).write_with_encoder(encoder).map_err(at(to))?;
+    DynamicImage::ImageRgb8(picture.to_rgb8()).write_with_encoder(encoder).map_err(Error::picture(to))?;
     // Dropped, it would not tell of a full disk.
     file.flush().map_err(Error::at(to))
 }

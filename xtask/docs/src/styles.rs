@@ -1,6 +1,6 @@
 //! The page of a style: what each control for artists does, seen at its low end, its middle and its high end.
 
-use crate::shot::{Shot, Style};
+use crate::shot::{Shot, Style, Subject};
 use isophote::param::{Param, Unit};
 use isophote::registry;
 use isophote::spec::NodeSpec;
@@ -81,7 +81,8 @@ pub fn shots(node: &NodeSpec) -> Vec<Shot> {
         values(param).into_iter().enumerate().map(move |(number, (value, _))| {
             let mut set = vec![(param.id, value)];
             set.extend(together(node, param).map(|(id, value)| (id, value.to_owned())));
-            Shot { name: picture(node, param, number), style: Style::Named(node.id.to_owned()), set }
+            let (name, style) = (picture(node, param, number), Style::Named(node.id.to_owned()));
+            Shot { name, subject: Subject::Scene, style, set }
         })
     };
     controls(node).flat_map(of_control).collect()
