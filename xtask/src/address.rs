@@ -25,7 +25,7 @@ fn site(repository: &str) -> Result<String> {
 /// Paragraph of the README that leads to downloads, the page, the documentation and the sources.
 ///
 /// # Errors
-/// As [`site`].
+/// A repository that is elsewhere than on GitHub.
 pub fn paragraph() -> Result<String> {
     let site = site(REPOSITORY)?;
     Ok(format!(

@@ -8,7 +8,7 @@ use isophote::spec::NodeSpec;
 use std::fmt::Write as _;
 
 /// Symbols that are parameters: symbol, sections, node and parameter whose declaration says what it is.
-const PARAMETERS: [(&str, &str, &str, &str); 40] = [
+const PARAMETERS: [(&str, &str, &str, &str); 45] = [
     ("σ_g (scale of the derivative)", "2.2.2", "structure_tensor", "sigma_g"),
     ("ρ", "2.4", "structure_tensor", "rho"),
     ("α (significance)", "2.6.3", "tensor_view", "alpha"),
@@ -17,10 +17,10 @@ const PARAMETERS: [(&str, &str, &str, &str); 40] = [
     ("K, λ (contrast)", "3.1", "anisotropic_diffusion", "contrast"),
     ("σ_d", "3.2", "bilateral", "sigma_d"),
     ("σ_r", "3.2", "bilateral", "sigma_r"),
-    ("σ_d,g", "3.4", "oriented_bilateral", "sigma_dg"),
-    ("σ_d,t", "3.4", "oriented_bilateral", "sigma_dt"),
-    ("σ_r,g", "3.4", "oriented_bilateral", "sigma_rg"),
-    ("σ_r,t", "3.4", "oriented_bilateral", "sigma_rt"),
+    ("σ_d across edges", "3.4", "oriented_bilateral", "sigma_dg"),
+    ("σ_d along edges", "3.4", "oriented_bilateral", "sigma_dt"),
+    ("σ_r across edges", "3.4", "oriented_bilateral", "sigma_rg"),
+    ("σ_r along edges", "3.4", "oriented_bilateral", "sigma_rt"),
     ("σ_e", "4.2", "flow_dog", "sigma_e"),
     ("k", "4.2", "flow_dog", "k"),
     ("τ", "4.3", "flow_dog", "tau"),
@@ -32,11 +32,13 @@ const PARAMETERS: [(&str, &str, &str, &str); 40] = [
     ("σ_m", "4.5", "flow_dog", "sigma_m"),
     ("n_e", "4.6", "cartoon", "n_e"),
     ("n_a", "4.6", "cartoon", "n_a"),
+    ("q (levels)", "4.6", "quantize_luminance", "bins"),
     ("φ_q", "4.6", "quantize_luminance", "phi_q"),
-    ("Λ_δ", "4.6", "quantize_luminance", "lambda_delta"),
-    ("Ω_δ", "4.6", "quantize_luminance", "omega_delta"),
-    ("Λ_φ", "4.6", "quantize_luminance", "lambda_phi"),
-    ("Ω_φ", "4.6", "quantize_luminance", "omega_phi"),
+    ("Λ_δ", "4.6, WOG06", "quantize_luminance", "lambda_delta"),
+    ("Ω_δ", "4.6, WOG06", "quantize_luminance", "omega_delta"),
+    ("Λ_φ", "4.6, WOG06", "quantize_luminance", "lambda_phi"),
+    ("Ω_φ", "4.6, WOG06", "quantize_luminance", "omega_phi"),
+    ("φ_w", "4.6, WOG06", "warp_sharpen", "phi_w"),
     ("r", "5.2 to 5.4", "anisotropic_kuwahara", "radius"),
     ("N (sectors)", "5.3", "anisotropic_kuwahara", "sectors"),
     ("q", "5.3", "anisotropic_kuwahara", "q"),
@@ -48,32 +50,34 @@ const PARAMETERS: [(&str, &str, &str, &str); 40] = [
     ("τ_w", "5.5.2", "anisotropic_kuwahara", "tau_w"),
     ("N (iterations)", "6", "coherence_enhancing", "iterations"),
     ("σ_s", "6.3.1", "coherence_enhancing", "sigma_t"),
+    ("σ_g (shocks)", "6.4", "coherence_enhancing", "sigma_g"),
+    ("σ_i", "6.4.3", "coherence_enhancing", "sigma_i"),
     ("τ_s (shocks)", "6.4.3", "coherence_enhancing", "threshold"),
+    ("σ_a", "6.5", "coherence_enhancing", "sigma_a"),
 ];
 
 /// Symbols that nobody sets: symbol, section, meaning.
-const QUANTITIES: [(&str, &str, &str); 9] = [
+const QUANTITIES: [(&str, &str, &str); 7] = [
     ("f", "2.2", "The picture, a function of the place."),
     ("J", "2.4", "The structure tensor: the products of the derivatives with each other, smoothed by ρ."),
     (
         "E, F, G",
-        "2.4.2",
-        "Its three numbers: along x twice, mixed, along y twice. The image of kind *tensor* has them as channels.",
+        "2.3.2",
+        "Its three numbers: along x twice, mixed, along y twice. Images of the kind *tensor* have them as channels.",
     ),
     (
         "λ₁, λ₂",
         "2.3",
         "Its eigenvalues, the greater first: how much the picture changes across the edge and along it.",
     ),
-    ("g", "3.4", "The direction across the edge, of the greater eigenvalue."),
     (
         "t",
         "3.4",
-        "The direction along the edge, of the lesser eigenvalue: strokes, hatches and smoothing follow it.",
+        "Direction of a pass: across edges (the major eigenvector) or along them (the minor one), which strokes and \
+         hatches follow.",
     ),
     ("A", "2.6.1", "Anisotropy, from 0 (all directions alike) to 1 (one direction); *Tensor View* shows it."),
-    ("L, a, b", "4.1", "Lightness from 0 to 100 and the two axes of colour, CIELAB."),
-    ("d", "4.6", "Distance of two levels of lightness, 100 divided by their number."),
+    ("L, a, b", "3.2", "Lightness from 0 to 100 and the two axes of colour, CIELAB."),
 ];
 
 /// Parameters of a node that artists turn and whose text names another parameter of it.
@@ -122,7 +126,8 @@ pub fn tables() -> String {
 /// True where two parameters of one id are one thing: the same word may be another thing in another node.
 fn is_same(one: &Param, other: &Param) -> bool {
     let first = |text: &'static str| text.split(['.', ';', ',', ':', '(']).next().map(str::trim);
-    one.id == other.id && (one.label == other.label || first(one.doc) == first(other.doc))
+    let is_word = ["radius", "threshold", "iterations"].contains(&one.id);
+    first(one.doc) == first(other.doc) || !is_word && one.label == other.label
 }
 
 #[cfg(test)]
@@ -146,7 +151,7 @@ mod tests {
     fn no_greek_letter_is_left_out() {
         let greek = ["sigma", "rho", "tau", "phi", "epsilon", "alpha", "lambda", "omega"];
         // Not of the thesis, or of a node's own.
-        let own = ["sigma", "sigma_w", "phi_w", "sigma_b", "sigma_n", "sigma_t", "sigma_i", "sigma_a"];
+        let own = ["sigma", "sigma_w", "sigma_b", "sigma_n"];
         for node in registry::nodes() {
             for param in node.params().filter(|param| !own.contains(&param.id)) {
                 let is_greek = greek.contains(&param.id.split('_').next().unwrap_or_default());
