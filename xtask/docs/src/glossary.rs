@@ -110,7 +110,8 @@ pub fn tables() -> String {
         moved.dedup();
         let _ = writeln!(
             text,
-            "| {symbol} | {section} | `{id}`: {} | {} | {links} | {} |",
+            "| {} | {section} | `{id}`: {} | {} | {links} | {} |",
+            written(symbol),
             param.label,
             cell(param.doc),
             moved.join(", ")
@@ -118,9 +119,16 @@ pub fn tables() -> String {
     }
     text.push_str("\n## Symbols that nobody sets\n\n| symbol | § | is |\n|---|---|---|\n");
     for (symbol, section, is) in QUANTITIES {
-        let _ = writeln!(text, "| {symbol} | {section} | {is} |");
+        let _ = writeln!(text, "| {} | {section} | {is} |", written(symbol));
     }
     text
+}
+
+/// A symbol with its index below the line.
+fn written(symbol: &str) -> String {
+    let Some((letter, rest)) = symbol.split_once('_') else { return symbol.to_owned() };
+    let end = rest.find(|c: char| !c.is_alphanumeric()).unwrap_or(rest.len());
+    format!("{letter}<sub>{}</sub>{}", &rest[..end], &rest[end..])
 }
 
 /// True where two parameters of one id are one thing: the same word may be another thing in another node.
@@ -140,9 +148,9 @@ mod tests {
         for (symbol, _, node, id) in PARAMETERS {
             let found = registry::find(node).unwrap().param(id);
             assert!(found.is_some(), "{symbol}: {node} has no {id}");
-            assert!(tables.contains(&format!("| {symbol} |")), "{symbol}");
+            assert!(tables.contains(&format!("| {} |", written(symbol))), "{symbol}");
         }
-        let line = tables.lines().find(|line| line.starts_with("| σ_e |")).unwrap();
+        let line = tables.lines().find(|line| line.starts_with("| σ<sub>e</sub> |")).unwrap();
         assert!(line.contains("nodes/cartoon.md") && line.contains("Line width"), "{line}");
     }
 

@@ -4,7 +4,7 @@
 use crate::error::{Error, Result};
 use crate::page::{Page, escaped, to_top};
 use crate::shot::{Shot, Style, Subject};
-use crate::styles::shown;
+use crate::styles::{picture_at, shown};
 use isophote::param::Param;
 use isophote::registry;
 use isophote::spec::NodeSpec;
@@ -34,13 +34,24 @@ impl Series {
         Some(Self { node, param, subject, values })
     }
 
+    /// Stem of a picture that is made for the page of the style anyway.
+    fn at_hand(&self, value: &str) -> Option<String> {
+        let of_scene = self.subject == Subject::Scene;
+        of_scene.then(|| picture_at(self.node, self.param, value)).flatten()
+    }
+
     fn picture(&self, number: usize) -> String {
+        self.at_hand(&self.values[number]).unwrap_or_else(|| self.own_picture(number))
+    }
+
+    fn own_picture(&self, number: usize) -> String {
         format!("series-{}-{}-{}-{number}", self.subject.id(), self.node.id, self.param.id)
     }
 
     fn shots(&self) -> impl Iterator<Item = Shot> + '_ {
-        self.values.iter().enumerate().map(|(number, value)| Shot {
-            name: self.picture(number),
+        let missing = self.values.iter().enumerate().filter(|(_, value)| self.at_hand(value).is_none());
+        missing.map(|(number, value)| Shot {
+            name: self.own_picture(number),
             subject: self.subject,
             style: Style::Named(self.node.id.to_owned()),
             set: vec![(self.param.id, value.clone())],
@@ -112,6 +123,10 @@ mod tests {
             "{}",
             good.text
         );
+        // The page of the style has the first, of the scene alone.
+        let mut again = page("<!-- series: cartoon.texture_lines on scene: 0, 0.3 -->\n");
+        assert_eq!(fill(&mut again).unwrap().len(), 1);
+        assert!(again.text.contains("../pictures/style-cartoon-texture_lines-0.jpg"), "{}", again.text);
         for wrong in ["cartoon.no on photo: 1", "no.detail on photo: 1", "cartoon.detail on moon: 1"] {
             let error = fill(&mut page(&format!("<!-- series: {wrong} -->\n"))).unwrap_err().to_string();
             assert!(error.contains(wrong) && error.contains("a/b"), "{error}");

@@ -75,6 +75,13 @@ fn picture(node: &NodeSpec, param: &Param, number: usize) -> String {
     format!("style-{}-{}-{number}", node.id, param.id)
 }
 
+/// Picture of the frame with a control at a value, where the page of the style has one of nothing else.
+pub fn picture_at(node: &NodeSpec, param: &Param, value: &str) -> Option<String> {
+    let is_shown = is_style(node) && controls(node).any(|control| control.id == param.id);
+    let number = values(param).iter().position(|(known, _)| known == value)?;
+    (is_shown && together(node, param).is_none()).then(|| picture(node, param, number))
+}
+
 /// The pictures of the page.
 pub fn shots(node: &NodeSpec) -> Vec<Shot> {
     let of_control = |param: &'static Param| {
