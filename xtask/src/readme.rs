@@ -61,3 +61,15 @@ fn replaced(readme: &str, part: &str, text: &str) -> Result<String> {
         around.ok_or_else(|| Failure(format!("the README has lost the markers of its {part}")))?;
     Ok(format!("{before}{begin}{text}{end}{after}"))
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn the_readme_has_the_addresses_of_today() {
+        let readme = include_str!("../../README.md");
+        assert_eq!(replaced(readme, ADDRESSES, &address::paragraph().unwrap()).unwrap(), readme);
+        assert!(replaced(readme, "moons", "").is_err());
+    }
+}
