@@ -10,7 +10,7 @@ use crate::state::viewport::Compare;
 pub const KEYS: [(&str, &str); 28] = [
     ("drag", "turns the scene; moves a picture"),
     ("Shift+drag", "pans, as other buttons do"),
-    ("wheel", "zooms"),
+    ("wheel", "zooms; over a slider where the pointer rests it changes that, with Shift finely"),
     ("Ctrl+wheel", "magnifies the pixels under the pointer"),
     ("Ctrl+drag", "moves what is magnified"),
     ("1, 2, ...", "show the style of that number"),
@@ -32,7 +32,7 @@ pub const KEYS: [(&str, &str); 28] = [
     ("Ctrl+O", "opens a file"),
     ("Ctrl+E", "asks what is to be exported"),
     ("Ctrl+S", "saves the look; with Shift under another name"),
-    ("r", "sets everything back to the style's defaults"),
+    ("r", "goes back to the look as it was chosen; pressed again, to the defaults of its style"),
     ("?", "shows and hides the help"),
     ("Escape", "closes what is open in front: a dialog, the help, the looks"),
     ("Ctrl+Q", "closes the window, and asks before if something would be lost"),
