@@ -79,7 +79,8 @@ fn label(ui: &mut Ui, session: &Session, parameter: &Parameter) -> Response {
     let text = RichText::new(parameter.param.label);
     let text = if is_idle { text.color(theme::FAINT.gamma_multiply(0.7)) } else { text };
     let width = (ui.available_width() * SHARE).clamp(LABEL[0], LABEL[1]);
-    let (rect, _) = ui.allocate_exact_size(vec2(width, ROW), Sense::hover());
+    // It is no stop for the focus.
+    let (rect, room) = ui.allocate_exact_size(vec2(width, ROW), Sense::CLICK);
     let mut hint = parameter.param.doc.to_owned();
     if is_idle {
         hint += "\n\nIt has no effect with the other values as they are.";
@@ -104,9 +105,8 @@ fn label(ui: &mut Ui, session: &Session, parameter: &Parameter) -> Response {
     }
     let mut place =
         ui.new_child(egui::UiBuilder::new().max_rect(rect).layout(Layout::left_to_right(Align::Center)));
-    // It is no stop for the focus.
-    let label = egui::Label::new(text).truncate().selectable(false).sense(Sense::CLICK);
-    place.add(label).on_hover_text(hint)
+    let label = egui::Label::new(text).truncate().selectable(false);
+    place.add(label).union(room).on_hover_text(hint)
 }
 
 /// A value as people read it.

@@ -46,7 +46,8 @@ impl Turned {
         if notches == 0.0 {
             return None;
         }
-        let is_fine = ui.input(|input| input.modifiers.shift);
+        let shift = |event: &Event| matches!(event, Event::MouseWheel { modifiers, .. } if modifiers.shift);
+        let is_fine = ui.input(|input| input.events.iter().any(shift));
         let mut step = (self.ends[1] - self.ends[0]) / STEPS / if is_fine { FINE } else { 1.0 };
         let mut count = f64::from(notches);
         if self.is_whole {
