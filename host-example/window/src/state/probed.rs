@@ -54,6 +54,7 @@ impl Form {
     /// A difference, always with its sign.
     fn difference(self, before: f32, after: f32) -> String {
         match self {
+            _ if before == after => "0".into(),
             // The difference of the numbers that are read.
             Self::Bytes => format!("{:+}", byte(after) - byte(before)),
             Self::Whole => format!("{:+}", after - before),
