@@ -7,10 +7,12 @@ use crate::state::session::Session;
 use crate::state::viewport::Compare;
 
 /// Keys and what they do, for the help of the program and of the window.
-pub const KEYS: [(&str, &str); 28] = [
+pub const KEYS: [(&str, &str); 30] = [
     ("drag", "turns the scene; moves a picture"),
     ("Shift+drag", "pans, as other buttons do"),
-    ("wheel", "zooms; over a slider where the pointer rests it changes that, with Shift finely"),
+    ("wheel", "zooms"),
+    ("wheel (slider)", "changes a slider on which the pointer has rested; with Shift finely"),
+    ("double click", "on a name in the panel: sets it back to the look, then to the style"),
     ("Ctrl+wheel", "magnifies the pixels under the pointer"),
     ("Ctrl+drag", "moves what is magnified"),
     ("1, 2, ...", "show the style of that number"),

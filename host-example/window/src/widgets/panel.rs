@@ -7,7 +7,7 @@ use egui::{CollapsingHeader, RichText, ScrollArea, Ui};
 use super::{chain, control, hint, layers, lighting, theme};
 use crate::state::look::Parameter;
 use crate::state::resetting::Goal;
-use crate::state::session::Session;
+use crate::state::session::{Session, TURNS};
 
 /// Headings that are open at first.
 const OPEN: [&str; 2] = ["look", ""];
@@ -41,6 +41,10 @@ pub fn show(ui: &mut Ui, session: &mut Session) {
         }
         ui.add_space(16.0);
     });
+    if session.is_wheeled() {
+        // What was turned is let go of then.
+        ui.ctx().request_repaint_after(TURNS);
+    }
 }
 
 /// The look, and what can be done with it as a whole.

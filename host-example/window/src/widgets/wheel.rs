@@ -2,8 +2,6 @@
 
 use egui::{Event, Id, MouseWheelUnit, Pos2, Response, Ui, Vec2};
 
-use crate::state::session::TURNS;
-
 /// Seconds that the pointer rests before the wheel is for the slider below it.
 const REST: f64 = 0.3;
 /// Points to a notch for devices that scroll smoothly.
@@ -60,7 +58,6 @@ impl Turned {
         // A few digits more than the step has.
         let digits = (2.0 - step.log10().floor()).clamp(0.0, 12.0) as usize;
         let value = egui::emath::round_to_decimals(self.value + count * step, digits).clamp(least, most);
-        ui.ctx().request_repaint_after(TURNS);
         (value != self.value).then_some(value)
     }
 }
