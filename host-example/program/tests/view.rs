@@ -92,6 +92,53 @@ fn a_slider_is_moved_and_taken_back_and_a_wipe_shows_the_original() {
     assert!(remembered.contains("cube.gltf") && remembered.contains("blueprint"), "{remembered}");
 }
 
+/// The slider's handle, and the number beside it.
+const HANDLE: Part = [500, 136, 612, 156];
+const NUMBER: Part = [624, 138, 682, 154];
+/// A place in that field.
+const FIELD: [i32; 2] = [645, 146];
+/// The edge of the panel, and what is beside it.
+const EDGE: [i32; 2] = [352, 300];
+const BESIDE: Part = [318, 60, 350, 300];
+
+#[test]
+fn a_slider_is_turned_by_the_wheel_its_number_typed_and_the_panel_made_wider() {
+    let Some(display) = Display::open("800x600") else { return };
+    let folder = support::folder();
+    let scene = support::cube(folder.path());
+    let mut command = view(folder.path(), "700x420");
+    let mut window = Window::open(&display, command.args(["--style", "blueprint"]).arg(&scene));
+    let part = |part| screen(display.folder(), part);
+    window.point(ASIDE, &[]);
+    window.wait_for("blueprint", |_| is_blue(&part(CANVAS)));
+    let (number, handle) = (window.settled(NUMBER), part(HANDLE));
+    window.point(SLIDER, &[]);
+    window.changes("the slider under the pointer", HANDLE, &handle);
+    window.point(SLIDER, &["sleep", "1", "click", "--repeat", "8", "--delay", "30", "4"]);
+    window.changes("another number", NUMBER, &number);
+    window.point(ASIDE, &[]);
+    window.settled(NUMBER);
+    window.key("ctrl+z");
+    window.becomes("the number before all that was turned at once", NUMBER, &number);
+    window.point(FIELD, &["sleep", "0.1", "click", "1"]);
+    // The colour of text that is selected, in whichever order the screen has it.
+    let is_selected = |pixel: &[u8]| [[62, 88, 116], [116, 88, 62]].iter().any(|color| pixel[..3] == *color);
+    let is_edited = |number: &[u8]| number.chunks_exact(4).any(is_selected);
+    window.wait_for("the number to be typed over", |_| is_edited(&part(NUMBER)));
+    window.point(FIELD, &["type", "2*1,5"]);
+    window.key("Return");
+    window.point(ASIDE, &[]);
+    let typed = window.settled(NUMBER);
+    assert!(typed != number && !is_edited(&typed));
+    window.key("ctrl+z");
+    window.becomes("the number before it", NUMBER, &number);
+    window.drag(EDGE, [EDGE[0] - 40, EDGE[1]]);
+    window.wait_for("a wider panel", |_| !is_blue(&part(BESIDE)));
+    window.close();
+    let remembered = std::fs::read_to_string(folder.path().join("view.json")).unwrap();
+    assert!(remembered.contains(r#""panel_width": 388"#), "{remembered}");
+}
+
 #[test]
 fn half_precision_shows_all_but_the_same_and_says_so() {
     let Some(display) = Display::open("800x600") else { return };

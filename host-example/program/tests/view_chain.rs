@@ -10,6 +10,7 @@ use isophote_scene::Scene;
 use isophote_window::state::chain::{self, Chain, Watched};
 use isophote_window::state::command;
 use isophote_window::state::look::EditedLook;
+use isophote_window::state::resetting::Goal;
 use isophote_window::state::scenery::{Scenery, Staging};
 use isophote_window::state::session::Session;
 use isophote_window::state::settings::Settings;
@@ -124,6 +125,37 @@ fn nodes_are_added_moved_passed_by_and_removed_step_by_step() {
     }
     assert_eq!(session.look().preset.style, "cartoon");
     assert_eq!(session.look().value(&parameter), value);
+}
+
+#[test]
+fn reset_brings_back_the_nodes_of_the_look_and_knows_its_values_under_their_new_names() {
+    let folder = support::folder();
+    let file = folder.path().join("mine.json");
+    std::fs::write(&file, r#"{"style": "cartoon", "parameters": {"posterize": 4}}"#).unwrap();
+    let mut session = session(file.to_str().unwrap());
+    add(&mut session, "bilateral");
+    let find = |session: &Session, name: &str| {
+        session.looks.parameters().iter().find(|parameter| parameter.name == name).unwrap().clone()
+    };
+    let parameters = session.looks.parameters().clone();
+    assert!(parameters.iter().all(|parameter| !session.look().strays(parameter)));
+    assert_eq!(session.look().way_back(&parameters), Some(Goal::Look), "the nodes are others");
+    let posterize = find(&session, "cartoon.posterize");
+    session.set(&posterize, &Value::Int(7));
+    assert!(session.look().strays(&posterize));
+    session.reset(&posterize);
+    assert_eq!(session.look().value(&posterize), Value::Int(4));
+    session.reset_all();
+    assert_eq!(names(&session), ["cartoon"]);
+    assert!(!session.look().is_changed());
+    let parameters = session.looks.parameters().clone();
+    assert_eq!(session.look().way_back(&parameters), Some(Goal::Style));
+    session.reset_all();
+    assert_eq!(session.look().value(&find(&session, "posterize")), posterize.default);
+    for expected in [1, 2] {
+        session.undo();
+        assert_eq!(names(&session).len(), expected);
+    }
 }
 
 #[test]

@@ -258,6 +258,48 @@ fn a_device_that_is_lost_at_once_again_and_again_ends_the_window_with_the_reason
     });
 }
 
+/// Moves the pointer to a place of the window.
+fn point(x: f32, y: f32) -> impl FnMut(&mut App) -> bool {
+    move |_| {
+        let place = [x, y].map(|v| format!("{v:.0}"));
+        Command::new("xdotool").arg("mousemove").args(&place).status().unwrap().success()
+    }
+}
+
+#[test]
+fn the_pixel_under_the_pointer_is_that_of_the_file_and_there_is_none_beside_the_picture() {
+    let name = "the_pixel_under_the_pointer_is_that_of_the_file_and_there_is_none_beside_the_picture";
+    alone(name, |folder| {
+        let size = (120, 80);
+        let session = session(folder, &["cartoon"], size);
+        let is_probed = move |app: &mut App| {
+            let session = app.session();
+            let Some(probed) = session.probed else { return false };
+            let [x, y] = probed.at;
+            assert_eq!(session.viewport.pixel(size, [176.0, 200.0]), Some((x, y)));
+            let expected = support::picture(size.0, size.1).get_pixel(x, y).0;
+            let bytes = probed.original.map(|value| (value * 255.0).round() as u8);
+            assert_eq!(bytes[..3], expected[..3], "at {x}, {y}");
+            let shown = probed.shown.expect("the pixel of the look");
+            assert!(shown != probed.original && shown.iter().all(|value| (0.0..=1.0).contains(value)));
+            let numbers = expected[..3].iter().map(u8::to_string).collect::<Vec<_>>().join(" ");
+            let start = format!("{x}, {y}   original {numbers}   look ");
+            assert!(probed.lines(true)[0].starts_with(&start), "{}", probed.lines(true)[0]);
+            true
+        };
+        let steps: Vec<(&'static str, Step)> = vec![
+            ("the picture", Box::new(is_at_rest)),
+            ("a moment", Box::new(pause(Duration::from_millis(500)))),
+            ("the pointer on it", Box::new(point(176.0, 200.0))),
+            ("the pixel", Box::new(is_probed)),
+            ("the pointer above the picture", Box::new(point(176.0, 50.0))),
+            ("no pixel", Box::new(|app| app.session().probed.is_none())),
+        ];
+        let app = Script::run(session, SIZE, steps);
+        assert!(app.failure.is_none(), "{:?}", app.failure);
+    });
+}
+
 /// Number of objects on the device, kind by kind.
 fn objects(gpu: &Gpu) -> Vec<(&'static str, usize)> {
     let report = gpu.instance.generate_report().unwrap();

@@ -124,7 +124,7 @@ fn a_value_is_undone_redone_and_set_back() {
     session.redo();
     assert_eq!(session.look().value(&parameter), after);
     harness.run_ok();
-    harness.get_by_label("Reset all").click();
+    harness.get_by_label("Reset to look").click();
     harness.run_ok();
     assert!(!harness.state().look().differs(&parameter));
     harness.get_by_label("Undo").click();

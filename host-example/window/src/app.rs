@@ -178,7 +178,7 @@ impl App {
         self.textures.follow(&output.textures_delta);
         stage.panel.set(shapes, output.textures_delta, output.pixels_per_point);
         let controls = started.elapsed();
-        if !context.egui_is_using_pointer() && !context.text_edit_focused() {
+        if !context.egui_is_using_pointer() && !context.text_edit_focused() && !session.is_wheeled() {
             session.let_go();
         }
         hand_over(&mut self.background, session);
@@ -232,8 +232,8 @@ impl App {
             return Ok(());
         }
         stage.panel_time.take().into_iter().for_each(|time| session.record.count_panel(time));
-        let is_probed = session.viewport.probed != stage.probed;
-        session.viewport.probed = stage.probed;
+        let is_probed = session.probed != stage.probed;
+        session.probed = stage.probed;
         if let Some(frame) = stage.snapshot(session)? {
             session.show_scene_frame(frame);
             self.due = Some(Instant::now());

@@ -105,6 +105,7 @@ impl Copied {
                 frame: 0,
             },
             has_light: false,
+            is_bytes: false,
             replaced: 0,
         })
     }

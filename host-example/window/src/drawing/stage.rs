@@ -21,6 +21,7 @@ use super::sources::Sources;
 use crate::jobs::worker::{Wake, Worker};
 use crate::state::document::frame::Frame;
 use crate::state::look::EditedLook;
+use crate::state::probed::Probed;
 use crate::state::session::{Session, Which};
 use isophote_example::kernels::{Counts, Kernels};
 use isophote_files::error::{Error, Result};
@@ -40,8 +41,8 @@ pub struct Stage {
     canvas: Canvas,
     probe: Probe,
     snapshots: Snapshots<FrameState>,
-    /// Colours under the pointer, before and after, as of the last frame.
-    pub probed: Option<[[f32; 4]; 2]>,
+    /// The pixel under the pointer, as of the last frame.
+    pub probed: Option<Probed>,
     /// Draws the controls.
     pub panel: Panel,
     /// Measures the controls, where a report is wanted and the device can.
@@ -311,7 +312,9 @@ impl Stage {
             Progress::Done => Drawn::Controls,
         };
         self.arrange(session);
-        self.encode_probe(&mut encoder, session);
+        if let Some(source) = self.sources.present() {
+            self.probe.encode(&mut encoder, session, source, &self.looks);
+        }
         self.paint(&mut encoder, &target, session);
         self.gpu.queue.submit([encoder.finish()]);
         self.probe.ask();
@@ -460,19 +463,6 @@ impl Stage {
             square: 8.0,
         };
         self.canvas.set(&self.gpu.device, &self.gpu.queue, &arrangement);
-    }
-
-    /// Lets the pixels under the pointer be read.
-    fn encode_probe(&mut self, encoder: &mut wgpu::CommandEncoder, session: &Session) {
-        let (Some(source), Some(pointer)) = (self.sources.present(), session.viewport.pointer) else {
-            return;
-        };
-        let size = session.nominal_size();
-        let Some((x, y)) = session.viewport.pixel(size, pointer) else { return };
-        let place = [(x as f32 + 0.5) / size.0 as f32, (y as f32 + 0.5) / size.1 as f32];
-        let (before, _) = source.original();
-        let after = self.looks[0].output().map_or(before, |(view, ..)| view);
-        self.probe.encode(encoder, [before, after], place);
     }
 
     /// The device.

@@ -166,7 +166,9 @@ impl EditedLook {
 
     /// Gives a parameter one value for all frames.
     pub fn set(&mut self, parameter: &Parameter, value: &Value) {
-        if *value == parameter.default {
+        if self.is_as_chosen(parameter, value) {
+            self.take_back(parameter);
+        } else if *value == parameter.default {
             self.reset(parameter);
         } else {
             self.preset.params.set(&parameter.name, value);
@@ -197,7 +199,7 @@ impl EditedLook {
 
     /// True where it is not what it was opened or saved as.
     pub fn is_changed(&self) -> bool {
-        self.preset != self.opened
+        !self.preset.says_the_same(&self.opened)
     }
 
     /// The file of its graph, if it has one.

@@ -8,6 +8,7 @@ mod steps;
 
 use std::path::PathBuf;
 use std::sync::Arc;
+use std::time::{Duration, Instant};
 
 use super::browser::Browser;
 use super::dialogs::Dialogs;
@@ -20,6 +21,7 @@ use super::open::Open;
 use super::plan::Plan;
 use super::playback::Playback;
 use super::preview::Previews;
+use super::probed::Probed;
 use super::record::Record;
 use super::scenery::{Lighting, Scenery};
 use super::settings::Settings;
@@ -29,6 +31,9 @@ use isophote_files::error::Result;
 use isophote_finishing::stylize::precision::Precision;
 use isophote_loader::{Library, printable};
 use isophote_pictures::exr::Guide;
+
+/// Longest pause of the wheel within one step.
+pub const TURNS: Duration = Duration::from_millis(600);
 
 /// State that undo brings back.
 #[derive(Clone, Debug, PartialEq)]
@@ -65,6 +70,10 @@ pub struct Session {
     pub looks: Looks,
     /// Placement of pictures, and what is under the pointer.
     pub viewport: Viewport,
+    /// The pixel under the pointer.
+    pub probed: Option<Probed>,
+    /// Time at which the wheel has changed a value last.
+    pub wheeled: Option<Instant>,
     /// The browser of looks, and those that are compared.
     pub browser: Browser,
     /// Small pictures in the looks.
@@ -95,6 +104,8 @@ impl Session {
             precision: Precision::default(),
             open: Open::default(),
             viewport: Viewport::default(),
+            probed: None,
+            wheeled: None,
             browser: Browser::default(),
             previews: Previews::default(),
             dialogs: Dialogs::default(),

@@ -35,6 +35,8 @@ pub struct Settings {
     pub look: Option<PathBuf>,
     /// True where the panel is hidden.
     pub panel_hidden: bool,
+    /// Width of the panel in points, where it is another than usual.
+    pub panel_width: Option<f32>,
     #[serde(skip)]
     place: Option<PathBuf>,
 }
@@ -145,6 +147,7 @@ mod tests {
         let place = folder.path().join("deep").join("view.json");
         let mut settings = Settings { place: Some(place.clone()), ..Settings::default() };
         settings.window = Some((900, 500));
+        settings.panel_width = Some(412.5);
         for folder in ["/looks", "/more", "/looks"] {
             settings.add_look_folder(Path::new(folder));
         }
@@ -157,6 +160,7 @@ mod tests {
         settings.write().unwrap();
         let read = Settings::read_from(&place).unwrap();
         assert_eq!((read.window, read.recent.len()), (Some((900, 500)), MOST_RECENT));
+        assert_eq!(read.panel_width, Some(412.5));
         assert_eq!(read.recent[0], Path::new("/pictures/12.png"));
         assert_eq!(read.look_folders, [Path::new("/looks")]);
         assert_eq!(read.folder.as_deref(), Some(Path::new("/pictures")));

@@ -84,7 +84,11 @@ impl Values {
 
     /// Gives a parameter a value.
     pub fn set(&mut self, name: &str, value: &Value) {
-        let param = ParamValue::Typed(value.clone());
+        self.put(name, ParamValue::Typed(value.clone()));
+    }
+
+    /// Gives a parameter a value that may be written in words of its own.
+    pub fn put(&mut self, name: &str, param: ParamValue) {
         match self.0.iter_mut().find(|(known, _)| known == name) {
             Some((_, old)) => *old = param,
             None => self.0.push((name.to_owned(), param)),

@@ -87,8 +87,6 @@ pub struct Viewport {
     pub area: Area,
     /// Position of the pointer on the picture, in pixels of the window.
     pub pointer: Option<[f32; 2]>,
-    /// Colours under the pointer, before and after.
-    pub probed: Option<[[f32; 4]; 2]>,
     /// Pixels of the window to a pixel of the picture; none: all of it fits.
     zoom: Option<f32>,
     /// From the middle of the canvas to that of the picture, in pixels of the picture.
@@ -105,7 +103,6 @@ impl Default for Viewport {
             exposure: 0.0,
             area: Area { x: 0.0, y: 0.0, width: 1.0, height: 1.0 },
             pointer: None,
-            probed: None,
             zoom: None,
             offset: [0.0; 2],
         }

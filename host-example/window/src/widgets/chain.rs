@@ -2,7 +2,7 @@
 
 use egui::{Button, CollapsingHeader, RichText, Ui, vec2};
 
-use super::theme;
+use super::{hint, theme};
 use crate::state::chain::Watched;
 use crate::state::session::Session;
 use isophote_files::error::Error;
@@ -24,7 +24,8 @@ pub fn show(ui: &mut Ui, session: &mut Session) {
     let count = session.looks.chain().map_or(0, |chain| chain.links.len());
     let heading = RichText::new("Nodes").strong();
     let header = CollapsingHeader::new(heading).id_salt("nodes").default_open(count > 1);
-    header.show_unindented(ui, |ui| {
+    let is_changed = session.look().rebuilt().is_some();
+    let shown = header.show_unindented(ui, |ui| {
         if session.looks.chain().is_none() {
             let text = "This graph is no list: its nodes branch. Their parameters are below.";
             ui.label(RichText::new(text).color(theme::FAINT));
@@ -40,6 +41,9 @@ pub fn show(ui: &mut Ui, session: &mut Session) {
         add(ui, session);
         ui.add_space(8.0);
     });
+    if is_changed && shown.fully_closed() {
+        hint::mark(ui, &shown.header_response, "These are not the nodes of the look as it was chosen");
+    }
 }
 
 fn row(ui: &mut Ui, session: &Session, index: usize, count: usize, clicked: &mut Option<(usize, Act)>) {

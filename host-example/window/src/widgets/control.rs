@@ -1,38 +1,41 @@
-//! One parameter: a dot where it differs from its default, its label, its control, and a button that sets it back.
+//! One parameter: a dot where it differs from the look as that was chosen, its label, and its control.
 
-use egui::{Align, Button, Color32, DragValue, Layout, Response, RichText, Sense, Slider, Ui, vec2};
+use std::time::Instant;
 
-use super::theme;
+use egui::{Align, Layout, Response, RichText, Sense, Ui, vec2};
+
+use super::number::Number;
+use super::scale::Scale;
+use super::{hex, theme};
 use crate::state::look::Parameter;
+use crate::state::resetting::Goal;
 use crate::state::session::Session;
 use isophote_finishing::stylize::value::Value;
 use isophote_loader::catalogue::{Choice, ParamKind};
 
-/// Width of the label in points.
-const LABEL: f32 = 118.0;
-/// Width of the value.
-const VALUE: f32 = 62.0;
-/// Width of the button that sets it back.
-const RESET: f32 = 18.0;
+/// Least and greatest width of the label in points.
+const LABEL: [f32; 2] = [118.0, 220.0];
+/// Share of the row that is the label's.
+const SHARE: f32 = 0.36;
 /// Height of a row.
 const ROW: f32 = 22.0;
 
 /// Shows a parameter of the present look.
 pub fn show(ui: &mut Ui, session: &mut Session, parameter: &Parameter) {
-    let differs = session.look().differs(parameter);
-    let animated = session.look().is_animated(parameter);
     let is_idle = session.looks.is_idle(parameter);
     let mut changed = None;
-    let mut reset = false;
+    let [mut takes_back, mut resets] = [false; 2];
+    let mut wheeled = session.wheeled;
     ui.push_id(&parameter.name, |ui| {
         ui.allocate_ui_with_layout(
             vec2(ui.available_width(), ROW),
             Layout::left_to_right(Align::Center),
             |ui| {
                 ui.spacing_mut().item_spacing.x = 4.0;
-                dot(ui, differs);
-                let label = label(ui, parameter, is_idle, animated);
-                let width = ui.available_width() - RESET - 4.0;
+                takes_back = dot(ui, session, parameter);
+                let label = label(ui, session, parameter);
+                resets = label.double_clicked();
+                let width = ui.available_width();
                 let value = session.look().value(parameter);
                 ui.add_enabled_ui(!is_idle, |ui| {
                     ui.allocate_ui_with_layout(
@@ -40,51 +43,70 @@ pub fn show(ui: &mut Ui, session: &mut Session, parameter: &Parameter) {
                         Layout::left_to_right(Align::Center),
                         |ui| {
                             ui.set_min_width(width);
-                            changed = control(ui, parameter, &value, &label);
+                            changed = control(ui, parameter, &value, &label, &mut wheeled);
                         },
                     );
                 });
-                if differs {
-                    let button =
-                        Button::new(RichText::new("⟲").size(12.0)).frame(false).min_size(vec2(RESET, ROW));
-                    let hint = format!(
-                        "Set {} back to {}",
-                        parameter.param.label,
-                        shown(parameter, &parameter.default)
-                    );
-                    reset = ui.add(button).on_hover_text(hint).clicked();
-                }
             },
         );
     });
-    if reset {
+    session.wheeled = wheeled;
+    if takes_back || resets {
         session.reset(parameter);
     } else if let Some(value) = changed {
         session.set(parameter, &value);
     }
 }
 
-fn dot(ui: &mut Ui, differs: bool) {
+/// Marks what differs from the look; says whether the mark was clicked, which takes it back.
+fn dot(ui: &mut Ui, session: &Session, parameter: &Parameter) -> bool {
     let (rect, _) = ui.allocate_exact_size(vec2(8.0, ROW), Sense::hover());
-    if differs {
-        ui.painter().circle_filled(rect.center(), 2.5, theme::ACCENT);
+    if !session.look().strays(parameter) {
+        return false;
     }
+    let response = ui.interact(rect.expand2(vec2(3.0, 0.0)), ui.scope_id().with("dot"), Sense::click());
+    let is_near = response.hovered() || response.has_focus();
+    ui.painter().circle_filled(rect.center(), if is_near { 4.5 } else { 2.5 }, theme::ACCENT);
+    let name = format!("Take back {}", parameter.param.label);
+    response.widget_info(|| egui::WidgetInfo::labeled(egui::Role::Button, true, &name));
+    let value = shown(parameter, &session.look().chosen(parameter));
+    response.on_hover_text(format!("As in the look: {value}")).clicked()
 }
 
-fn label(ui: &mut Ui, parameter: &Parameter, is_idle: bool, animated: bool) -> Response {
+fn label(ui: &mut Ui, session: &Session, parameter: &Parameter) -> Response {
+    let look = session.look();
+    let is_idle = session.looks.is_idle(parameter);
     let text = RichText::new(parameter.param.label);
     let text = if is_idle { text.color(theme::FAINT.gamma_multiply(0.7)) } else { text };
-    let (rect, _) = ui.allocate_exact_size(vec2(LABEL, ROW), Sense::hover());
+    let width = (ui.available_width() * SHARE).clamp(LABEL[0], LABEL[1]);
+    // It is no stop for the focus.
+    let (rect, room) = ui.allocate_exact_size(vec2(width, ROW), Sense::CLICK);
     let mut hint = parameter.param.doc.to_owned();
     if is_idle {
         hint += "\n\nIt has no effect with the other values as they are.";
     }
-    if animated {
+    if look.is_animated(parameter) {
         hint += "\n\nIt changes from frame to frame; this is its value at the first. To change it here gives it one value.";
+    }
+    match look.way_back_of(parameter) {
+        Some(Goal::Look) => {
+            hint += &format!(
+                "\n\nA double click sets it back to the look: {}",
+                shown(parameter, &look.chosen(parameter))
+            );
+        }
+        Some(Goal::Style) => {
+            hint += &format!(
+                "\n\nIt is as in the look. A double click sets it to the style's own default: {}",
+                shown(parameter, &parameter.default)
+            );
+        }
+        None => {}
     }
     let mut place =
         ui.new_child(egui::UiBuilder::new().max_rect(rect).layout(Layout::left_to_right(Align::Center)));
-    place.add(egui::Label::new(text).truncate().selectable(false)).on_hover_text(hint)
+    let label = egui::Label::new(text).truncate().selectable(false);
+    place.add(label).union(room).on_hover_text(hint)
 }
 
 /// A value as people read it.
@@ -110,24 +132,27 @@ fn unit(parameter: &Parameter) -> &'static str {
 }
 
 /// The control itself, and the value that it has been given, if any.
-fn control(ui: &mut Ui, parameter: &Parameter, value: &Value, label: &Response) -> Option<Value> {
+fn control(
+    ui: &mut Ui,
+    parameter: &Parameter,
+    value: &Value,
+    label: &Response,
+    wheeled: &mut Option<Instant>,
+) -> Option<Value> {
+    let unit = unit(parameter);
     match (value, &parameter.param.kind) {
         (Value::Float(now), ParamKind::Float { range, slider, .. }) => {
-            let (mut value, mut typed) = (*now, *now);
-            let rail = Slider::new(&mut value, slider[0]..=slider[1]).trailing_fill(true);
-            let slid = rail_of(ui, rail, label);
             let speed = f64::from(slider[1] - slider[0]) / 240.0;
-            let field = DragValue::new(&mut typed).range(range[0]..=range[1]).speed(speed).max_decimals(3);
-            let written = field_of(ui, field.suffix(unit(parameter)), label);
-            chosen(slid, value, written, typed).map(Value::Float)
+            let (range, ends) = (range.map(f64::from), slider.map(f64::from));
+            let number = Number { value: f64::from(*now), range, speed, decimals: 3, unit };
+            let given = Scale { number, ends }.show(ui, label, wheeled);
+            given.map(|value| Value::Float(value as f32))
         }
         (Value::Int(now), ParamKind::Int { range, slider, .. }) => {
-            let (mut value, mut typed) = (*now, *now);
-            let rail = Slider::new(&mut value, slider[0]..=slider[1]).trailing_fill(true);
-            let slid = rail_of(ui, rail, label);
-            let field = DragValue::new(&mut typed).range(range[0]..=range[1]).speed(0.1);
-            let written = field_of(ui, field.suffix(unit(parameter)), label);
-            chosen(slid, value, written, typed).map(Value::Int)
+            let (range, ends) = (range.map(|end| end as f64), slider.map(|end| end as f64));
+            let number = Number { value: *now as f64, range, speed: 0.1, decimals: 0, unit };
+            let given = Scale { number, ends }.show(ui, label, wheeled);
+            given.map(|value| Value::Int(value.round() as i64))
         }
         (Value::Bool(now), _) => {
             let mut on = *now;
@@ -139,27 +164,8 @@ fn control(ui: &mut Ui, parameter: &Parameter, value: &Value, label: &Response) 
         (Value::Choice(now), ParamKind::Choice { options, .. }) => {
             choice(ui, options, now, label, parameter.param.label)
         }
-        (Value::Color(now), _) => color(ui, *now, label),
+        (Value::Color(now), _) => hex::show(ui, *now, label).map(Value::Color),
         _ => None,
-    }
-}
-
-fn rail_of(ui: &mut Ui, slider: Slider<'_>, label: &Response) -> bool {
-    ui.spacing_mut().slider_width = (ui.available_width() - VALUE - 6.0).max(40.0);
-    let slider = slider.show_value(false).clamping(egui::SliderClamping::Never);
-    ui.add(slider).labelled_by(label.id).changed()
-}
-
-fn field_of(ui: &mut Ui, field: DragValue<'_>, label: &Response) -> bool {
-    ui.add_sized([VALUE, ROW - 2.0], field).labelled_by(label.id).changed()
-}
-
-/// Value that was slid, or typed.
-fn chosen<N>(slid: bool, value: N, written: bool, typed: N) -> Option<N> {
-    match (slid, written) {
-        (true, _) => Some(value),
-        (false, true) => Some(typed),
-        (false, false) => None,
     }
 }
 
@@ -180,16 +186,4 @@ fn choice(ui: &mut Ui, options: &[Choice], now: &str, label: &Response, name: &s
         info
     });
     chosen
-}
-
-fn color(ui: &mut Ui, now: [f32; 4], label: &Response) -> Option<Value> {
-    let before = now.map(|part| (part.clamp(0.0, 1.0) * 255.0).round() as u8);
-    let mut bytes = before;
-    let response = ui.color_edit_button_srgba_unmultiplied(&mut bytes).labelled_by(label.id);
-    let [r, g, b, a] = before;
-    let opacity = if a < 255 { format!(", {:.0} %", f32::from(a) / 2.55) } else { String::new() };
-    ui.label(
-        RichText::new(format!("#{r:02x}{g:02x}{b:02x}{opacity}")).monospace().color(Color32::from_gray(150)),
-    );
-    (response.changed() && bytes != before).then(|| Value::Color(bytes.map(|byte| f32::from(byte) / 255.0)))
 }

@@ -7,10 +7,12 @@ use crate::state::session::Session;
 use crate::state::viewport::Compare;
 
 /// Keys and what they do, for the help of the program and of the window.
-pub const KEYS: [(&str, &str); 28] = [
+pub const KEYS: [(&str, &str); 30] = [
     ("drag", "turns the scene; moves a picture"),
     ("Shift+drag", "pans, as other buttons do"),
     ("wheel", "zooms"),
+    ("wheel (slider)", "changes a slider on which the pointer has rested; with Shift finely"),
+    ("double click", "on a name in the panel: sets it back to the look, then to the style"),
     ("Ctrl+wheel", "magnifies the pixels under the pointer"),
     ("Ctrl+drag", "moves what is magnified"),
     ("1, 2, ...", "show the style of that number"),
@@ -32,7 +34,7 @@ pub const KEYS: [(&str, &str); 28] = [
     ("Ctrl+O", "opens a file"),
     ("Ctrl+E", "asks what is to be exported"),
     ("Ctrl+S", "saves the look; with Shift under another name"),
-    ("r", "sets everything back to the style's defaults"),
+    ("r", "goes back to the look as it was chosen; pressed again, to the defaults of its style"),
     ("?", "shows and hides the help"),
     ("Escape", "closes what is open in front: a dialog, the help, the looks"),
     ("Ctrl+Q", "closes the window, and asks before if something would be lost"),

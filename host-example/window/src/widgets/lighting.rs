@@ -1,7 +1,9 @@
 //! The scene's camera and light.
 
-use egui::{Button, RichText, Slider, Ui};
+use egui::{Button, RichText, Ui};
 
+use super::number::Number;
+use super::scale::Scale;
 use super::theme;
 use crate::state::outcome::Dialog;
 use crate::state::session::Session;
@@ -19,22 +21,29 @@ pub fn show(ui: &mut Ui, session: &mut Session) {
         (
             0,
             "Sun around",
-            -180.0..=180.0,
+            [-180.0, 180.0],
             "Where the sun is, to the right of the camera as it stood at first; 0 is behind it.",
         ),
-        (1, "Sun height", -10.0..=90.0, "How high the sun is above the horizon."),
+        (1, "Sun height", [-10.0, 90.0], "How high the sun is above the horizon."),
     ] {
-        let changed = row(ui, label, doc, |ui| {
-            Slider::new(&mut degrees[index], range).suffix("°").max_decimals(0).ui_in(ui)
-        });
-        if changed {
+        let number = Number {
+            value: f64::from(degrees[index]),
+            range,
+            speed: (range[1] - range[0]) / 240.0,
+            decimals: 1,
+            unit: "°",
+        };
+        if let Some(given) = row(ui, session, label, doc, number) {
+            degrees[index] = given;
             let [azimuth, elevation] = degrees.map(f32::to_radians);
             session.relight(label, |light| light.sun = Some(Direction { azimuth, elevation }));
         }
     }
-    let mut exposure = session.open.scenery().map_or(0.0, |scenery| scenery.lighting.exposure);
+    let exposure = session.open.scenery().map_or(0.0, |scenery| scenery.lighting.exposure);
+    let number =
+        Number { value: f64::from(exposure), range: [-4.0, 4.0], speed: 0.02, decimals: 2, unit: "" };
     let doc = "Brightness of the scene in stops, before looks are put on it.";
-    if row(ui, "Exposure", doc, |ui| Slider::new(&mut exposure, -4.0..=4.0).max_decimals(2).ui_in(ui)) {
+    if let Some(exposure) = row(ui, session, "Exposure", doc, number) {
         session.relight("exposure", |light| light.exposure = exposure);
     }
     background(ui, session);
@@ -46,29 +55,17 @@ pub fn show(ui: &mut Ui, session: &mut Session) {
     }
 }
 
-/// A labelled slider.
-fn row(ui: &mut Ui, label: &str, doc: &str, slider: impl FnOnce(&mut Ui) -> egui::Response) -> bool {
-    ui.horizontal(|ui| {
+/// A labelled slider over the range of a number; the number that it was given.
+fn row(ui: &mut Ui, session: &mut Session, label: &str, doc: &str, number: Number<'_>) -> Option<f32> {
+    let scale = Scale { ends: number.range, number };
+    let given = ui.horizontal(|ui| {
         ui.add_space(12.0);
         let (rect, _) = ui.allocate_exact_size(egui::vec2(114.0, 22.0), egui::Sense::hover());
-        let label = ui
-            .put(rect, egui::Label::new(label).selectable(false).halign(egui::Align::LEFT))
-            .on_hover_text(doc);
-        ui.spacing_mut().slider_width = 96.0;
-        slider(ui).labelled_by(label.id).changed()
-    })
-    .inner
-}
-
-/// Sliders as widgets of a closure.
-trait InUi {
-    fn ui_in(self, ui: &mut Ui) -> egui::Response;
-}
-
-impl InUi for Slider<'_> {
-    fn ui_in(self, ui: &mut Ui) -> egui::Response {
-        ui.add(self.trailing_fill(true))
-    }
+        let label = egui::Label::new(label).selectable(false).halign(egui::Align::LEFT);
+        let label = ui.put(rect, label).on_hover_text(doc);
+        scale.show(ui, &label, &mut session.wheeled)
+    });
+    given.inner.map(|given| given as f32)
 }
 
 fn camera(ui: &mut Ui, session: &mut Session) {

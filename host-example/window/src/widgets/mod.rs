@@ -12,24 +12,29 @@ mod details;
 mod dialogs;
 mod export;
 mod help;
+mod hex;
+mod hint;
 pub mod keys;
 mod layers;
 mod leaving;
 mod lighting;
 mod notes;
+mod number;
 mod panel;
+mod probe;
+mod scale;
+mod side;
 mod start;
 mod status;
 pub mod theme;
 mod top;
+mod wheel;
 
 use egui::{Margin, Panel, Ui};
 
 use crate::state::session::Session;
 use crate::state::viewport::Area;
 
-/// Width of the panel in points.
-const PANEL: f32 = 348.0;
 /// The narrowest window, in points, that has room for more about a look beside all of them.
 const DETAILS: f32 = 940.0;
 /// The smallest window, in points, that has room for the panel and the bars.
@@ -39,6 +44,7 @@ const ROOM: [f32; 2] = [620.0, 300.0];
 pub fn show(ui: &mut Ui, session: &mut Session) {
     let size = ui.available_size();
     let has_room = size.x >= ROOM[0] && size.y >= ROOM[1];
+    let mut beside = None;
     if has_room {
         bar(Panel::top("top")).show(ui, |ui| top::show(ui, session));
         bar(Panel::bottom("bottom")).show(ui, |ui| status::show(ui, session));
@@ -47,19 +53,10 @@ pub fn show(ui: &mut Ui, session: &mut Session) {
             false => !session.settings.panel_hidden && session.browser.comparison.is_none(),
         };
         if session.open.has_picture() && has_panel {
-            let frame = egui::Frame::new().fill(theme::PANEL).inner_margin(Margin {
-                left: 12,
-                right: 4,
-                top: 10,
-                bottom: 0,
-            });
-            Panel::right("look").frame(frame).resizable(false).exact_size(PANEL).show(ui, |ui| match session
-                .browser
-                .is_open
-            {
+            beside = Some(side::show(ui, session, |ui, session| match session.browser.is_open {
                 true => details::show(ui, session),
                 false => panel::show(ui, session),
-            });
+            }));
         }
     }
     let rect = ui.available_rect_before_wrap();
@@ -78,6 +75,9 @@ pub fn show(ui: &mut Ui, session: &mut Session) {
         canvas::show(ui, rect, session);
     } else {
         start::show(ui, session, has_room);
+    }
+    if let Some((panel, most)) = beside {
+        side::edge(ui, session, panel, most);
     }
     notes::show(ui.ctx(), rect, session);
     export::show(ui.ctx(), session);

@@ -4,9 +4,10 @@ use std::sync::Arc;
 
 use egui::{CollapsingHeader, RichText, ScrollArea, Ui};
 
-use super::{chain, control, layers, lighting, theme};
+use super::{chain, control, hint, layers, lighting, theme};
 use crate::state::look::Parameter;
-use crate::state::session::Session;
+use crate::state::resetting::Goal;
+use crate::state::session::{Session, TURNS};
 
 /// Headings that are open at first.
 const OPEN: [&str; 2] = ["look", ""];
@@ -40,6 +41,10 @@ pub fn show(ui: &mut Ui, session: &mut Session) {
         }
         ui.add_space(16.0);
     });
+    if session.is_wheeled() {
+        // What was turned is let go of then.
+        ui.ctx().request_repaint_after(TURNS);
+    }
 }
 
 /// The look, and what can be done with it as a whole.
@@ -48,7 +53,7 @@ fn chooser(ui: &mut Ui, session: &mut Session) {
         let look = session.look();
         let mark = if look.is_changed() { " •" } else { "" };
         let name = RichText::new(format!("{}{mark}", look.name)).size(16.0);
-        let width = ui.available_width() - 156.0;
+        let width = ui.available_width() - 188.0;
         let mut chosen = None;
         let response =
             egui::ComboBox::from_id_salt("look").selected_text(name).width(width).show_ui(ui, |ui| {
@@ -68,12 +73,24 @@ fn chooser(ui: &mut Ui, session: &mut Session) {
         if ui.button("Looks").on_hover_text("All looks, as they make this picture (l)").clicked() {
             session.toggle_browser();
         }
-        let changed = session.looks.parameters().iter().any(|parameter| session.look().differs(parameter));
-        let reset = ui.add_enabled(changed, egui::Button::new("Reset all"));
-        if reset.on_hover_text("Set everything back to the style's defaults (r)").clicked() {
-            session.reset_all();
-        }
+        reset(ui, session);
     });
+}
+
+/// The button that goes back to the look as it was chosen, or from there to the defaults of its style.
+fn reset(ui: &mut Ui, session: &mut Session) {
+    let goal = session.look().way_back(session.looks.parameters());
+    let (text, hint) = match goal {
+        Some(Goal::Style) => {
+            ("Reset to style", "Nothing differs from the look. Go on to the defaults of its style (r)")
+        }
+        Some(Goal::Look) => ("Reset to look", "Go back to the look as it was chosen (r)"),
+        None => ("Reset to look", "Nothing has been changed"),
+    };
+    let button = ui.add_enabled(goal.is_some(), egui::Button::new(text));
+    if button.on_hover_text(hint).on_disabled_hover_text(hint).clicked() {
+        session.reset_all();
+    }
 }
 
 /// Parameters of the node that is selected, or of all.
@@ -110,16 +127,22 @@ fn sections<'p>(parameters: &[&'p Parameter]) -> Vec<Section<'p>> {
 }
 
 fn section(ui: &mut Ui, session: &mut Session, heading: &str, id: String, parameters: &[&Parameter]) {
-    let differing = parameters.iter().filter(|parameter| session.look().differs(parameter)).count();
+    let changed = parameters.iter().filter(|parameter| session.look().strays(parameter)).count();
     let mut text = RichText::new(heading).strong();
-    if differing > 0 {
+    if changed > 0 {
         text = text.color(theme::ACCENT);
     }
     let open = parameters.first().is_some_and(|parameter| OPEN.contains(&parameter.param.group));
-    CollapsingHeader::new(text).id_salt(id).default_open(open).show_unindented(ui, |ui| {
+    let header = CollapsingHeader::new(text).id_salt(id).default_open(open);
+    let shown = header.show_unindented(ui, |ui| {
         for parameter in parameters {
             control::show(ui, session, parameter);
         }
         ui.add_space(8.0);
     });
+    if changed > 0 && shown.fully_closed() {
+        let what =
+            if changed == 1 { "One control differs".into() } else { format!("{changed} controls differ") };
+        hint::mark(ui, &shown.header_response, &format!("{what} from the look"));
+    }
 }

@@ -1,8 +1,9 @@
 //! The bar at the bottom: time, what is under the pointer, magnification and brightness.
 
-use egui::{Button, DragValue, Label, RichText, Slider, Ui};
+use egui::{Button, RichText, Slider, Ui, vec2};
 
-use super::theme;
+use super::number::Number;
+use super::{probe, theme};
 use crate::state::session::Session;
 use crate::state::work::Request;
 
@@ -19,15 +20,17 @@ pub fn show(ui: &mut Ui, session: &mut Session) {
         if session.open.has_picture() {
             timeline(ui, session);
             frames(ui, session);
-            if !session.is_covered() {
-                probe(ui, session);
-            }
         } else {
             ui.label(RichText::new(&session.record.adapter).small().color(theme::FAINT));
         }
         ui.with_layout(egui::Layout::right_to_left(egui::Align::Center), |ui| {
             if session.open.has_picture() {
                 magnification(ui, session);
+                if !session.is_covered() {
+                    ui.with_layout(egui::Layout::left_to_right(egui::Align::Center), |ui| {
+                        probe::show(ui, session)
+                    });
+                }
             }
         });
     });
@@ -87,18 +90,11 @@ fn frames(ui: &mut Ui, session: &mut Session) {
     let last = frames.last();
     ui.label(RichText::new(format!("{number} of {last}")).monospace().color(theme::FAINT));
     let label = ui.label(RichText::new("at").color(theme::FAINT));
-    let rate =
-        DragValue::new(&mut playback.rate).range(1.0..=240.0).speed(0.2).max_decimals(2).suffix(" fps");
-    ui.add(rate).labelled_by(label.id).on_hover_text("Frames per second");
+    let number = Number { value: playback.rate, range: [1.0, 240.0], speed: 0.2, decimals: 2, unit: " fps" };
+    let (rate, given) = number.show(ui, vec2(72.0, 20.0));
+    rate.labelled_by(label.id).on_hover_text("Frames per second");
+    playback.rate = given.unwrap_or(playback.rate);
     ui.add_space(10.0);
-}
-
-fn probe(ui: &mut Ui, session: &Session) {
-    let Some([before, after]) = session.viewport.probed else { return };
-    let text = |color: [f32; 4]| color[..3].iter().map(|v| format!("{v:.3}")).collect::<Vec<_>>().join(" ");
-    let line = format!("{}  →  {}", text(before), text(after));
-    ui.add(Label::new(RichText::new(line).monospace().color(theme::FAINT)))
-        .on_hover_text("Red, green and blue under the pointer, before and after");
 }
 
 fn magnification(ui: &mut Ui, session: &mut Session) {
@@ -106,11 +102,15 @@ fn magnification(ui: &mut Ui, session: &mut Session) {
         size(ui, session);
         ui.add_space(8.0);
     }
-    let stops =
-        DragValue::new(&mut session.viewport.exposure).range(-10.0..=10.0).speed(0.02).max_decimals(2);
+    let value = f64::from(session.viewport.exposure);
+    let number = Number { value, range: [-10.0, 10.0], speed: 0.02, decimals: 2, unit: " stops" };
     let label = ui.label(RichText::new("Exposure").color(theme::FAINT));
-    let stops = ui.add(stops.suffix(" stops")).labelled_by(label.id);
+    let (stops, given) = number.show(ui, vec2(82.0, 20.0));
+    if let Some(given) = given {
+        session.viewport.exposure = given as f32;
+    }
     if stops
+        .labelled_by(label.id)
         .on_hover_text("Brightness of what is shown, not of what is saved; a double click sets it back")
         .double_clicked()
     {

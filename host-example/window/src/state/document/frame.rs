@@ -5,7 +5,7 @@ use isophote_files::limits;
 use isophote_finishing::apply::picture_request::PictureRequest;
 use isophote_loader::abi::{ISOPHOTE_ALPHA_EMISSIVE, IsophoteRequest};
 use isophote_pictures::exr::Guide;
-use isophote_pictures::pixels::Pixels;
+use isophote_pictures::pixels::{Pixels, Precision};
 use isophote_pictures::read::Source;
 use isophote_pictures::space::Space;
 use isophote_pictures::working::WorkingSpace;
@@ -31,6 +31,8 @@ pub struct Frame {
     pub has_light: bool,
     /// Guides that the file holds beside colour.
     pub guides: Vec<GuideImage>,
+    /// True where the file has these colours in 8 bits.
+    pub is_bytes: bool,
     /// Samples of the colour that were NaN or infinite and were replaced.
     pub replaced: u64,
 }
@@ -74,6 +76,7 @@ impl Frame {
             has_light: picture.meaning.is_premultiplied() && color.iter().any(is_beyond_coverage),
             request: PictureRequest::of(picture, working.space, number),
             guides: named.collect(),
+            is_bytes: changed.is_none() && picture.pixels.precision() == Precision::U8,
             replaced: replaced + bad,
             color,
         })
@@ -159,6 +162,7 @@ mod tests {
             frame(Meaning::display(), Pixels::new(1, 1, 4, Samples::U8(vec![255, 51, 0, 0])).unwrap());
         assert_eq!(straight.color, [[1.0, 0.2, 0.0, 0.0]]);
         assert!(!straight.is_premultiplied() && !straight.has_light, "apart from alpha it is no light");
+        assert!(straight.is_bytes && !grey.is_bytes);
     }
 
     #[test]

@@ -7,6 +7,7 @@ use super::Session;
 use crate::state::chain::Chain;
 use crate::state::look::{EditedLook, Parameter};
 use crate::state::looks::Looks;
+use crate::state::resetting::Goal;
 use isophote_files::error::Result;
 use isophote_finishing::stylize::value::Value;
 use isophote_loader::Library;
@@ -60,18 +61,25 @@ impl Session {
         self.edit(&parameter.name, |look| look.set(parameter, value));
     }
 
-    /// Gives a parameter its default.
+    /// Takes a parameter back to what it is in the look as that was chosen, or to its default where it is that already.
     pub fn reset(&mut self, parameter: &Parameter) {
+        let Some(goal) = self.look().way_back_of(parameter) else { return };
         self.let_go();
-        self.edit(&parameter.name, |look| look.reset(parameter));
+        self.edit(&parameter.name, |look| match goal {
+            Goal::Look => look.take_back(parameter),
+            Goal::Style => look.reset(parameter),
+        });
         self.let_go();
     }
 
-    /// Gives all parameters their defaults.
+    /// Goes back to the look as it was chosen, or to the defaults of its style where nothing differs from that.
     pub fn reset_all(&mut self) {
+        let Some(goal) = self.look().way_back(self.looks.parameters()) else { return };
         self.let_go();
-        self.edit("all", |look| look.preset.params.clear());
+        self.edit("all", |look| look.go_back(goal));
         self.let_go();
+        // The list of nodes may be another.
+        self.turn_to(self.looks.current());
     }
 
     /// Shows the look of an index.

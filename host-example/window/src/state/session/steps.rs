@@ -2,7 +2,7 @@
 
 use std::path::Path;
 
-use super::{Session, State};
+use super::{Session, State, TURNS};
 use crate::state::scenery::Lighting;
 use isophote_files::error::Result;
 
@@ -71,6 +71,11 @@ impl Session {
             scenery.relight();
             self.edits.record(what, &before);
         }
+    }
+
+    /// True where the wheel is changing a value: what it turns without a pause is one step.
+    pub fn is_wheeled(&self) -> bool {
+        self.wheeled.is_some_and(|at| at.elapsed() < TURNS)
     }
 
     /// Whatever was being changed is let go of.
