@@ -100,7 +100,8 @@ fn half_precision_shows_all_but_the_same_and_says_so() {
     support::picture(240, 160).save(&photo).unwrap();
     let [exact, half] = ["exact", "half"].map(|precision| {
         let mut command = view(folder.path(), "700x420");
-        command.args(["--report", "--precision", precision, "--style", "gaussian", "--set", "sigma=3"]);
+        command.args(["--report", "--backend", "gpu", "--precision", precision]);
+        command.args(["--style", "gaussian", "--set", "sigma=3"]);
         let mut window = Window::open(&display, command.arg(&photo));
         window.point(ASIDE, &[]);
         window.shows("photo.png", "gaussian");
