@@ -7,6 +7,7 @@ use crate::stylize::style::Style;
 use isophote_files::error::{AtPlace, Result};
 use isophote_loader::abi::{ISOPHOTE_ERROR_CANCELLED, IsophoteRequest};
 use isophote_loader::catalogue::Kind;
+use isophote_loader::plan::Texture;
 use isophote_loader::{AsImage, Control, Image, Input, Library, Sequence};
 use isophote_pictures::exr::Guide;
 use isophote_pictures::pixels::{Pixels, Precision};
@@ -59,6 +60,23 @@ impl Processor {
         let frames = self.library.frames(&self.style.graph);
         let [past, _] = frames.map_err(|e| e.at(&self.style.name, "choose another style"))?;
         Ok(past as usize)
+    }
+
+    /// Bytes that a frame of `request` takes at most while it is computed, with all guides, and those that are kept of frames.
+    ///
+    /// # Errors
+    /// [`isophote_files::error::Error::Input`] for sizes that the library refuses.
+    pub fn memory(&self, request: &IsophoteRequest) -> Result<u64> {
+        let (library, style) = (&self.library, &self.style);
+        let bytes = || {
+            let guides = library.guide_bits(self.guides.iter().map(|guide| guide.id()))?;
+            let request = IsophoteRequest { guides, ..*request };
+            let frames = library.frames(&style.graph)?;
+            let plan = library.plan_frame(&style.graph, &request, frames[0])?;
+            let textures: u64 = plan.textures()?.iter().map(Texture::bytes).sum();
+            Ok(textures + stages(library, style, &request, frames)?)
+        };
+        bytes().map_err(|e: isophote_loader::Error| e.at(&style.name, "choose another picture or style"))
     }
 
     /// The frame of `request`, of which `image` gives the image of an input, and those of frames before where they are

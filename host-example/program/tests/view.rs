@@ -25,7 +25,10 @@ fn a_window_shows_every_style_resizes_and_closes() {
     let folder = support::folder();
     let scene = support::turning_triangle(folder.path());
     let mut command = view(folder.path(), "200x120");
-    command.arg("--report").arg(&scene).args(STYLES.iter().flat_map(|s| ["--style", s]));
+    command
+        .args(["--report", "--backend", "gpu"])
+        .arg(&scene)
+        .args(STYLES.iter().flat_map(|s| ["--style", s]));
     let mut window = Window::open(&display, &mut command);
     for (number, style) in STYLES.iter().enumerate() {
         window.key(&format!("{}", number + 1));
@@ -120,6 +123,30 @@ fn half_precision_shows_all_but_the_same_and_says_so() {
         differences.fold((0, 0), |(most, count), d| (most.max(d), count + usize::from(d > 0)));
     eprintln!("half precision: {count} of {} bytes differ by at most {largest}", exact.len());
     assert!((1..=2).contains(&largest), "colours are rounded to 16 bits, which is seen in last bits alone");
+}
+
+#[test]
+fn both_processors_show_the_same_scene() {
+    let Some(display) = Display::open("800x600") else { return };
+    let folder = support::folder();
+    let scene = support::cube(folder.path());
+    let [gpu, cpu] = ["gpu", "cpu"].map(|backend| {
+        let mut command = view(folder.path(), "700x420");
+        command.args(["--backend", backend, "--style", "none", "--style", "blueprint"]);
+        let mut window = Window::open(&display, command.arg(&scene));
+        window.point(ASIDE, &[]);
+        window.wait_for("the original", |window| shown(&window.title()).is_some_and(|(s, _)| s == "none"));
+        let original = window.settled(CANVAS);
+        window.key("2");
+        window.changes("blueprint", CANVAS, &original);
+        let picture = window.settled(CANVAS);
+        window.close();
+        assert_eq!(window.said(), "");
+        picture
+    });
+    let far = gpu.iter().zip(&cpu).filter(|(a, b)| a.abs_diff(**b) > 8).count();
+    eprintln!("{far} of {} bytes differ by more than 8", gpu.len());
+    assert!(far * 100 <= gpu.len(), "{far} of {} bytes differ", gpu.len());
 }
 
 /// Within the picture of the first card of the browser in a window of 700x420 pixels.

@@ -54,8 +54,8 @@ pub struct Processed {
     done: Arc<AtomicU32>,
     asked: u64,
     running: Option<Wanted>,
-    /// Picture that could not be made, which is not asked for again.
-    refused: Option<Wanted>,
+    /// Pictures that could not be made, which are not asked for again.
+    refused: Vec<Wanted>,
     shown: [Option<(Wanted, Finished)>; 3],
     /// True where everything that is wanted is shown, at whichever size.
     is_complete: bool,
@@ -66,7 +66,7 @@ pub struct Processed {
 
 /// The picture that looks are wanted of.
 pub struct Subject<'s> {
-    /// The picture, and its size over that of the file's.
+    /// The picture.
     pub frame: &'s Arc<Frame>,
     /// Its size over that of the file's.
     pub share: f32,
@@ -121,7 +121,7 @@ impl Processed {
             done,
             asked: 0,
             running: None,
-            refused: None,
+            refused: Vec::new(),
             shown: [const { None }; 3],
             is_complete: false,
             revision: 0,
@@ -130,21 +130,29 @@ impl Processed {
         })
     }
 
-    /// Follows the looks that are shown of a picture; plain ones and those that are not shown are none.
+    /// Follows looks on a picture, of which these are shown; plain ones are none. Those that are not shown for the moment are
+    /// kept as they are.
     ///
     /// # Errors
     /// Errors of the library about a look; what is shown stays.
-    pub fn follow(&mut self, looks: [Option<&EditedLook>; 3], subject: &Subject<'_>) -> Result<()> {
+    pub fn follow(
+        &mut self,
+        looks: [Option<&EditedLook>; 3],
+        is_shown: [bool; 3],
+        subject: &Subject<'_>,
+    ) -> Result<()> {
         let taken = self.take();
         if self.origin.as_ref().is_none_or(|origin| !origin.is_of_same(&subject.origin)) {
             self.shot += 1;
+            (self.shown, self.refused) = ([const { None }; 3], Vec::new());
         }
         self.origin = Some(subject.origin.clone());
         for (shown, _) in self.shown.iter_mut().zip(&looks).filter(|(_, look)| look.is_none()) {
             *shown = None;
         }
         let wanted = |size: (u32, u32)| {
-            let looks = looks.iter().enumerate().filter_map(|(slot, look)| Some((slot, (*look)?)));
+            let looks = looks.iter().enumerate().filter(|(slot, _)| is_shown[*slot]);
+            let looks = looks.filter_map(|(slot, look)| Some((slot, (*look)?)));
             looks.map(move |(slot, look)| (slot, look, size))
         };
         let mut first = None;
@@ -161,12 +169,14 @@ impl Processed {
             let wanted = Wanted { slot, task, origin: subject.origin.clone(), may_finish, since };
             let shown = self.shown[slot].as_ref();
             self.is_complete &= shown.is_some_and(|(shown, _)| shown.is_same(&wanted));
-            let is_refused = self.refused.as_ref().is_some_and(|refused| refused.is_same(&wanted));
+            let is_refused = self.refused.iter().any(|refused| refused.is(&wanted));
             if first.is_none() && !is_refused && !shown.is_some_and(|(shown, _)| shown.satisfies(&wanted)) {
                 first = Some(wanted);
             }
         }
-        self.go_on(first);
+        if is_shown.contains(&true) {
+            self.go_on(first);
+        }
         taken
     }
 
@@ -202,9 +212,8 @@ impl Processed {
     /// Takes over what was made.
     fn take(&mut self) -> Result<()> {
         let Some((wanted, made)) = self.worker.answer() else { return Ok(()) };
-        if !self.worker.is_busy() {
-            self.running = None;
-        }
+        let is_last = !self.worker.is_busy();
+        let was_running = is_last && self.running.take().is_some();
         match made {
             Ok(Some(made)) => {
                 let slot = wanted.slot;
@@ -212,12 +221,27 @@ impl Processed {
                 self.revision += 1;
                 Ok(())
             }
-            Ok(None) => Ok(()),
+            Ok(None) => {
+                // What was not given up cannot be.
+                if was_running {
+                    self.refuse(wanted);
+                }
+                Ok(())
+            }
             Err(error) => {
-                self.refused = Some(wanted);
+                self.refuse(wanted);
                 Err(error)
             }
         }
+    }
+
+    /// Does not make this again until its look or its frame is another.
+    fn refuse(&mut self, wanted: Wanted) {
+        self.refused.retain(|refused| {
+            let is_same_frame = Arc::ptr_eq(&refused.task.frame, &wanted.task.frame);
+            is_same_frame && (refused.slot != wanted.slot || refused.is_same(&wanted))
+        });
+        self.refused.push(wanted);
     }
 
     /// A picture that may stand for what is open `now`, its kind, and what its colours are.

@@ -7,16 +7,14 @@ use std::sync::Arc;
 use crate::state::document::frame::Frame;
 use crate::state::document::reduce;
 use crate::state::look::EditedLook;
-use isophote_files::error::Result;
+use isophote_files::error::{AtPlace, Error, Result};
 use isophote_files::limits;
+use isophote_finishing::apply::memory::{self, Bytes};
 use isophote_finishing::processor::Processor;
 use isophote_loader::abi::IsophoteRequest;
 use isophote_loader::{Control, Image, Library, Sample};
 use isophote_pictures::exr::Guide;
 use isophote_pictures::pixels::Pixels;
-
-/// Bytes a pixel that filtering takes beside the picture, for nearly all looks.
-const WORKING: u64 = 100;
 
 /// A look to be computed.
 #[derive(Clone, Debug)]
@@ -40,23 +38,30 @@ pub struct Stylist {
     known: Option<(EditedLook, u64, Processor)>,
     /// The picture that was made smaller last, and what came of it.
     reduced: Option<(Arc<Frame>, Arc<Frame>)>,
-    /// Frames before the next one, in order, as large as the last result.
+    /// Frames before the next one, in order, where looks read them.
     past: VecDeque<Arc<Frame>>,
+    room: Room,
+}
+
+/// Memory that there is.
+#[derive(Debug, Default)]
+struct Room {
+    /// Number of what was open when it was said that there is too little.
+    told: Option<u64>,
 }
 
 impl Stylist {
     /// One that knows nothing yet.
     pub fn new(library: Library) -> Self {
-        Self { library, known: None, reduced: None, past: VecDeque::new() }
+        Self { library, known: None, reduced: None, past: VecDeque::new(), room: Room::default() }
     }
 
-    /// The picture in its look; nothing where it was cancelled.
+    /// The picture in its look; nothing where it was cancelled, or where memory is too short for so large a picture.
     ///
     /// # Errors
-    /// Errors of the library about the look, and [`isophote_files::error::Error::Failure`] when memory is short.
+    /// Errors of the library about the look; [`Error::Failure`] when memory is short, the first time for what is open.
     pub fn stylize(&mut self, task: &Task, control: &mut Control<'_>) -> Result<Option<Pixels>> {
         let Task { look, share, size, shot, .. } = task;
-        limits::must_have(u64::from(size.0) * u64::from(size.1) * WORKING, &look.name)?;
         if self.known.as_ref().is_none_or(|(known, of, _)| (known, of) != (look, shot)) {
             let Some(style) = look.style(&self.library)? else { return Ok(None) };
             let is_of_shot = self.known.as_ref().is_some_and(|(_, of, _)| of == shot);
@@ -67,14 +72,16 @@ impl Stylist {
         }
         let frame = self.as_small(&task.frame, *size);
         self.keep_past_of(&frame);
+        let past: Vec<Arc<Frame>> = self.past.iter().map(|frame| reduced(frame, *size)).collect();
         let Some((_, _, processor)) = &mut self.known else { return Ok(None) };
         let usual = self.library.request(*size);
-        let usual =
-            usual.map_err(|e| isophote_files::error::AtPlace::at(e, &look.name, "choose another picture"))?;
+        let usual = usual.map_err(|e| e.at(&look.name, "choose another picture"))?;
         let scale = share * size.0 as f32 / task.frame.width as f32;
         let request = frame.request(IsophoteRequest { scale, ..usual });
+        if !self.room.has(processor.memory(&request)?, task)? {
+            return Ok(None);
+        }
         let own = request.frame;
-        let past = &self.past;
         let image = |name: &str, number: i64| {
             let of = past.iter().find(|before| before.number == Some(number));
             let of = if number == own { Some(&frame) } else { of };
@@ -83,7 +90,7 @@ impl Stylist {
         let result = processor.process(&request, &image, control)?;
         let depth = processor.depth()?;
         if result.is_some() && depth > 0 {
-            self.past.push_back(frame);
+            self.past.push_back(Arc::clone(&task.frame));
             self.past.drain(..self.past.len().saturating_sub(depth));
         }
         Ok(result)
@@ -100,26 +107,44 @@ impl Stylist {
         if let Some((_, small)) = self.reduced.as_ref().filter(is_known) {
             return Arc::clone(small);
         }
-        let small = Arc::new(reduce::reduced(frame, size, reduce::whole(size)));
+        let small = reduced(frame, size);
         self.reduced = Some((Arc::clone(frame), Arc::clone(&small)));
         small
     }
 
-    /// Forgets frames that are none before this one, and those of another size.
+    /// Forgets frames that are none before this one.
     fn keep_past_of(&mut self, frame: &Frame) {
-        let size = (frame.width, frame.height);
-        let follows = self.past.back().is_some_and(|last| {
-            (last.width, last.height) == size
-                && last.number.zip(frame.number).is_some_and(|(last, number)| last + 1 == number)
-        });
-        if !follows {
+        // The same frame may come once more, at another size.
+        self.past.retain(|before| before.number < frame.number);
+        let last = self.past.back().and_then(|last| last.number);
+        if last.map(|last| last + 1) != frame.number {
             self.past.clear();
         }
     }
+}
 
-    /// Gives memory back.
-    pub fn rest(&mut self) {
-        self.reduced = None;
+impl Room {
+    /// True where there is memory for this.
+    fn has(&mut self, bytes: u64, task: &Task) -> Result<bool> {
+        let most = memory::half();
+        if bytes <= most.0 {
+            limits::must_have(bytes, &task.look.name)?;
+            return Ok(true);
+        }
+        if self.told.replace(task.shot) == Some(task.shot) {
+            return Ok(false);
+        }
+        let (bytes, name) = (Bytes(bytes), &task.look.name);
+        let problem = format!("{name} takes about {bytes} for all of the picture, which is shown smaller");
+        Err(Error::failure(problem, "scale it down"))
+    }
+}
+
+/// A frame as small as a result.
+fn reduced(frame: &Arc<Frame>, size: (u32, u32)) -> Arc<Frame> {
+    match (frame.width, frame.height) == size {
+        true => Arc::clone(frame),
+        false => Arc::new(reduce::reduced(frame, size, reduce::whole(size))),
     }
 }
 

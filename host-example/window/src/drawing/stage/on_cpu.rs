@@ -42,7 +42,7 @@ impl Stage {
     /// Finds what looks need of a scene.
     pub(super) fn follow_needs(&mut self, session: &Session) -> Result<()> {
         if self.processed.is_some() && session.open.scenery().is_some() {
-            let looks = shown_looks(session)?;
+            let looks = looks(session)?;
             self.needs = self.frames.needs(&session.library, looks.each_ref().map(Option::as_ref));
         }
         Ok(())
@@ -56,7 +56,7 @@ impl Stage {
 
     /// Follows the looks on what is open; returns what went wrong with them.
     pub(super) fn follow_on_cpu(&mut self, session: &Session) -> Result<Option<Error>> {
-        let looks = shown_looks(session)?;
+        let looks = looks(session)?;
         let looks = looks.each_ref().map(Option::as_ref);
         if session.open.scenery().is_some() {
             if let Err(problem) = self.frames.collect() {
@@ -69,7 +69,7 @@ impl Stage {
         // What is covered is made when it is seen.
         let subject = subject(session, &self.frames, self.moves).filter(|_| !session.is_covered());
         match subject {
-            Some(subject) => Ok(processed.follow(looks, &subject).err()),
+            Some(subject) => Ok(processed.follow(looks, shown(session), &subject).err()),
             None => {
                 processed.wait();
                 Ok(None)
@@ -79,7 +79,7 @@ impl Stage {
 
     /// Takes over that other pictures are to be shown, which are there already; renders the scene where it is another.
     pub(super) fn follow_results(&mut self, session: &Session, made: Option<Made>) -> Result<()> {
-        let has_looks = shown_looks(session)?.iter().any(Option::is_some);
+        let has_looks = has_looks(session)?;
         let state = made.as_ref().map(|made| (made.request, made.source, made.scene));
         if let Some(state) = state.filter(|state| state.2.is_some()) {
             self.render(session, state, has_looks)?;
@@ -191,16 +191,21 @@ fn subject<'s>(session: &'s Session, frames: &'s SceneFrames, moves: bool) -> Op
     Some(Subject { frame, share, origin: Origin::of(session)?, sizes, moves, since: Instant::now() })
 }
 
-/// The look, what it is compared with and what is shown instead, as far as they are shown and are not plain.
-fn shown_looks(session: &Session) -> Result<[Option<EditedLook>; 3]> {
+/// The look, what it is compared with and what is shown instead, as far as they are not plain.
+fn looks(session: &Session) -> Result<[Option<EditedLook>; 3]> {
     let compared = session.looks.compared.clone().unwrap_or_else(EditedLook::plain);
-    let shown = session.shown();
     let looks = [session.looks.seen().into_owned(), compared, overlay(session)?];
-    let mut which = [Which::Look, Which::Compared, Which::Overlay].into_iter();
-    Ok(looks.map(|look| {
-        let is_shown = which.next().is_some_and(|which| shown.contains(&which));
-        Some(look).filter(|look| is_shown && !look.is_plain())
-    }))
+    Ok(looks.map(|look| Some(look).filter(|look| !look.is_plain())))
+}
+
+/// The looks that are shown now: of an original that is held up beside them they are kept.
+fn shown(session: &Session) -> [bool; 3] {
+    [Which::Look, Which::Compared, Which::Overlay].map(|which| session.shown().contains(&which))
+}
+
+/// True where any look is shown that is not plain.
+fn has_looks(session: &Session) -> Result<bool> {
+    Ok(looks(session)?.iter().zip(shown(session)).any(|(look, is_shown)| is_shown && look.is_some()))
 }
 
 /// Sizes at which a picture is wanted, one after the other: while something moves one that is soon there; as large as the
