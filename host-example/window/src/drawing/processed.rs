@@ -36,7 +36,7 @@ struct Wanted {
 
 /// A picture to be made, and its number.
 type Job = (u64, Wanted);
-/// What came of it: nothing where it was cancelled.
+/// Result of it: nothing where it was cancelled.
 type Answer = (Wanted, Result<Option<Finished>>);
 
 /// A picture in a look on the device.

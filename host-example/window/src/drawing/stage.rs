@@ -215,7 +215,7 @@ impl Stage {
             self.gpu.check()?;
             return Ok(problems);
         };
-        let overlay = on_cpu::overlay(session)?;
+        let overlay = overlay(session)?;
         let seen = session.looks.seen();
         let compared = session.looks.compared.clone().unwrap_or_else(EditedLook::plain);
         let request = source.request();
@@ -462,4 +462,11 @@ impl Stage {
     pub fn adapter(&self) -> String {
         self.gpu.adapter.get_info().name
     }
+}
+
+/// The look that is shown instead, if it is not a picture that is there anyway.
+fn overlay(session: &Session) -> Result<EditedLook> {
+    let node = session.viewport.overlay.node();
+    let opened = node.map(|node| EditedLook::open(&session.library, node.as_ref()));
+    Ok(opened.transpose()?.unwrap_or_else(EditedLook::plain))
 }

@@ -147,7 +147,7 @@ fn names(ui: &Ui, rect: Rect, session: &Session) {
     }
 }
 
-/// What is being done, with how much of it.
+/// Words for work that is being done, with the share of it that is.
 fn busy(doing: &str, share: Option<f32>) -> String {
     share.map_or_else(|| format!("{doing}…"), |share| format!("{doing}… {:.0} %", share * 100.0))
 }

@@ -3,7 +3,7 @@
 
 use std::time::{Duration, Instant};
 
-use super::{Progress, Stage};
+use super::{Progress, Stage, overlay};
 use crate::drawing::live_look::LiveLook;
 use crate::drawing::made::{FrameState, Made};
 use crate::drawing::origin::Origin;
@@ -228,11 +228,4 @@ fn sizes(session: &Session, whole: (u32, u32), moves: bool) -> Vec<(u32, u32)> {
         sizes.push(whole);
     }
     sizes
-}
-
-/// The look that is shown instead, if it is not a picture that is there anyway.
-pub(super) fn overlay(session: &Session) -> Result<EditedLook> {
-    let node = session.viewport.overlay.node();
-    let opened = node.map(|node| EditedLook::open(&session.library, node.as_ref()));
-    Ok(opened.transpose()?.unwrap_or_else(EditedLook::plain))
 }
