@@ -43,6 +43,10 @@ impl App {
         }
         self.session.record.adapter = stage.adapter();
         self.pace.is_software = stage.is_software() || stage.computes_on_cpu();
+        if self.session.open.has_picture() {
+            // Nothing of it is on this device yet.
+            self.session.work.busy = Some("Opening");
+        }
         self.stage = Some(stage);
         self.devices += 1;
         self.due = Some(Instant::now());
