@@ -5,6 +5,8 @@
 //! | [`apply`] | pictures and sequences of pictures: tasks, memory, filters, masks, reports |
 //! | [`video`] | videos, frame by frame through ffmpeg |
 //! | [`sheet`] | contact sheets |
+//! | [`processor`] | styles on frames in main memory, computed on the CPU |
+//! | [`read_back`] | the same on frames that are read back from a renderer |
 //! | [`shot`] | frames of a scene, rendered and stylized |
 //! | [`staging`] | options of scenes, as command lines have them |
 //! | [`stylize`] | styles, presets and looks, and what stylizes a frame on the renderer's device |
@@ -12,6 +14,8 @@
 #![forbid(unsafe_code)]
 
 pub mod apply;
+pub mod processor;
+pub mod read_back;
 pub mod sheet;
 pub mod shot;
 pub mod staging;

@@ -2,6 +2,8 @@
 
 use std::f32::consts::TAU;
 
+use crate::apply::backend::Backend;
+use crate::read_back::ReadBack;
 use crate::stylize::Stylizer;
 use crate::stylize::style::Style;
 use isophote_example::kernels::Kernels;
@@ -50,6 +52,8 @@ pub struct Options {
     pub scene_referred: bool,
     /// True where rest positions are rendered whatever the style.
     pub rest_positions: bool,
+    /// Backend that the style runs on; the renderer's device may be a driver that computes on the CPU.
+    pub backend: Backend,
 }
 
 /// A scene on a graphics device of its own.
@@ -63,8 +67,46 @@ pub struct Shot {
     drawn: Option<(i64, View)>,
     gpu: Gpu,
     renderer: Renderer,
-    stylizer: Option<Stylizer>,
+    finish: Finish,
     readback: Readback,
+}
+
+/// The way from what was rendered to the picture.
+enum Finish {
+    /// None: pictures are plain.
+    Plain,
+    /// A style on the renderer's device.
+    Device(Box<Stylizer>),
+    /// A style on the CPU.
+    Cpu(Box<ReadBack>),
+}
+
+impl Finish {
+    /// Frames before its own that a frame depends on.
+    fn depth(&self) -> Result<usize> {
+        match self {
+            Self::Plain => Ok(0),
+            Self::Device(stylizer) => Ok(stylizer.depth()),
+            Self::Cpu(style) => style.depth(),
+        }
+    }
+
+    fn wants_rest_positions(&self) -> Result<bool> {
+        match self {
+            Self::Plain => Ok(false),
+            Self::Device(stylizer) => stylizer.wants_rest_positions(),
+            Self::Cpu(style) => style.wants_rest_positions(),
+        }
+    }
+
+    /// Takes the next frame for the first.
+    fn forget(&mut self) {
+        match self {
+            Self::Plain => {}
+            Self::Device(stylizer) => stylizer.forget(),
+            Self::Cpu(style) => style.forget(),
+        }
+    }
 }
 
 impl Shot {
@@ -80,13 +122,17 @@ impl Shot {
         if options.ground {
             renderer.add_ground();
         }
-        let mut stylizer = None;
-        if let Some((library, style)) = style {
-            let kernels = Kernels::new(gpu.device.clone(), gpu.queue.clone());
-            stylizer = Some(Stylizer::new(&kernels, library, style, options.size)?);
-        }
-        let wants_rest = stylizer.as_ref().map_or(Ok(false), Stylizer::wants_rest_positions)?;
-        if options.rest_positions || wants_rest {
+        let finish = match style {
+            None => Finish::Plain,
+            Some((library, style)) if options.backend.is_cpu(gpu.is_software()) => {
+                Finish::Cpu(Box::new(ReadBack::new(library, style)?))
+            }
+            Some((library, style)) => {
+                let kernels = Kernels::new(gpu.device.clone(), gpu.queue.clone());
+                Finish::Device(Box::new(Stylizer::new(&kernels, library, style, options.size)?))
+            }
+        };
+        if options.rest_positions || finish.wants_rest_positions()? {
             renderer.add_rest_positions();
         }
         gpu.check()?;
@@ -106,7 +152,7 @@ impl Shot {
             pose,
             gpu,
             renderer,
-            stylizer,
+            finish,
         };
         shot.bind()?;
         Ok(shot)
@@ -115,10 +161,10 @@ impl Shot {
     /// Lets the style read the colour that is asked for.
     fn bind(&mut self) -> Result<()> {
         let targets = self.renderer.targets();
-        match &mut self.stylizer {
-            Some(stylizer) if self.options.scene_referred => stylizer.bind_scene_referred(targets),
-            Some(stylizer) => stylizer.bind(targets),
-            None => Ok(()),
+        match &mut self.finish {
+            Finish::Device(stylizer) if self.options.scene_referred => stylizer.bind_scene_referred(targets),
+            Finish::Device(stylizer) => stylizer.bind(targets),
+            Finish::Plain | Finish::Cpu(_) => Ok(()),
         }
     }
 
@@ -135,29 +181,29 @@ impl Shot {
 
     /// Renders and stylizes the frame of a number. It does not depend on those drawn before: its motion is that
     /// from the frame of the number before it, and none in frame 1; where the style depends on frames before, those that
-    /// were not drawn are drawn first.
+    /// were not drawn are drawn first. `progress` is told the share of a style on the CPU that is done.
     ///
     /// # Errors
     /// [`isophote_files::error::Error::Failure`] when the device fails.
-    pub fn draw(&mut self, number: i64) -> Result<Picture> {
+    pub fn draw(&mut self, number: i64, progress: &mut dyn FnMut(f32)) -> Result<Picture> {
         let follows = self.drawn.as_ref().is_some_and(|(drawn, _)| *drawn == number - 1);
         if number == 1 || !follows {
-            let depth = self.stylizer.as_ref().map_or(0, Stylizer::depth) as i64;
+            let depth = self.finish.depth()? as i64;
             // Nothing comes before frame 1.
             let first = if number < 1 { number - depth } else { (number - depth).max(1) };
-            if let Some(stylizer) = &mut self.stylizer {
-                stylizer.forget();
-            }
+            self.finish.forget();
             self.begin_before(first);
             for before in first..number {
                 self.encode(before)?;
             }
         }
         self.encode(number)?;
-        let targets = self.renderer.targets();
-        let plain = if self.options.scene_referred { &targets.radiance } else { &targets.color };
-        let result = self.stylizer.as_ref().map_or(&plain.view, Stylizer::output);
-        self.readback.read(&self.gpu, result.texture())
+        let texture = match &mut self.finish {
+            Finish::Plain => &color(self.renderer.targets(), &self.options).texture,
+            Finish::Device(stylizer) => stylizer.output().texture(),
+            Finish::Cpu(style) => return style.picture(progress),
+        };
+        self.readback.read(&self.gpu, texture)
     }
 
     /// Lets the renderer know where everything was before a frame.
@@ -175,7 +221,7 @@ impl Shot {
         let view = self.go_to(number);
         self.drawn = Some((number, view));
         let mut is_rebuilt = false;
-        if let Some(stylizer) = &mut self.stylizer {
+        if let Finish::Device(stylizer) = &mut self.finish {
             stylizer.at_frame(number)?;
             is_rebuilt = stylizer.update()?;
         }
@@ -184,11 +230,16 @@ impl Shot {
         }
         let mut encoder = self.gpu.device.create_command_encoder(&Default::default());
         self.renderer.encode(&mut encoder, &self.scene, &self.pose, &view, &self.lighting);
-        if let Some(stylizer) = &mut self.stylizer {
+        if let Finish::Device(stylizer) = &mut self.finish {
             stylizer.encode(&mut encoder, ALL)?;
         }
         self.gpu.queue.submit([encoder.finish()]);
-        Ok(())
+        let targets = self.renderer.targets();
+        let color = color(targets, &self.options);
+        match &mut self.finish {
+            Finish::Cpu(style) => style.take(&self.gpu, &mut self.readback, color, targets, number),
+            Finish::Plain | Finish::Device(_) => Ok(()),
+        }
     }
 
     /// View of the frame that was drawn last.
@@ -205,6 +256,11 @@ impl Shot {
         let target = choose(self.renderer.targets());
         target.map(|target| self.readback.read(&self.gpu, &target.texture)).transpose()
     }
+}
+
+/// The colour that is asked for.
+fn color<'t>(targets: &'t Targets, options: &Options) -> &'t Target {
+    if options.scene_referred { &targets.radiance } else { &targets.color }
 }
 
 /// Camera that the pictures are taken from.

@@ -120,14 +120,22 @@ fn frames_are_applied_with_their_guides() {
     let folder = folder();
     let path = |name: &str| folder.path().join(name);
     render(folder.path(), "shot.####.exr", &["--frames", "2", "--turntable"]);
-    render(folder.path(), "ours.####.exr", &["--frames", "2", "--turntable", "--style", "blueprint"]);
+    let stylized = ["--frames", "2", "--turntable", "--style", "blueprint", "--backend"];
+    for backend in ["gpu", "cpu"] {
+        render(folder.path(), &format!("{backend}.####.exr"), &[&stylized[..], &[backend]].concat());
+    }
     apply(folder.path(), &["blueprint", "shot.####.exr", "theirs.####.exr"]);
     let none = ["--guide", "normal=none", "--guide", "depth=none", "--guide", "id=none"];
     apply(folder.path(), &[&["blueprint", "shot.####.exr", "blind.####.exr"], &none[..]].concat());
     for frame in ["0001", "0002"] {
-        let [shot, ours, theirs, blind] =
-            ["shot", "ours", "theirs", "blind"].map(|name| read(&path(&format!("{name}.{frame}.exr"))));
+        let [shot, ours, processed, theirs, blind] =
+            ["shot", "gpu", "cpu", "theirs", "blind"].map(|name| read(&path(&format!("{name}.{frame}.exr"))));
         for name in ["R", "G", "B"] {
+            assert_eq!(
+                channel(&processed, name),
+                channel(&theirs, name),
+                "{name} of frame {frame} on the CPU"
+            );
             let [ours, theirs, blind] = [&ours, &theirs, &blind].map(|image| channel(image, name));
             let far = |a: &[f32], b: &[f32]| a.iter().zip(b).filter(|(a, b)| (*a - *b).abs() > 0.01).count();
             // The file's colours are halves; the renderer's own go to the filter as floats.
@@ -142,6 +150,7 @@ fn frames_are_applied_with_their_guides() {
         for name in CHANNELS.iter().filter(|name| !["R", "G", "B", "A"].contains(name)) {
             assert_eq!(channel(&shot, name), channel(&theirs, name), "{name} is left alone");
             assert_eq!(channel(&shot, name), channel(&ours, name), "{name} is written with a style too");
+            assert_eq!(channel(&shot, name), channel(&processed, name), "{name} is written so as well");
         }
     }
 }
@@ -150,18 +159,23 @@ fn frames_are_applied_with_their_guides() {
 fn marks_stick_to_things_in_what_is_rendered_and_in_what_is_applied() {
     let folder = folder();
     render(folder.path(), "shot.exr", &[]);
-    render(folder.path(), "ours.exr", &["--style", "watercolor", "--set", "clouds=1"]);
+    for backend in ["gpu", "cpu"] {
+        let style = ["--style", "watercolor", "--set", "clouds=1", "--backend", backend];
+        render(folder.path(), &format!("{backend}.exr"), &style);
+    }
     apply(folder.path(), &["watercolor", "shot.exr", "theirs.exr", "--set", "clouds=1"]);
     let none = ["--guide", "rest_position=none"];
     apply(
         folder.path(),
         &[&["watercolor", "shot.exr", "blind.exr", "--set", "clouds=1"], &none[..]].concat(),
     );
-    let [ours, theirs, blind] = ["ours", "theirs", "blind"]
+    let [ours, processed, theirs, blind] = ["gpu", "cpu", "theirs", "blind"]
         .map(|name| channel(&read(&folder.path().join(format!("{name}.exr"))), "G"));
     let far = |a: &[f32], b: &[f32]| a.iter().zip(b).filter(|(a, b)| (*a - *b).abs() > 0.01).count();
     let (apart, anchored) = (far(&ours, &theirs), far(&theirs, &blind));
     assert!(apart * 100 <= ours.len(), "{apart} of {} differ", ours.len());
+    let apart_on_cpu = far(&processed, &theirs);
+    assert!(apart_on_cpu * 1000 <= ours.len(), "{apart_on_cpu} differ on the CPU");
     assert!(anchored > 4 * apart && anchored * 20 > ours.len(), "rest positions change {anchored} pixels");
 }
 

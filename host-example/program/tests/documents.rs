@@ -27,8 +27,10 @@ use isophote_pictures::write::Format;
 use isophote_render::gpu::Gpu;
 use isophote_render::readback::Readback;
 use isophote_window::jobs::document::{Document, Options};
+use isophote_window::jobs::stylizing::{Stylist, Task};
 use isophote_window::state::document::frame::Frame;
 use isophote_window::state::document::kind::Kind;
+use isophote_window::state::look::EditedLook;
 
 use support::{assets, folder, has_ffmpeg, isophote, picture, succeeds};
 
@@ -146,6 +148,38 @@ fn a_device_of_the_windows_own_gives_what_apply_gives_on_one() {
         let own = floats(frame.width, frame.height, 4, on_the_device(&frame, "cartoon"));
         assert_eq!(expected.channels(), 4);
         assert!(own.converted(expected.precision()) == expected, "{} is another picture", path.display());
+    }
+}
+
+#[test]
+fn the_cpu_gives_the_window_what_it_gives_apply() {
+    let folder = folder();
+    let path = folder.path().join("light.tif");
+    DynamicImage::from(bright(61, 47)).save(&path).expect("the folder is writable");
+    rendered(folder.path(), "cube.####.exr");
+    let mut stylist = Stylist::new(library());
+    let look = EditedLook::open(&library(), "cartoon".as_ref()).expect("a style");
+    for (shot, path) in (1..).zip([path, folder.path().join("cube.0002.exr")]) {
+        let frame =
+            Document::open(&path, &Options::default()).expect("a picture").wait(1).expect("a picture");
+        let size = (frame.width, frame.height);
+        let expected = applied(&path, "cartoon", None, Backend::Cpu);
+        let task = Task { look: look.clone(), frame, share: 1.0, size, shot };
+        let own = stylist.stylize(&task, &mut Control::default()).expect("a result").expect("a picture");
+        let own = own.converted(expected.precision());
+        assert!(own == expected, "{} is another picture", path.display());
+        // For the screen it is made smaller before, and the look's lengths with it.
+        let task = Task { size: (size.0 / 2, size.1 / 2), ..task };
+        let small = stylist.stylize(&task, &mut Control::default()).expect("a result").expect("a picture");
+        assert_eq!((small.width(), small.height()), task.size);
+        let mean = |pixels: &Pixels| {
+            let numbers = pixels.to_f32();
+            numbers.iter().sum::<f32>() / numbers.len() as f32
+        };
+        let [small, whole] = [mean(&small), mean(&own)];
+        assert!((small - whole).abs() < 0.1 * whole.abs(), "{small} and {whole}");
+        let cancelled = Control { cancelled: Some(&|| true), ..Control::default() };
+        assert!(stylist.stylize(&task, &mut { cancelled }).expect("no failure").is_none());
     }
 }
 

@@ -25,7 +25,10 @@ fn a_window_shows_every_style_resizes_and_closes() {
     let folder = support::folder();
     let scene = support::turning_triangle(folder.path());
     let mut command = view(folder.path(), "200x120");
-    command.arg("--report").arg(&scene).args(STYLES.iter().flat_map(|s| ["--style", s]));
+    command
+        .args(["--report", "--backend", "gpu"])
+        .arg(&scene)
+        .args(STYLES.iter().flat_map(|s| ["--style", s]));
     let mut window = Window::open(&display, &mut command);
     for (number, style) in STYLES.iter().enumerate() {
         window.key(&format!("{}", number + 1));
@@ -147,7 +150,8 @@ fn half_precision_shows_all_but_the_same_and_says_so() {
     support::picture(240, 160).save(&photo).unwrap();
     let [exact, half] = ["exact", "half"].map(|precision| {
         let mut command = view(folder.path(), "700x420");
-        command.args(["--report", "--precision", precision, "--style", "gaussian", "--set", "sigma=3"]);
+        command.args(["--report", "--backend", "gpu", "--precision", precision]);
+        command.args(["--style", "gaussian", "--set", "sigma=3"]);
         let mut window = Window::open(&display, command.arg(&photo));
         window.point(ASIDE, &[]);
         window.shows("photo.png", "gaussian");
@@ -166,6 +170,31 @@ fn half_precision_shows_all_but_the_same_and_says_so() {
         differences.fold((0, 0), |(most, count), d| (most.max(d), count + usize::from(d > 0)));
     eprintln!("half precision: {count} of {} bytes differ by at most {largest}", exact.len());
     assert!((1..=2).contains(&largest), "colours are rounded to 16 bits, which is seen in last bits alone");
+}
+
+#[test]
+fn both_processors_show_the_same_scene() {
+    let (Some(one), Some(other)) = (Display::open("800x600"), Display::open("800x600")) else { return };
+    let folder = support::folder();
+    let scene = support::cube(folder.path());
+    let open = |display, backend| {
+        let mut command = view(folder.path(), "700x420");
+        let mut window =
+            Window::open(display, command.args(["--backend", backend, "--style", "blueprint"]).arg(&scene));
+        window.point(ASIDE, &[]);
+        window
+    };
+    let mut windows = [open(&one, "gpu"), open(&other, "cpu")];
+    let are_same = || {
+        let [gpu, cpu] = [&one, &other].map(|display| screen(display.folder(), CANVAS));
+        let far = gpu.iter().zip(&cpu).filter(|(a, b)| a.abs_diff(**b) > 8).count();
+        is_blue(&gpu) && is_blue(&cpu) && far * 1000 <= gpu.len()
+    };
+    windows[0].wait_for("the same picture in both", |_| are_same());
+    for window in &mut windows {
+        window.close();
+        assert_eq!(window.said(), "");
+    }
 }
 
 /// Within the picture of the first card of the browser in a window of 700x420 pixels.

@@ -141,7 +141,7 @@ fn a_picture_in_8k_opens_and_its_sliders_answer_within_a_bound_of_memory() {
     large.save(at("large.png")).unwrap();
     fs::write(at("mine.json"), r#"{"style": "gaussian", "parameters": {"sigma": 4}}"#).unwrap();
     let mut command = view(folder.path(), &size());
-    command.arg("--report").arg("--style").arg(at("mine.json")).arg(at("large.png"));
+    command.args(["--report", "--backend", "gpu", "--style"]).arg(at("mine.json")).arg(at("large.png"));
     let mut window = Window::open(&display, &mut command);
     window.shows("large.png", "mine");
     let before = window.settled(CANVAS);

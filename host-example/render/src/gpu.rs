@@ -92,6 +92,11 @@ impl Gpu {
         Ok(Self { instance, adapter, device, queue, faults })
     }
 
+    /// True where the driver computes on the CPU.
+    pub fn is_software(&self) -> bool {
+        self.adapter.get_info().device_type == wgpu::DeviceType::Cpu
+    }
+
     /// Error that the device has reported since the last call, if any, which is then forgotten. A lost device
     /// stays lost.
     ///

@@ -190,7 +190,8 @@ impl App {
         let problems = stage.follow(session, scale)?;
         problems.iter().for_each(|problem| session.notes.complain(problem));
         let was_busy = session.work.busy;
-        session.work.busy = stage.is_busy().then_some("Preparing the look").or(self.background.busy());
+        session.work.busy = stage.doing(session).or(self.background.busy());
+        session.work.share = stage.progress();
         let looks = started.elapsed() - controls;
         let always =
             session.record.limit.is_some() || session.open.scenery().is_some_and(|scenery| scenery.playing);
@@ -371,7 +372,8 @@ impl ApplicationHandler<Event> for App {
         }
         let revival = self.revive(event_loop);
         let always = self.session.open.is_playing() || self.session.record.limit.is_some();
-        let due = if always { Some(Instant::now()) } else { self.due };
+        let soonest = self.stage.as_ref().map(|stage| stage.next_window(&self.session));
+        let due = if always { self.due.into_iter().chain(soonest).min() } else { self.due };
         // The device tells when it is there for the next frame.
         let is_ready = self.stage.as_ref().is_some_and(|stage| !stage.is_waiting());
         let due = due.filter(|_| is_ready && !self.hidden);

@@ -7,9 +7,10 @@ use isophote_loader::abi::ISOPHOTE_ERROR_NO_DEVICE;
 use isophote_loader::{Device, Library};
 
 /// Backend that a graph runs on.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, ValueEnum)]
 pub enum Backend {
     /// A graphics card if there is one, otherwise the CPU.
+    #[default]
     Auto,
     /// The CPU.
     Cpu,
@@ -18,6 +19,16 @@ pub enum Backend {
 }
 
 impl Backend {
+    /// True where a program that has a graphics device anyway shall compute styles on the CPU instead; `is_software` says that
+    /// the device's driver computes there itself, and more slowly than the library.
+    pub const fn is_cpu(self, is_software: bool) -> bool {
+        match self {
+            Self::Auto => is_software,
+            Self::Cpu => true,
+            Self::Gpu => false,
+        }
+    }
+
     /// The library's own device, or nothing for the CPU.
     ///
     /// # Errors

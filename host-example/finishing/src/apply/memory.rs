@@ -167,6 +167,12 @@ pub fn usual() -> Bytes {
     Bytes(machine::memory().map_or(MOST, |bytes| bytes.min(MOST)))
 }
 
+/// Memory of one picture in a program that somebody works with: half of what the machine has, or the usual.
+pub fn half() -> Bytes {
+    let half = machine::memory().map_or(0, |bytes| bytes / 2);
+    Bytes(usual().0.max(half))
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;

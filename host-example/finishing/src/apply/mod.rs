@@ -13,5 +13,5 @@ pub mod reader;
 pub mod report;
 pub mod sequence;
 pub mod square;
-mod stages;
+pub(crate) mod stages;
 pub mod tasks;

@@ -13,6 +13,7 @@ use isophote_files::identity::Identity;
 use isophote_files::limits;
 use isophote_files::replacing::{Consent, Inputs, Made};
 use isophote_files::stop::Stop;
+use isophote_finishing::apply::backend::Backend;
 use isophote_finishing::apply::report::{Outcome, Report};
 use isophote_finishing::apply::tasks::Task;
 use isophote_finishing::shot::{Options, Shot};
@@ -79,6 +80,9 @@ pub struct RenderArgs {
     set: Vec<Setting>,
     #[command(flatten)]
     lengths: LengthArgs,
+    /// Processor that the style is computed on; the scene itself is drawn by the graphics driver.
+    #[arg(long, value_enum, default_value_t)]
+    backend: Backend,
     #[command(flatten)]
     precision: PrecisionArgs,
     /// Steadiness of the style over time, from 0 to 1: frames before are carried along the scene's motion and averaged
@@ -149,7 +153,7 @@ impl RenderArgs {
             }
             let is_there = self.skip_existing && read::is_whole(&file);
             let is_written = !is_there && {
-                let picture = shot.draw(number)?;
+                let picture = shot.draw(number, &mut |done| report.progress(done))?;
                 let made = Made { from: None, to: &file };
                 self.consent().write(made, read::is_whole, |existing| match floats::is_exr(&file) {
                     true => save_layers(shot, (&file, existing), &picture),
@@ -214,7 +218,7 @@ impl RenderArgs {
                     let problem = format!("stopped after {done} of {} frames", frames.len());
                     return Err(Error::failure(problem, "start again"));
                 }
-                let picture = shot.draw(number)?;
+                let picture = shot.draw(number, &mut |done| report.progress(done))?;
                 let unequal = || Error::failure("a picture has no pixels", "use another --size");
                 let frame = video::shown(&picture).ok_or_else(unequal)?;
                 let film = match &mut film {
@@ -301,6 +305,7 @@ impl RenderArgs {
             fps: self.fps,
             scene_referred: is_exr && !self.tone_mapped,
             rest_positions: is_exr,
+            backend: self.backend,
         })
     }
 }

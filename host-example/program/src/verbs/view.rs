@@ -6,6 +6,7 @@ use clap::Args;
 
 use super::shared::{LengthArgs, PrecisionArgs, parse_size};
 use isophote_files::error::{AtPlace, Result};
+use isophote_finishing::apply::backend::Backend;
 use isophote_finishing::staging::{ReadingArgs, StagingArgs};
 use isophote_finishing::stylize::style::{Setting, Style};
 use isophote_loader::Library;
@@ -39,6 +40,10 @@ pub struct ViewArgs {
     set: Vec<Setting>,
     #[command(flatten)]
     lengths: LengthArgs,
+    /// Processor that looks are computed on. Where the graphics driver computes on the CPU itself, auto leaves pictures to
+    /// the library, which is faster there.
+    #[arg(long, value_enum, default_value_t)]
+    backend: Backend,
     #[command(flatten)]
     precision: PrecisionArgs,
     /// Size of the window in pixels [default: what it was last, at first 1440x900].
@@ -67,7 +72,7 @@ pub fn run(args: &ViewArgs) -> Result<()> {
     problem.iter().for_each(|problem| session.notes.complain(problem));
     session.looks.prepare(&args.set, args.lengths.lengths);
     session.record.limit = args.frames;
-    session.precision = args.precision.precision;
+    (session.precision, session.backend) = (args.precision.precision, args.backend);
     session.resume(last.as_deref());
     let document = match &args.file {
         Some(path) => open(&mut session, path, args)?,

@@ -26,7 +26,8 @@ impl App {
     /// Opens the device, and the window where there is none yet.
     pub(super) fn open(&mut self, event_loop: &ActiveEventLoop) -> Result<()> {
         let window = self.window(event_loop)?;
-        let mut stage = Stage::new(&window, event_loop.owned_display_handle(), &self.wake, &self.landed)?;
+        let mut stage =
+            Stage::new(&window, event_loop.owned_display_handle(), &self.session, &self.wake, &self.landed)?;
         if self.session.record.is_wanted {
             stage.measure();
         }
@@ -41,7 +42,11 @@ impl App {
             window.set_visible(true);
         }
         self.session.record.adapter = stage.adapter();
-        self.pace.is_software = stage.is_software();
+        self.pace.is_software = stage.is_software() || stage.computes_on_cpu();
+        if self.session.open.has_picture() {
+            // Nothing of it is on this device yet.
+            self.session.work.busy = Some("Opening");
+        }
         self.stage = Some(stage);
         self.devices += 1;
         self.due = Some(Instant::now());

@@ -2,6 +2,8 @@
 
 use std::sync::Arc;
 
+use super::origin::Origin;
+use super::shown::Output;
 use crate::jobs::worker::{Wake, Worker};
 use crate::state::look::{EditedLook, Parameter};
 use isophote_example::kernels::Kernels;
@@ -43,13 +45,15 @@ struct Ready {
 
 /// The part of a picture that is recorded at once.
 #[derive(Clone, Copy, Debug)]
-pub struct Part {
+pub struct Part<'p> {
     /// True for the first.
     pub begins: bool,
     /// Most passes.
     pub passes: usize,
     /// Number of the frame, where frames follow one another.
     pub number: Option<i64>,
+    /// Origin of the picture.
+    pub origin: &'p Origin,
 }
 
 /// A look on its way to the canvas.
@@ -62,8 +66,8 @@ pub struct LiveLook {
     /// Recipe that was last asked of the worker, or refused.
     requested: Option<Recipe>,
     revision: u64,
-    /// The last picture that was whole, its kind, and what its colours are.
-    shown: Option<(wgpu::TextureView, Kind, IsophoteSpace)>,
+    /// The last picture that was whole, its origin, its kind, and what its colours are.
+    shown: Option<(wgpu::TextureView, Origin, Kind, IsophoteSpace)>,
 }
 
 impl LiveLook {
@@ -164,9 +168,10 @@ impl LiveLook {
         self.revision
     }
 
-    /// The last picture that was whole, its kind, and what its colours are.
-    pub fn output(&self) -> Option<(&wgpu::TextureView, Kind, IsophoteSpace)> {
-        self.shown.as_ref().map(|(view, kind, space)| (view, *kind, *space))
+    /// The last picture that was whole, if it may stand for what is open `now`, its kind, and what its colours are.
+    pub fn output(&self, now: &Origin) -> Option<Output> {
+        let (view, origin, kind, space) = self.shown.as_ref()?;
+        origin.stands_for(now).then(|| (view.clone(), *kind, *space))
     }
 
     /// True where the look must see rest positions of pictures of this `request`.
@@ -186,7 +191,7 @@ impl LiveLook {
         &mut self,
         encoder: &mut wgpu::CommandEncoder,
         request: IsophoteRequest,
-        part: Part,
+        part: Part<'_>,
         bind: impl FnOnce(&mut Stylizer) -> Result<()>,
     ) -> Result<bool> {
         let Some(ready) = self.ready.as_mut().filter(|ready| ready.recipe.request == request) else {
@@ -212,7 +217,8 @@ impl LiveLook {
         let is_whole = stylizer.encode(encoder, *done..end)?;
         *done = if is_whole { usize::MAX } else { end };
         if is_whole {
-            self.shown = Some((stylizer.output().clone(), stylizer.kind(), request.space));
+            let view = stylizer.output().clone();
+            self.shown = Some((view, part.origin.clone(), stylizer.kind(), request.space));
         }
         Ok(is_whole)
     }

@@ -3,9 +3,12 @@
 mod canvas;
 mod live_look;
 mod made;
+mod origin;
 pub(crate) mod panel;
 mod pictures;
 mod probe;
+mod processed;
+mod scene_frames;
 mod screen;
 mod shown;
 mod snapshot;

@@ -41,7 +41,8 @@ impl PictureSource {
             textures: Vec::new(),
         };
         for (name, channels, _) in inputs(frame) {
-            let view = checked(&gpu.device, || Ok(texture(gpu, name, frame, channels)))?;
+            let size = (frame.width, frame.height);
+            let view = checked(&gpu.device, || Ok(texture(gpu, name, size, channels)))?;
             source.textures.push((name, view));
         }
         source.upload(gpu);
@@ -66,28 +67,8 @@ impl PictureSource {
     }
 
     fn upload(&self, gpu: &Gpu) {
-        for ((_, view), (_, channels, data)) in self.textures.iter().zip(inputs(&self.frame)) {
-            let row = self.frame.width as usize * channels as usize;
-            let rows = (STRIP / 4 / row.max(1)).max(1);
-            for (strip, values) in data.chunks(rows * row).enumerate() {
-                let origin = wgpu::Origin3d { x: 0, y: (strip * rows) as u32, z: 0 };
-                gpu.queue.write_texture(
-                    wgpu::TexelCopyTextureInfo { origin, ..view.texture().as_image_copy() },
-                    bytemuck::cast_slice(values),
-                    wgpu::TexelCopyBufferLayout {
-                        offset: 0,
-                        bytes_per_row: Some(row as u32 * 4),
-                        rows_per_image: None,
-                    },
-                    wgpu::Extent3d {
-                        width: self.frame.width,
-                        height: (values.len() / row) as u32,
-                        depth_or_array_layers: 1,
-                    },
-                );
-                // Its copy in memory goes as soon as the device has it, and not with the window's next frame.
-                gpu.queue.submit([]);
-            }
+        for ((_, view), (.., data)) in self.textures.iter().zip(inputs(&self.frame)) {
+            write(gpu, view, data);
         }
     }
 
@@ -143,7 +124,35 @@ fn inputs(frame: &Frame) -> impl Iterator<Item = (&'static str, u32, &[f32])> {
     [("color", 4, frame.color.as_flattened())].into_iter().chain(guides)
 }
 
-fn texture(gpu: &Gpu, name: &str, frame: &Frame, channels: u32) -> wgpu::TextureView {
+/// Writes all numbers of a texture.
+pub fn write(gpu: &Gpu, view: &wgpu::TextureView, data: &[f32]) {
+    let texture = view.texture();
+    let texel = texture.format().block_copy_size(None).unwrap_or_default() as usize;
+    let row = texture.width() as usize * texel / 4;
+    let rows = (STRIP / 4 / row.max(1)).max(1);
+    for (strip, values) in data.chunks(rows * row).enumerate() {
+        let origin = wgpu::Origin3d { x: 0, y: (strip * rows) as u32, z: 0 };
+        gpu.queue.write_texture(
+            wgpu::TexelCopyTextureInfo { origin, ..texture.as_image_copy() },
+            bytemuck::cast_slice(values),
+            wgpu::TexelCopyBufferLayout {
+                offset: 0,
+                bytes_per_row: Some(row as u32 * 4),
+                rows_per_image: None,
+            },
+            wgpu::Extent3d {
+                width: texture.width(),
+                height: (values.len() / row) as u32,
+                depth_or_array_layers: 1,
+            },
+        );
+        // Its copy in memory goes as soon as the device has it, and not with the window's next frame.
+        gpu.queue.submit([]);
+    }
+}
+
+/// A texture of 32-bit floats, 1, 2 or 4 a pixel, that looks can read.
+pub fn texture(gpu: &Gpu, name: &str, (width, height): (u32, u32), channels: u32) -> wgpu::TextureView {
     let format = match channels {
         1 => wgpu::TextureFormat::R32Float,
         2 => wgpu::TextureFormat::Rg32Float,
@@ -151,7 +160,7 @@ fn texture(gpu: &Gpu, name: &str, frame: &Frame, channels: u32) -> wgpu::Texture
     };
     let texture = gpu.device.create_texture(&wgpu::TextureDescriptor {
         label: Some(name),
-        size: wgpu::Extent3d { width: frame.width, height: frame.height, depth_or_array_layers: 1 },
+        size: wgpu::Extent3d { width, height, depth_or_array_layers: 1 },
         mip_level_count: 1,
         sample_count: 1,
         dimension: wgpu::TextureDimension::D2,

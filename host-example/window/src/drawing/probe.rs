@@ -1,7 +1,6 @@
 //! The pixel under the pointer: its values before and after, read back with the frame.
 
-use super::live_look::LiveLook;
-use super::shown::picture;
+use super::shown::{Output, picture};
 use super::source::LookInput;
 use crate::state::probed::{Pixel, Probed};
 use crate::state::session::{Session, Which};
@@ -44,7 +43,7 @@ impl Probe {
         encoder: &mut wgpu::CommandEncoder,
         session: &Session,
         source: &LookInput,
-        looks: &[LiveLook; 3],
+        outputs: &[Option<Output>; 3],
     ) {
         let Some(pointer) = session.viewport.pointer else { return };
         let size = session.nominal_size();
@@ -52,7 +51,7 @@ impl Probe {
         let overlay = session.viewport.overlay;
         let which = if overlay == Overlay::None { Which::Look } else { Which::Overlay };
         let (before, _) = source.original();
-        let (after, _) = picture(source, looks, overlay, which);
+        let (after, _) = picture(source, outputs, overlay, which);
         let pictures = [before, after];
         let place = [(x as f32 + 0.5) / size.0 as f32, (y as f32 + 0.5) / size.1 as f32];
         for (view, offset) in pictures.into_iter().zip([0, PITCH]) {

@@ -1,17 +1,21 @@
 //! Choice of the texture of the device that is seen where something is to be shown.
 
 use super::canvas::Numbers;
-use super::live_look::LiveLook;
 use super::pictures::numbers;
 use super::source::LookInput;
 use crate::state::session::Which;
 use crate::state::viewport::Overlay;
+use isophote_loader::abi::IsophoteSpace;
 use isophote_loader::catalogue::Kind;
 
-/// One of the pictures that can be shown; the original where there is nothing else yet.
+/// Picture in a look: its texture, its kind, and what its colours are.
+pub type Output = (wgpu::TextureView, Kind, IsophoteSpace);
+
+/// One of the pictures that can be shown; the original where there is nothing else yet. `outputs` are those of the look, of
+/// what it is compared with, and of what is shown instead, where there are any of this original.
 pub fn picture<'s>(
     source: &'s LookInput,
-    looks: &'s [LiveLook; 3],
+    outputs: &'s [Option<Output>; 3],
     overlay: Overlay,
     which: Which,
 ) -> (&'s wgpu::TextureView, Numbers) {
@@ -26,15 +30,16 @@ pub fn picture<'s>(
     if let Some((numbers, view)) = guide.and_then(|numbers| Some((numbers, source.guide(numbers)?))) {
         return (view, numbers);
     }
-    let live = match which {
+    let [look, compared, instead] = outputs;
+    let output = match which {
         Which::Original => None,
-        Which::Look => looks[0].output(),
-        Which::Compared => looks[1].output(),
-        Which::Overlay => looks[2].output(),
+        Which::Look => look.as_ref(),
+        Which::Compared => compared.as_ref(),
+        Which::Overlay => instead.as_ref(),
     };
-    match live {
+    match output {
         Some((view, Kind::Scalar, _)) => (view, Numbers::Grey),
-        Some((view, _, space)) => (view, numbers(space)),
+        Some((view, _, space)) => (view, numbers(*space)),
         None => source.original(),
     }
 }

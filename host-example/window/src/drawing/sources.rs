@@ -2,6 +2,7 @@
 
 use std::sync::Arc;
 
+use super::origin::Origin;
 use super::pictures::PictureSource;
 use super::source::{LookInput, SceneSource, SceneState};
 use crate::jobs::worker::{Wake, Worker};
@@ -25,6 +26,9 @@ enum Thing {
     Picture(Arc<Frame>),
 }
 
+/// Pixels of a picture that is put on the device at once, so that the window shows nothing else meanwhile.
+const AT_ONCE: u64 = 2_100_000;
+
 /// Result of an upload: the source, or why it could not be uploaded.
 type Uploaded = (Thing, Result<LookInput>);
 
@@ -38,6 +42,10 @@ pub struct Sources {
     /// Thing that is being uploaded, or cannot be.
     requested: Option<Thing>,
     number: u64,
+    /// Origin of the present input.
+    origin: Option<Origin>,
+    /// True while a small copy stands for the whole picture, which is on its way.
+    is_whole_awaited: bool,
 }
 
 impl Sources {
@@ -48,7 +56,16 @@ impl Sources {
     pub fn new(gpu: &Gpu, wake: &Wake) -> Result<Self> {
         let own = gpu.clone();
         let worker = Worker::new("upload", Arc::clone(wake), move |job| upload(&own, job))?;
-        Ok(Self { gpu: gpu.clone(), worker, present: None, spare: None, requested: None, number: 0 })
+        Ok(Self {
+            gpu: gpu.clone(),
+            worker,
+            present: None,
+            spare: None,
+            requested: None,
+            number: 0,
+            origin: None,
+            is_whole_awaited: false,
+        })
     }
 
     /// The present input of looks.
@@ -64,6 +81,16 @@ impl Sources {
     /// A number that grows when what looks read is another one.
     pub fn number(&self) -> u64 {
         self.number
+    }
+
+    /// Origin of the present input.
+    pub fn origin(&self) -> Option<&Origin> {
+        self.origin.as_ref()
+    }
+
+    /// True while a small copy stands for the whole picture, which is on its way.
+    pub fn is_whole_awaited(&self) -> bool {
+        self.is_whole_awaited
     }
 
     /// True while something is being uploaded.
@@ -99,14 +126,8 @@ impl Sources {
                 }
             }
             (None, Some(playback)) => {
-                let Some((frame, share)) = playback.frame(scale < 1.0) else { return Ok(is_new) };
-                self.follow_picture(
-                    frame,
-                    playback.frame(scale >= 1.0).map(|(other, _)| other),
-                    share,
-                    usual,
-                );
-                false
+                let Some(wanted) = playback.frame(scale < 1.0) else { return Ok(is_new) };
+                self.follow_picture(wanted, playback.frame(scale >= 1.0), usual)
             }
             (None, None) => {
                 (self.present, self.spare) = (None, None);
@@ -114,24 +135,26 @@ impl Sources {
             }
         };
         self.number += u64::from(is_other);
+        self.origin = self.present.as_ref().and_then(|_| Origin::of(session));
         Ok(is_new || is_other)
     }
 
-    /// Shows a frame; `other` is the same picture at another size.
+    /// Shows a frame, whose size is so much of the file's; `other` is the same picture at another size. Says whether it is
+    /// on the device in the place of something else.
     fn follow_picture(
         &mut self,
-        frame: &Arc<Frame>,
-        other: Option<&Arc<Frame>>,
-        scale: f32,
+        (frame, scale): (&Arc<Frame>, f32),
+        other: Option<(&Arc<Frame>, f32)>,
         usual: IsophoteRequest,
-    ) {
+    ) -> bool {
+        self.is_whole_awaited = false;
         if shows(self.present.as_ref(), frame) {
-            return;
+            return false;
         }
         if shows(self.spare.as_ref(), frame) {
             std::mem::swap(&mut self.present, &mut self.spare);
             self.number += 1;
-            return;
+            return false;
         }
         // Frames that follow one another take each other's place.
         if frame.number.is_some()
@@ -139,15 +162,30 @@ impl Sources {
             && source.follow(&self.gpu, frame, scale)
         {
             self.number += 1;
-            return;
+            return false;
         }
         let job = || UploadJob::Picture { frame: Arc::clone(frame), scale, usual };
-        match other {
-            Some(other) if shows(self.present.as_ref(), other) => {
-                self.ask(Thing::Picture(frame.clone()), job)
-            }
-            _ => self.replace(Thing::Picture(frame.clone()), job),
+        if other.is_some_and(|(other, _)| shows(self.present.as_ref(), other)) {
+            self.is_whole_awaited = true;
+            self.ask(Thing::Picture(Arc::clone(frame)), job);
+            return false;
         }
+        // The window shows it at once, small if need be, and nothing of before under its name.
+        let smallest = other.into_iter().chain([(frame, scale)]).min_by_key(|(frame, _)| frame.width);
+        let is_small = |frame: &Frame| u64::from(frame.width) * u64::from(frame.height) <= AT_ONCE;
+        let at_once = smallest.filter(|(frame, _)| is_small(frame)).and_then(|(frame, scale)| {
+            // What is refused is refused once more, and said then.
+            PictureSource::new(&self.gpu, frame, scale, usual).ok()
+        });
+        let is_there = at_once.as_ref().is_some_and(|source| source.shows(frame));
+        (self.present, self.spare) = (at_once.map(LookInput::Picture), None);
+        if is_there {
+            self.requested = None;
+        } else {
+            self.is_whole_awaited = self.present.is_some();
+            self.ask(Thing::Picture(Arc::clone(frame)), job);
+        }
+        self.present.is_some()
     }
 
     /// Takes what has been uploaded, and says whether there is anything.

@@ -2,19 +2,23 @@
 //!
 //! When the device is lost, the stage is thrown away and made anew; what is shown and how is kept outside.
 
+mod on_cpu;
+mod painting;
+
 use std::sync::Arc;
 use std::time::{Duration, Instant};
 
 use winit::event_loop::OwnedDisplayHandle;
 use winit::window::Window;
 
-use super::canvas::{Arrangement, Canvas, SURROUND, Shown};
+use super::canvas::Canvas;
 use super::live_look::{LiveLook, Part};
 use super::made::{FrameState, Made};
 use super::panel::Panel;
 use super::probe::Probe;
+use super::processed::Processed;
+use super::scene_frames::{Needs, SceneFrames};
 use super::screen::{self, Screen};
-use super::shown::picture;
 use super::snapshot::Snapshots;
 use super::source::LookInput;
 use super::sources::Sources;
@@ -25,14 +29,24 @@ use crate::state::probed::Probed;
 use crate::state::session::{Session, Which};
 use isophote_example::kernels::{Counts, Kernels};
 use isophote_files::error::{Error, Result};
+use isophote_finishing::stylize::precision::Precision;
 use isophote_render::gpu::Gpu;
-use isophote_render::layouts;
 use isophote_render::timestamps::Timestamps;
 
 /// All of one device. Fields are dropped in order: what uses the device before it.
 pub struct Stage {
     /// The look, what it is compared with, and what is shown instead.
     looks: [LiveLook; 3],
+    /// The same on the CPU, where the device's driver would compute there itself.
+    processed: Option<Processed>,
+    /// Frames of a scene for looks on the CPU.
+    frames: SceneFrames,
+    /// Needs of looks on a scene there.
+    needs: Needs,
+    /// State of the scene that was rendered last for them.
+    rendered: Option<FrameState>,
+    /// True while something moves.
+    moves: bool,
     sources: Sources,
     /// Waits for the device.
     waiter: Worker<Instant, Result<Duration>>,
@@ -111,6 +125,7 @@ impl Stage {
     pub fn new(
         window: &Arc<Window>,
         display: OwnedDisplayHandle,
+        session: &Session,
         wake: &Wake,
         landed: &Wake,
     ) -> Result<Self> {
@@ -129,9 +144,17 @@ impl Stage {
         let waiter = Worker::new("device", Arc::clone(landed), move |since: Instant| {
             own.wait().map(|()| since.elapsed())
         })?;
+        // Who asks for a precision of graphics devices asks for the device.
+        let is_cpu = session.backend.is_cpu(gpu.is_software() && session.precision == Precision::Exact);
+        let processed = is_cpu.then(|| Processed::new(&gpu, &session.library, wake)).transpose()?;
         gpu.check()?;
         Ok(Self {
             looks,
+            processed,
+            frames: SceneFrames::new(wake)?,
+            needs: Needs::default(),
+            rendered: None,
+            moves: false,
             sources: Sources::new(&gpu, wake)?,
             waiter,
             pending: None,
@@ -160,7 +183,7 @@ impl Stage {
 
     /// True where pictures are computed by the processor, which takes its time.
     pub fn is_software(&self) -> bool {
-        self.gpu.adapter.get_info().device_type == wgpu::DeviceType::Cpu
+        self.gpu.is_software()
     }
 
     /// Takes over what is open, its size and the looks, as far as that can be done at once; the rest goes on beside the
@@ -170,22 +193,30 @@ impl Stage {
     /// [`Error::Failure`] when the device fails.
     pub fn follow(&mut self, session: &Session, scale: f32) -> Result<Vec<Error>> {
         let mut problems = Vec::new();
-        match self.sources.follow(session, scale) {
+        self.moves = scale < 1.0 || session.open.is_playing();
+        self.follow_needs(session)?;
+        let on_cpu = self.is_on_cpu(session);
+        let is_whole = on_cpu && session.open.playback().is_some();
+        match self.sources.follow(session, if is_whole { 1.0 } else { scale }) {
             Ok(false) => {}
             Ok(true) => self.looks.iter_mut().for_each(LiveLook::unbind),
             Err(problem) => problems.push(problem),
+        }
+        if on_cpu {
+            problems.extend(self.follow_on_cpu(session)?);
+            self.gpu.check()?;
+            return Ok(problems);
         }
         // What is covered is built when it is seen, where that takes the processor's time.
         if session.is_covered() && self.is_software() {
             return Ok(problems);
         }
-        let Some(source) = self.sources.present_mut() else {
+        let is_awaited = self.sources.is_whole_awaited();
+        let Some(source) = self.sources.present_mut().filter(|_| !is_awaited) else {
             self.gpu.check()?;
             return Ok(problems);
         };
-        let overlay =
-            session.viewport.overlay.node().map(|node| EditedLook::open(&session.library, node.as_ref()));
-        let overlay = overlay.transpose()?.unwrap_or_else(EditedLook::plain);
+        let overlay = overlay(session)?;
         let seen = session.looks.seen();
         let compared = session.looks.compared.clone().unwrap_or_else(EditedLook::plain);
         let request = source.request();
@@ -232,7 +263,7 @@ impl Stage {
 
     /// True while a look is being built, or a picture or scene uploaded.
     pub fn is_busy(&self) -> bool {
-        self.sources.is_busy() || self.looks.iter().any(LiveLook::is_busy)
+        self.sources.is_busy() || self.looks.iter().any(LiveLook::is_busy) || self.is_busy_on_cpu()
     }
 
     /// True while the device is doing what it was given. Nothing else is given to it meanwhile: a viewer that runs
@@ -250,14 +281,16 @@ impl Stage {
     pub fn draw(&mut self, window: &Arc<Window>, session: &Session, always: bool) -> Result<Drawn> {
         self.screen.resize(&self.gpu, window)?;
         match self.to_make(session) {
+            made if self.is_on_cpu(session) => self.follow_results(session, made)?,
             None => (self.made, self.progress) = (None, Progress::Done),
             made if !always && (made == self.made || self.finishes(made.as_ref())) => {}
             made => (self.made, self.progress) = (made, Progress::Wanted),
         }
-        if self.is_software() && !always && self.go_on(session)? {
+        let in_parts = self.is_software() && !always && !self.is_on_cpu(session);
+        if in_parts && self.go_on(session)? {
             return Ok(Drawn::Part);
         }
-        self.draw_window(window, session, always)
+        self.draw_window(window, session, in_parts)
     }
 
     /// True where the picture that is begun is to become whole although another one is wanted: while a slider moves,
@@ -294,7 +327,7 @@ impl Stage {
         Ok(true)
     }
 
-    fn draw_window(&mut self, window: &Arc<Window>, session: &Session, always: bool) -> Result<Drawn> {
+    fn draw_window(&mut self, window: &Arc<Window>, session: &Session, in_parts: bool) -> Result<Drawn> {
         self.panel.upload(&self.gpu.device, &self.gpu.queue);
         let Some((frame, renew)) = self.screen.next_frame(&self.gpu, window)? else {
             return Ok(Drawn::Skipped);
@@ -302,7 +335,7 @@ impl Stage {
         let target = frame.texture.create_view(&wgpu::TextureViewDescriptor::default());
         let mut encoder = self.gpu.device.create_command_encoder(&wgpu::CommandEncoderDescriptor::default());
         let drawn = match self.progress {
-            Progress::Wanted | Progress::Begun(_) if always || !self.is_software() => {
+            Progress::Wanted | Progress::Begun(_) if !in_parts => {
                 self.encode_picture(&mut encoder, session, true, usize::MAX)?;
                 self.progress = Progress::Whole(Duration::ZERO);
                 Drawn::Picture
@@ -312,9 +345,7 @@ impl Stage {
             Progress::Done => Drawn::Controls,
         };
         self.arrange(session);
-        if let Some(source) = self.sources.present() {
-            self.probe.encode(&mut encoder, session, source, &self.looks);
-        }
+        self.encode_probe(&mut encoder, session);
         self.paint(&mut encoder, &target, session);
         self.gpu.queue.submit([encoder.finish()]);
         self.probe.ask();
@@ -371,48 +402,16 @@ impl Stage {
         Ok(Some((drawn, if spent.is_zero() { took } else { spent })))
     }
 
-    /// Draws canvas and controls; in a pass of their own where that is measured.
-    fn paint(&mut self, encoder: &mut wgpu::CommandEncoder, target: &wgpu::TextureView, session: &Session) {
-        let size = self.screen.size();
-        self.panel.prepare(&self.gpu.device, &self.gpu.queue, encoder, size);
-        let grey = wgpu::Color { r: SURROUND.into(), g: SURROUND.into(), b: SURROUND.into(), a: 1.0 };
-        let pass = encoder.begin_render_pass(&wgpu::RenderPassDescriptor {
-            label: Some("window"),
-            color_attachments: &[Some(layouts::cleared(target, grey))],
-            ..Default::default()
-        });
-        let mut pass = pass.forget_lifetime();
-        if self.sources.present().is_some() && !session.is_covered() {
-            self.canvas.draw(&mut pass, session.viewport.area, size);
-        }
-        if let Some(clock) = &self.clock {
-            drop(pass);
-            let kept = wgpu::Operations { load: wgpu::LoadOp::Load, store: wgpu::StoreOp::Store };
-            let own = encoder.begin_render_pass(&wgpu::RenderPassDescriptor {
-                label: Some("controls"),
-                color_attachments: &[Some(wgpu::RenderPassColorAttachment {
-                    ops: kept,
-                    ..layouts::cleared(target, grey)
-                })],
-                timestamp_writes: Some(clock.render(0)),
-                ..Default::default()
-            });
-            self.panel.draw(&mut own.forget_lifetime(), size);
-            clock.encode(encoder);
-        } else {
-            self.panel.draw(&mut pass, size);
-        }
-    }
-
     /// Origins of the picture as it would be made now.
     fn to_make(&self, session: &Session) -> Option<Made> {
-        let source = self.sources.present()?;
+        let is_on_cpu = self.is_on_cpu(session);
+        let source = self.sources.present().filter(|_| is_on_cpu || !self.sources.is_whole_awaited())?;
         let scene = session.open.scenery();
         Some(Made {
             shown: session.shown(),
             overlay: session.viewport.overlay,
             request: source.request(),
-            revisions: self.looks.each_ref().map(LiveLook::revision),
+            revisions: self.revisions(session),
             source: self.sources.number(),
             scene: scene.map(|scenery| (scenery.view(), *scenery.light(), scenery.time().0)),
         })
@@ -426,7 +425,8 @@ impl Stage {
         begins: bool,
         passes: usize,
     ) -> Result<bool> {
-        let Some(source) = self.sources.present_mut() else { return Ok(true) };
+        let origin = self.sources.origin().cloned();
+        let (Some(source), Some(origin)) = (self.sources.present_mut(), &origin) else { return Ok(true) };
         if let (LookInput::Scene(source), Some(scenery), true) =
             (&mut *source, session.open.scenery(), begins)
         {
@@ -434,7 +434,7 @@ impl Stage {
         }
         let request = source.request();
         let shown = session.shown();
-        let part = Part { begins, passes, number: source.number() };
+        let part = Part { begins, passes, number: source.number(), origin };
         let mut is_whole = true;
         for (live, which) in self.looks.iter_mut().zip([Which::Look, Which::Compared, Which::Overlay]) {
             if shown.contains(&which) {
@@ -442,27 +442,6 @@ impl Stage {
             }
         }
         Ok(is_whole)
-    }
-
-    /// Places pictures on the canvas.
-    fn arrange(&mut self, session: &Session) {
-        let Some(source) = self.sources.present() else { return };
-        let viewport = &session.viewport;
-        let places = viewport.places(session.nominal_size());
-        let [left, right] = session.shown();
-        let pictures = [(left, places[0]), (right, places[1])].map(|(which, place)| {
-            let (view, numbers) = picture(source, &self.looks, viewport.overlay, which);
-            Shown { view, numbers, place }
-        });
-        let arrangement = Arrangement {
-            area: viewport.area,
-            pictures,
-            split: viewport.split(),
-            exposure: viewport.exposure.exp2(),
-            middle: session.open.scenery().map_or(1.0, |scenery| scenery.distance()),
-            square: 8.0,
-        };
-        self.canvas.set(&self.gpu.device, &self.gpu.queue, &arrangement);
     }
 
     /// The device.
@@ -484,4 +463,11 @@ impl Stage {
     pub fn adapter(&self) -> String {
         self.gpu.adapter.get_info().name
     }
+}
+
+/// The look that is shown instead, if it is not a picture that is there anyway.
+fn overlay(session: &Session) -> Result<EditedLook> {
+    let node = session.viewport.overlay.node();
+    let opened = node.map(|node| EditedLook::open(&session.library, node.as_ref()));
+    Ok(opened.transpose()?.unwrap_or_else(EditedLook::plain))
 }

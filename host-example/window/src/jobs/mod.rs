@@ -11,5 +11,6 @@ mod look_work;
 mod opening;
 pub mod preview;
 mod reader;
+pub mod stylizing;
 mod watch;
 pub(crate) mod worker;

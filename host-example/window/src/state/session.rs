@@ -28,6 +28,7 @@ use super::settings::Settings;
 use super::viewport::{Compare, Overlay, Viewport};
 use super::work::Work;
 use isophote_files::error::Result;
+use isophote_finishing::apply::backend::Backend;
 use isophote_finishing::stylize::precision::Precision;
 use isophote_loader::{Library, printable};
 use isophote_pictures::exr::Guide;
@@ -64,6 +65,8 @@ pub struct Session {
     pub library: Library,
     /// Precision in which looks are computed.
     pub precision: Precision,
+    /// Backend that looks are computed on.
+    pub backend: Backend,
     /// The scene or the pictures that are open.
     pub open: Open,
     /// Looks at hand, and the one that is shown.
@@ -102,6 +105,7 @@ impl Session {
             looks: Looks::new(&library, looks)?,
             library,
             precision: Precision::default(),
+            backend: Backend::default(),
             open: Open::default(),
             viewport: Viewport::default(),
             probed: None,

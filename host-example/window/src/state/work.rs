@@ -31,6 +31,8 @@ pub enum Request {
 pub struct Work {
     /// Work that is being done, in words.
     pub busy: Option<&'static str>,
+    /// The share of a look that is computed, while one is on the CPU.
+    pub share: Option<f32>,
     /// The share of an export that is done, while there is one.
     pub exported: Option<f32>,
     requests: Vec<Request>,

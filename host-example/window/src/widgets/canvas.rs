@@ -31,7 +31,12 @@ pub fn show(ui: &mut Ui, rect: Rect, session: &mut Session) {
     }
     names(ui, rect, session);
     if let Some(doing) = session.work.busy {
-        tag(ui, rect.center_bottom() + vec2(0.0, -26.0), Align2::CENTER_CENTER, &format!("{doing}…"));
+        tag(
+            ui,
+            rect.center_bottom() + vec2(0.0, -26.0),
+            Align2::CENTER_CENTER,
+            &busy(doing, session.work.share),
+        );
         ui.ctx().request_repaint_after(std::time::Duration::from_millis(200));
     }
 }
@@ -140,6 +145,11 @@ fn names(ui: &Ui, rect: Rect, session: &Session) {
         };
         tag(ui, place.0, place.1, &name(right));
     }
+}
+
+/// Words for work that is being done, with the share of it that is.
+fn busy(doing: &str, share: Option<f32>) -> String {
+    share.map_or_else(|| format!("{doing}…"), |share| format!("{doing}… {:.0} %", share * 100.0))
 }
 
 /// A few words on the picture.

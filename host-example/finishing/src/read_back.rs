@@ -1,0 +1,127 @@
+//! A style on frames that a renderer has drawn, which are read back from its device and stylized on the CPU.
+
+use std::collections::VecDeque;
+
+use crate::processor::Processor;
+use crate::stylize::frame_request;
+use crate::stylize::style::Style;
+use isophote_files::error::{Error, Result};
+use isophote_loader::catalogue::Kind;
+use isophote_loader::{AsImage, Control, Library};
+use isophote_pictures::exr::Guide;
+use isophote_pictures::floats::Picture;
+use isophote_pictures::pixels::{Pixels, Samples};
+use isophote_render::gpu::Gpu;
+use isophote_render::readback::Readback;
+use isophote_render::targets::{Target, Targets};
+
+/// A style, and the frames that it reads.
+#[derive(Debug)]
+pub struct ReadBack {
+    library: Library,
+    processor: Processor,
+    /// The last frame that was drawn at the end, and those before that it depends on.
+    frames: VecDeque<Drawn>,
+}
+
+/// A frame in main memory.
+#[derive(Debug)]
+struct Drawn {
+    number: i64,
+    size: (u32, u32),
+    images: Vec<(&'static str, Pixels)>,
+}
+
+impl ReadBack {
+    /// A style on frames of one shot.
+    ///
+    /// # Errors
+    /// As [`Processor::new`].
+    pub fn new(library: &Library, style: Style) -> Result<Self> {
+        let processor = Processor::new(library, style)?;
+        Ok(Self { library: library.clone(), processor, frames: VecDeque::new() })
+    }
+
+    /// Frames before its own that a frame depends on.
+    ///
+    /// # Errors
+    /// As [`Processor::depth`].
+    pub fn depth(&self) -> Result<usize> {
+        self.processor.depth()
+    }
+
+    /// True where the renderer must [add rest positions](isophote_render::renderer::Renderer::add_rest_positions).
+    ///
+    /// # Errors
+    /// As [`Style::can_use`].
+    pub fn wants_rest_positions(&self) -> Result<bool> {
+        self.processor.style().can_use(Kind::Position)
+    }
+
+    /// Takes the next frame for the first: those before are of another shot.
+    pub fn forget(&mut self) {
+        self.frames.clear();
+    }
+
+    /// Reads the frame of a number from the device, as far as the style can use it. `color` is one of the two targets that
+    /// hold colour.
+    ///
+    /// # Errors
+    /// [`Error::Failure`] when the device fails.
+    pub fn take(
+        &mut self,
+        gpu: &Gpu,
+        readback: &mut Readback,
+        color: &Target,
+        targets: &Targets,
+        number: i64,
+    ) -> Result<()> {
+        let mut read = |name, target: &Target| {
+            let Picture { width, height, channels, data } = readback.read(gpu, &target.texture)?;
+            let pixels = Pixels::new(width, height, channels as u32, Samples::F32(data));
+            let unequal = || Error::failure("a picture of the renderer has too few pixels", "start again");
+            pixels.map(|pixels| (name, pixels)).ok_or_else(unequal)
+        };
+        let mut images = vec![read("color", color)?];
+        for guide in self.processor.guides() {
+            if let Some(target) = drawn(*guide, targets) {
+                images.push(read(guide.id(), target)?);
+            }
+        }
+        self.frames.push_back(Drawn { number, size: (targets.width, targets.height), images });
+        let most = self.depth()? + 1;
+        self.frames.drain(..self.frames.len().saturating_sub(most));
+        Ok(())
+    }
+
+    /// The frame that was taken last in the style; `progress` is told the share of it that is done.
+    ///
+    /// # Errors
+    /// As [`Processor::process`]; [`Error::Failure`] when no frame was taken.
+    pub fn picture(&mut self, progress: &mut dyn FnMut(f32)) -> Result<Picture> {
+        let nothing = || Error::failure("no frame was drawn", "start again");
+        let own = self.frames.back().ok_or_else(nothing)?;
+        let usual = frame_request(&self.library, self.processor.style(), own.size)?;
+        let request = isophote_loader::abi::IsophoteRequest { frame: own.number, ..usual };
+        let image = |name: &str, number: i64| {
+            let frame = self.frames.iter().find(|frame| frame.number == number)?;
+            frame.images.iter().find(|(known, _)| *known == name).map(|(_, pixels)| pixels.image())
+        };
+        let mut control = Control { progress: Some(progress), ..Control::default() };
+        let pixels = self.processor.process(&request, &image, &mut control)?.ok_or_else(nothing)?;
+        let (width, height, channels) = (pixels.width(), pixels.height(), pixels.channels() as usize);
+        Ok(Picture { width, height, channels, data: pixels.to_f32() })
+    }
+}
+
+/// The target that holds a guide, if the renderer draws it.
+fn drawn(guide: Guide, targets: &Targets) -> Option<&Target> {
+    match guide {
+        Guide::Normal => Some(&targets.normal),
+        Guide::Depth => Some(&targets.depth),
+        Guide::ObjectId => Some(&targets.object_id),
+        Guide::Motion => Some(&targets.motion),
+        Guide::RestPosition => targets.rest.as_ref(),
+        Guide::MotionForward | Guide::Flow => None,
+    }
+}
