@@ -101,6 +101,52 @@ test("the processor gives the pixels of apply, in parts, and refuses as a device
   assert.deepEqual(complaints.filter(isOwn), []);
 });
 
+/** Ends the process that drives the graphics devices. */
+const crash = async (page) => (await page.context().newCDPSession(page)).send("Browser.crashGpuProcess");
+
+test("a device that is lost and does not come back leaves the work to the processor", { timeout: 300_000 }, async (step) => {
+  const own = new Pages();
+  const server = await serve({ "/package/": built("ISOPHOTE_PACKAGE") });
+  step.after(() => Promise.all([own.close(), server.close()]));
+  await own.start();
+  const page = await own.open();
+  assert.ok(await page.locator("#backend").isHidden());
+  await page.evaluate(() => { navigator.gpu.requestAdapter = async () => null; });
+  const { page: bare } = await open(own.browser, server.address);
+  await bare.evaluate(async () => {
+    const { Isophote } = await import("/package/src/index.js");
+    window.iso = await Isophote.create();
+  });
+  await crash(page);
+  await page.getByRole("button", { name: "Go on" }).click();
+  await page.locator("#backend").waitFor();
+  await dropPhoto(page);
+  assert.ok(await page.locator("#plain").isVisible());
+  const [before, after] = await bare.evaluate(async () => {
+    const { iso } = window;
+    const found = [iso.backend];
+    await iso.device.lost;
+    const { width } = await iso.apply("gaussian", new OffscreenCanvas(64, 48).getContext("2d").canvas);
+    return [...found, `${iso.backend} ${width} ${iso.reason}`];
+  });
+  assert.equal(before, "gpu");
+  assert.match(after, /^cpu 64 the graphics device was lost/);
+});
+
+test("an adapter that gives no device leaves the work to the processor", async () => {
+  const server = await serve({ "/package/": built("ISOPHOTE_PACKAGE") });
+  const { page } = await open(pages.browser, server.address);
+  const [backend, reason] = await page.evaluate(async () => {
+    const { Isophote } = await import("/package/src/index.js");
+    const adapter = { limits: {}, requestDevice: async () => { throw new Error("the driver is gone"); } };
+    const { backend: found, reason: why } = await Isophote.create({ adapter });
+    return [found, why];
+  });
+  assert.deepEqual([backend, reason], ["cpu", "the driver is gone"]);
+  await page.close();
+  await server.close();
+});
+
 /** A picture of 12 megapixels as JPEG, made by the page's own browser. */
 const large = (page) => page.evaluate(async () => {
   const canvas = new OffscreenCanvas(4000, 3000);
