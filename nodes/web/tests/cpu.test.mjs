@@ -101,6 +101,16 @@ test("the processor gives the pixels of apply, in parts, and refuses as a device
   assert.deepEqual(complaints.filter(isOwn), []);
 });
 
+test("where a folder's page may start no thread, it says how to serve the folder", async () => {
+  const page = await pages.browser.newPage();
+  await page.addInitScript(() => { window.Worker = class { constructor() { throw new Error("refused"); } }; });
+  await page.goto(pages.address);
+  await page.locator(".note.error[data-key='computing']").waitFor();
+  assert.match(await message(page, "computing"), /Serve the folder instead: run python3 -m http\.server/);
+  await page.waitForFunction(() => document.querySelector("#stage").getAttribute("aria-busy") === "false");
+  await page.close();
+});
+
 /** Ends the process that drives the graphics devices. */
 const crash = async (page) => (await page.context().newCDPSession(page)).send("Browser.crashGpuProcess");
 

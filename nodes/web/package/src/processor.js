@@ -5,6 +5,11 @@ import { LookError } from "./planner.js";
 /** Threads, at most: each holds a module and a part of a picture. */
 const MOST = 2;
 
+/** Milliseconds without work after which threads end: the memory of a module only grows. */
+const IDLE = 20_000;
+
+const noThread = (why) => new Error(`the browser does not start the thread that computes: ${why}`);
+
 /** Computes parts of pictures on the processor while the page goes on. */
 export class Processor {
   #wasm;
@@ -13,6 +18,7 @@ export class Processor {
   #waiting = [];
   #last = 0;
   #loaded = null;
+  #timer = null;
 
   /**
    * Starts nothing yet.
@@ -46,26 +52,46 @@ export class Processor {
       this.#waiting = this.#waiting.filter(({ isOver }) => !isOver());
       const job = this.#waiting.shift();
       if (job === undefined) {
-        return;
+        break;
       }
       slot.job = job;
       this.#give(slot, job).catch((error) => this.#failed(slot, error));
+    }
+    clearTimeout(this.#timer);
+    if (this.#workers.every(({ job }) => job === null)) {
+      this.#timer = setTimeout(() => this.#rest(), IDLE);
+    }
+  }
+
+  /** Ends the threads until there is work again. */
+  #rest() {
+    for (const slot of this.#workers) {
+      slot.worker?.terminate();
+      slot.worker = null;
     }
   }
 
   async #give(slot, { number, request, pixels }) {
     const message = { number, request, pixels: pixels() };
     if (slot.worker === null) {
-      slot.worker = this.#start();
+      slot.worker = this.#started();
       slot.worker.onmessage = ({ data }) => this.#done(slot, data);
       slot.worker.onerror = (event) => {
         event.preventDefault();
-        this.#failed(slot, new Error(`the browser does not start the thread that computes: ${event.message || "it does not say why"}`));
+        this.#failed(slot, noThread(event.message || "it does not say why"));
       };
       this.#loaded ??= this.#wasm();
       message.wasm = await this.#loaded;
     }
     slot.worker.postMessage(message, [message.pixels.buffer]);
+  }
+
+  #started() {
+    try {
+      return this.#start();
+    } catch (error) {
+      throw noThread(error.message);
+    }
   }
 
   #done(slot, { number, answer, error }) {
@@ -94,6 +120,7 @@ export class Processor {
 
   /** Ends all threads. */
   destroy() {
+    clearTimeout(this.#timer);
     for (const slot of this.#workers) {
       slot.worker?.terminate();
       slot.job?.reject(new Error("the processor was given back"));

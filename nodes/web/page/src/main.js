@@ -69,7 +69,6 @@ class Page {
     this.stage.connect(isophote);
     const isSlow = isophote.backend === "cpu";
     byId("backend").hidden = !isSlow;
-    document.body.classList.toggle("on-cpu", isSlow);
     if (isSlow) {
       byId("backend").title = why;
       note(`Computed on the processor: slower. ${why}`, { key: "backend" });
