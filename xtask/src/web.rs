@@ -1,4 +1,5 @@
-//! `cargo xtask web`: planner and CPU executor as WebAssembly, the npm package and the page, and their tests for `cargo xtask test`.
+//! `cargo xtask web`: planner and CPU executor as WebAssembly, the npm package and the page, and their tests for
+//! `cargo xtask test`.
 //!
 //! All of it lies below `target/web`: `package` is the package as it is published, `isophote.html` the page. Bundler,
 //! three.js and Playwright are in `nodes/web/node_modules`, in the versions of `package-lock.json`.
