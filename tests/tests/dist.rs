@@ -149,7 +149,9 @@ fn the_npm_package_is_whole() {
     let folder = TempDir::new().unwrap();
     unpacked.run_in(folder.path(), &format!("tar xzf '{}'", package.display()));
     let read = |file: &str| std::fs::read(folder.path().join("package").join(file)).unwrap();
-    assert!(read("isophote.wasm").starts_with(b"\0asm"));
+    for module in ["isophote.wasm", "isophote-cpu.wasm"] {
+        assert!(read(module).starts_with(b"\0asm"), "{module}");
+    }
     let texts = [
         "src/index.js",
         "src/index.d.ts",

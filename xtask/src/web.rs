@@ -1,4 +1,5 @@
-//! `cargo xtask web`: the planner as WebAssembly, the npm package and the page, and their tests for `cargo xtask test`.
+//! `cargo xtask web`: planner and CPU executor as WebAssembly, the npm package and the page, and their tests for
+//! `cargo xtask test`.
 //!
 //! All of it lies below `target/web`: `package` is the package as it is published, `isophote.html` the page. Bundler,
 //! three.js and Playwright are in `nodes/web/node_modules`, in the versions of `package-lock.json`.
@@ -17,11 +18,38 @@ use std::process::{Command, Stdio};
 
 const TARGET: &str = "wasm32-unknown-unknown";
 
-/// The profile of the planner.
-const PROFILE: &str = "web";
+/// A module of WebAssembly.
+struct Module {
+    /// Its file in the package.
+    file: &'static str,
+    profile: &'static str,
+    features: &'static [&'static str],
+    /// Flags of the compiler.
+    flags: &'static str,
+    /// Folder of the build, below `target/web`: other flags would replace all that lies there.
+    folder: &'static str,
+}
 
-/// Most bytes of the page: what someone waits for before the first picture.
-const MOST: u64 = 3 << 20;
+/// What every page loads.
+const PLANNER: Module = Module {
+    file: "isophote.wasm",
+    profile: "web",
+    features: &["--no-default-features"],
+    flags: "",
+    folder: "build",
+};
+
+/// What pages without a graphics device load, too. Browsers have its vectors since 2021, Safari since 2023.
+const PROCESSOR: Module = Module {
+    file: "isophote-cpu.wasm",
+    profile: "web-cpu",
+    features: &[],
+    flags: "-C target-feature=+simd128",
+    folder: "build-cpu",
+};
+
+/// Most bytes of the page, a third of them the module of the processor: what someone waits for before the first picture.
+const MOST: u64 = 4 << 20;
 
 /// Options of `cargo xtask web`.
 #[derive(clap::Args)]
@@ -69,12 +97,12 @@ struct Built {
 
 /// Builds planner, package and page; `profile` is that of the program that packs.
 fn build(profile: &str) -> Result<Built> {
-    heading("planner");
-    let planner = planner()?;
+    heading("modules of WebAssembly");
+    let modules = [(&PLANNER, compiled(&PLANNER)?), (&PROCESSOR, compiled(&PROCESSOR)?)];
     heading("package and page");
     install()?;
     let (package, page) = (target_dir("web").join("package"), target_dir("web").join(PAGE));
-    stage(&planner, &package)?;
+    stage(&modules, &package)?;
     packing::write_licences(&["isophote-web"], profile, &package.join(packing::OTHERS))?;
     let mut bundle = node();
     bundle.arg(folder().join("page/bundle.mjs")).arg(&package).arg(&page);
@@ -172,12 +200,14 @@ fn install() -> Result<()> {
     fs::write(&installed, wanted).context(|| format!("cannot write {}", installed.display()))
 }
 
-/// Compiles the planner and says where it is.
-fn planner() -> Result<PathBuf> {
-    let target = target_dir("web").join("build");
-    let mut command = cargo_command(&["rustc", "--quiet", "--package", "isophote-web", "--lib"]);
-    command.args(["--crate-type", "cdylib", "--profile", PROFILE, "--target", TARGET, "--target-dir"]);
-    command.arg(&target);
+/// Compiles a module and says where it is.
+fn compiled(module: &Module) -> Result<PathBuf> {
+    let target = target_dir("web").join(module.folder);
+    let mut command = cargo_command(&["rustc", "--quiet", "--lib", "--crate-type", "cdylib"]);
+    // Features are those of the package whose folder it is.
+    command.current_dir(folder()).args(module.features);
+    command.args(["--profile", module.profile, "--target", TARGET, "--target-dir"]).arg(&target);
+    command.env("CARGO_TARGET_WASM32_UNKNOWN_UNKNOWN_RUSTFLAGS", module.flags);
     if !setup::has_wasm_target() {
         // A compiler of the system has the sources of its standard library, and another one's linker will do.
         command
@@ -187,7 +217,7 @@ fn planner() -> Result<PathBuf> {
         command.env("CARGO_TARGET_WASM32_UNKNOWN_UNKNOWN_LINKER", linker()?);
     }
     run_command(&mut command)?;
-    Ok(target.join(TARGET).join(PROFILE).join("isophote_web.wasm"))
+    Ok(target.join(TARGET).join(module.profile).join("isophote_web.wasm"))
 }
 
 /// The linker that comes with the compiler of this build.
@@ -201,12 +231,14 @@ fn linker() -> Result<PathBuf> {
 }
 
 /// Puts the package together as it is published.
-fn stage(planner: &Path, package: &Path) -> Result<()> {
+fn stage(modules: &[(&Module, PathBuf)], package: &Path) -> Result<()> {
     if package.exists() {
         fs::remove_dir_all(package).context(|| format!("cannot replace {}", package.display()))?;
     }
     copy_folder(&folder().join("package"), package)?;
-    copy(planner, &package.join("isophote.wasm"))?;
+    for (module, built) in modules {
+        copy(built, &package.join(module.file))?;
+    }
     let manifest = package.join("package.json");
     let text = fs::read_to_string(&manifest).context(|| format!("cannot read {}", manifest.display()))?;
     fs::write(&manifest, address::filled(&text))

@@ -1,6 +1,6 @@
 // Bundles the page into one file: `node bundle.mjs PACKAGE_DIR OUT_HTML`.
 //
-// PACKAGE_DIR is the npm package as it is published, with `isophote.wasm` and `src/looks.js`. Scripts, styles, the planner and
+// PACKAGE_DIR is the npm package as it is published, with its modules of WebAssembly and `src/looks.js`. Scripts, styles, modules and
 // the sample pictures are written into the page, so that it works from a folder and asks nobody for anything.
 
 import { build } from "esbuild";
@@ -12,12 +12,12 @@ import { gzipSync } from "node:zlib";
 const here = dirname(fileURLToPath(import.meta.url));
 const samples = resolve(here, "../../../host-example/window/samples");
 
-const modules = resolve(here, "../node_modules");
+const installed = resolve(here, "../node_modules");
 
 /** Add-ons of three.js import its other entry, which would be a second copy of it. */
 const oneThree = {
   name: "one-three",
-  setup: ({ onResolve }) => onResolve({ filter: /^three$/ }, () => ({ path: join(modules, "three/build/three.webgpu.js") })),
+  setup: ({ onResolve }) => onResolve({ filter: /^three$/ }, () => ({ path: join(installed, "three/build/three.webgpu.js") })),
 };
 
 /** Pictures that the page brings along: file and what people call it. */
@@ -42,12 +42,26 @@ async function script(packageDir) {
       "isophote/three": join(packageDir, "src/three.js"),
     },
     // The package lies elsewhere and imports three, too.
-    nodePaths: [modules],
+    nodePaths: [installed],
     plugins: [oneThree],
     logLevel: "warning",
   });
   // A script ends at the first end tag, even within a string.
   return outputFiles[0].text.replaceAll("</script", "<\\/script");
+}
+
+/** The program of the processor's threads as one script. */
+async function worker(packageDir) {
+  const { outputFiles } = await build({
+    entryPoints: [join(packageDir, "src/cpu-worker.js")],
+    bundle: true,
+    write: false,
+    minify: true,
+    format: "iife",
+    target: "es2022",
+    charset: "utf8",
+  });
+  return Buffer.from(outputFiles[0].contents);
 }
 
 /** The page's styles as one sheet. */
@@ -73,7 +87,7 @@ function licences(packageDir) {
   const files = [
     join(packageDir, "LICENSE-MIT"),
     join(packageDir, "LICENSE-APACHE"),
-    join(modules, "three/LICENSE"),
+    join(installed, "three/LICENSE"),
     join(packageDir, "LICENSES-OF-OTHERS.txt"),
   ];
   const text = files.filter(existsSync).map((file) => readFileSync(file, "utf8")).join("\n\n");
@@ -89,14 +103,17 @@ async function main([packageDir, out]) {
   if (packageDir === undefined || out === undefined) {
     throw new Error("say the folder of the package and the file to write: node bundle.mjs PACKAGE_DIR OUT_HTML");
   }
-  const wasm = join(packageDir, "isophote.wasm");
-  if (!existsSync(wasm)) {
-    throw new Error(`${wasm} is missing; build the planner into the package first`);
-  }
-  const [code, sheet] = await Promise.all([script(resolve(packageDir)), style()]);
-  const planner = data("isophote-wasm", gzipSync(readFileSync(wasm), { level: 9 }));
+  const module = (id, file) => {
+    const wasm = join(packageDir, file);
+    if (!existsSync(wasm)) {
+      throw new Error(`${wasm} is missing; build the modules into the package first`);
+    }
+    return data(id, gzipSync(readFileSync(wasm), { level: 9 }));
+  };
+  const [code, sheet, thread] = await Promise.all([script(resolve(packageDir)), style(), worker(resolve(packageDir))]);
+  const modules = [module("isophote-wasm", "isophote.wasm"), module("isophote-cpu-wasm", "isophote-cpu.wasm"), data("isophote-cpu-worker", thread)];
   const pictures = SAMPLES.map(([file, label]) => data(`sample-${file}`, readFileSync(join(samples, file)), label)).join("\n");
-  const parts = { style: `<style>${sheet}</style>`, data: `${licences(resolve(packageDir))}\n${planner}\n${pictures}`, script: `<script type="module">${code}</script>` };
+  const parts = { style: `<style>${sheet}</style>`, data: `${licences(resolve(packageDir))}\n${modules.join("\n")}\n${pictures}`, script: `<script type="module">${code}</script>` };
   const page = readFileSync(join(here, "src/index.html"), "utf8").replace(/<!-- (style|data|script) -->/g, (_, part) => parts[part]);
   mkdirSync(dirname(resolve(out)), { recursive: true });
   writeFileSync(out, page);

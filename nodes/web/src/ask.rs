@@ -59,6 +59,27 @@ pub enum Request {
         /// Its number.
         plan: u32,
     },
+    /// Parts that the processor computes a picture in, and what each reads.
+    Parts {
+        /// A preset, a graph, or the name of a node or a look.
+        look: Value,
+        /// The picture.
+        picture: Picture,
+        /// Bytes that a part may take.
+        memory: u64,
+    },
+    /// The pixels of a part, computed by the processor.
+    #[cfg(feature = "cpu")]
+    Compute {
+        /// A preset, a graph, or the name of a node or a look.
+        look: Value,
+        /// The picture.
+        picture: Picture,
+        /// The part.
+        region: [i32; 4],
+        /// By input: the window that is given, four bytes a pixel, one input after the other.
+        inputs: std::collections::BTreeMap<String, [i32; 4]>,
+    },
 }
 
 /// The picture that is computed.

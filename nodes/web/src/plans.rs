@@ -3,10 +3,13 @@
 use crate::ask::{Picture, Request, region};
 use crate::catalogue::catalogue;
 use crate::look::GraphAtFrame;
+use crate::parts::{graph_and_request, parts};
+#[cfg(feature = "cpu")]
+use crate::processor::Processor;
 use crate::response::{self, Response};
 use isophote::engine::Rect;
 use isophote::planned::Change;
-use isophote::{Error, Graph, Lowered};
+use isophote::{Error, Lowered};
 use serde_json::{Value, json};
 use std::collections::BTreeMap;
 
@@ -15,18 +18,22 @@ use std::collections::BTreeMap;
 pub struct Planner {
     plans: BTreeMap<u32, Lowered>,
     last: u32,
+    #[cfg(feature = "cpu")]
+    processor: Processor,
 }
 
 impl Planner {
-    /// Answers a request, which is JSON. What fails is told as `{"error": …}`; nothing has changed then.
-    pub fn answer(&mut self, request: &[u8]) -> Response {
+    /// Answers a request, which is JSON, with the pixels that it is about. What fails is told as `{"error": …}`; nothing
+    /// has changed then.
+    pub fn answer(&mut self, request: &[u8], pixels: &[u8]) -> Response {
         let parsed =
             serde_json::from_slice(request).map_err(|e| Error::Format(format!("not a request: {e}")));
-        let answered = parsed.and_then(|request| self.answered(request));
+        let answered = parsed.and_then(|request| self.answered(request, pixels));
         answered.unwrap_or_else(|error| json!({ "error": error.to_string() }).into())
     }
 
-    fn answered(&mut self, request: Request) -> Result<Response, Error> {
+    #[cfg_attr(not(feature = "cpu"), expect(unused_variables, reason = "planners compute nothing"))]
+    fn answered(&mut self, request: Request, pixels: &[u8]) -> Result<Response, Error> {
         match request {
             Request::Catalogue => Ok(catalogue().into()),
             Request::Graph { look, frame } => {
@@ -63,12 +70,16 @@ impl Planner {
                 self.plans.remove(&plan);
                 Ok(json!({}).into())
             }
+            Request::Parts { look, picture, memory } => Ok(parts(&look, &picture, memory)?.into()),
+            #[cfg(feature = "cpu")]
+            Request::Compute { look, picture, region, inputs } => {
+                self.processor.compute((&look, &picture), region, &inputs, pixels)
+            }
         }
     }
 
     fn plan(&mut self, look: &Value, picture: &Picture, part: Option<[i32; 4]>) -> Result<Response, Error> {
         let (graph, request) = graph_and_request(look, picture)?;
-        isophote::engine::image::check_size(request.width, request.height)?;
         let part = part.map_or_else(|| Rect::of_size(request.width, request.height), region);
         let plan = Lowered::new(graph, request, part)?;
         self.last += 1;
@@ -82,14 +93,6 @@ impl Planner {
     }
 }
 
-/// The graph of a look and what is wanted of it.
-fn graph_and_request(look: &Value, picture: &Picture) -> Result<(Graph, isophote::Request), Error> {
-    let look = GraphAtFrame::read(look, picture.frame)?;
-    let mut graph = look.graph;
-    graph.set_precision(picture.precision());
-    Ok((graph, picture.request(look.reference_height)?))
-}
-
 fn program(plan: &Lowered, json: Value) -> Response {
     Response::from(json).program(plan.program(), plan.operations())
 }
@@ -100,7 +103,7 @@ mod tests {
     use isophote::registry;
 
     fn ask(planner: &mut Planner, request: Value) -> Response {
-        planner.answer(request.to_string().as_bytes())
+        planner.answer(request.to_string().as_bytes(), &[])
     }
 
     fn plan(planner: &mut Planner, look: Value) -> Value {
@@ -180,9 +183,55 @@ mod tests {
             let error = ask(&mut planner, request).json["error"].as_str().unwrap().to_owned();
             assert!(error.contains(part), "{error}");
         }
-        assert!(planner.answer(b"{").json["error"].as_str().unwrap().contains("not a request"));
+        assert!(planner.answer(b"{", &[]).json["error"].as_str().unwrap().contains("not a request"));
         let guides = json!({ "width": 64, "height": 48, "guides": ["normals"] });
         let request = json!({ "ask": "plan", "look": { "style": "ink" }, "picture": guides });
         assert!(ask(&mut planner, request).json["error"].as_str().unwrap().contains("normal, depth"));
+    }
+
+    #[test]
+    fn parts_cover_the_picture_and_say_what_they_read() {
+        let mut planner = Planner::default();
+        let look = json!({ "style": "gaussian", "lengths": "pixels" });
+        let picture = json!({ "width": 4000, "height": 3000, "alpha": "straight" });
+        let request = json!({ "ask": "parts", "look": look, "picture": picture, "memory": 256 << 20 });
+        let answer = ask(&mut planner, request).json;
+        let parts = answer["parts"].as_array().unwrap();
+        assert!(parts.len() > 8, "{}", parts.len());
+        let mut down = 0;
+        for part in parts {
+            let [x0, y0, x1, y1] = [0, 1, 2, 3].map(|i| part["region"][i].as_i64().unwrap());
+            assert_eq!((x0, y0, x1), (0, down, 4000));
+            let read = part["inputs"]["color"].as_array().unwrap();
+            assert!(read[1].as_i64().unwrap() <= y0 && read[3].as_i64().unwrap() >= y1);
+            assert!(part["bytes"].as_u64().unwrap() <= 256 << 20);
+            down = y1;
+        }
+        assert_eq!(down, 3000);
+    }
+
+    #[cfg(feature = "cpu")]
+    #[test]
+    fn the_processor_computes_parts_that_are_the_whole() {
+        let mut planner = Planner::default();
+        let [width, height] = [40_usize, 160];
+        let pixels: Vec<u8> = (0..width * height * 4).map(|i| (i * 7919 % 251) as u8).collect();
+        let mut compute = |region: [usize; 4], window: [usize; 4]| {
+            let own = &pixels[window[1] * width * 4..window[3] * width * 4];
+            let request = json!({
+                "ask": "compute", "look": { "style": "gaussian", "lengths": "pixels" },
+                "picture": { "width": width, "height": height, "alpha": "straight" },
+                "region": region, "inputs": { "color": window },
+            });
+            planner.answer(request.to_string().as_bytes(), own)
+        };
+        let whole = compute([0, 0, width, height], [0, 0, width, height]);
+        assert_eq!(whole.bytes.len(), pixels.len());
+        assert_ne!(whole.bytes, pixels);
+        let part = compute([0, 60, width, 100], [0, 20, width, 140]);
+        assert_eq!(part.json, json!({ "width": width, "height": 40 }));
+        assert_eq!(part.bytes, whole.bytes[60 * width * 4..100 * width * 4]);
+        let short = compute([0, 0, width, height], [0, 0, width, 20]).json;
+        assert!(short["error"].as_str().unwrap().contains("color"), "{short}");
     }
 }

@@ -11,12 +11,6 @@ const NAMES = ["chromium-headless-shell", "chromium", "chromium-browser", "googl
 const FLAGS = [
   "--no-sandbox",
   "--disable-gpu-sandbox",
-  "--enable-unsafe-webgpu",
-  "--use-webgpu-adapter=swiftshader",
-  // Canvases are shown by the same software driver.
-  "--enable-features=Vulkan",
-  "--use-vulkan=swiftshader",
-  "--use-angle=vulkan",
   "--disable-dev-shm-usage",
   "--disable-quic",
   "--disable-background-networking",
@@ -58,9 +52,23 @@ async function program() {
   throw new Error(`none of ${NAMES.join(", ")} is installed`);
 }
 
-/** Starts a browser without a window. */
-export async function launch() {
-  return chromium.launch({ executablePath: await program(), args: FLAGS });
+/** What lets pages use a graphics device. */
+const DEVICE = [
+  "--enable-unsafe-webgpu",
+  "--use-webgpu-adapter=swiftshader",
+  // Canvases are shown by the same software driver.
+  "--enable-features=Vulkan",
+  "--use-vulkan=swiftshader",
+  "--use-angle=vulkan",
+];
+
+/**
+ * Starts a browser without a window.
+ * @param {{hasDevice?: boolean}} options whether pages have a graphics device
+ */
+export async function launch({ hasDevice = true } = {}) {
+  const args = [...FLAGS, ...(hasDevice ? DEVICE : ["--disable-gpu", "--disable-features=WebGPU"])];
+  return chromium.launch({ executablePath: await program(), args });
 }
 
 /**

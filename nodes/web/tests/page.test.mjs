@@ -2,97 +2,17 @@
 
 import assert from "node:assert/strict";
 import { readFileSync } from "node:fs";
-import { resolve } from "node:path";
 import { after, before, test } from "node:test";
-import { pathToFileURL } from "node:url";
-import { built, launch } from "./browser.mjs";
 import { animated, glb, photo, sizeOf, tetrahedron } from "./made.mjs";
+import { Pages, addressSays, drop, dropPhoto, lookOf, lookOfSettled, message, opened, settled, shot } from "./pages.mjs";
 
-/** Milliseconds that a step may take: the device of these tests is a processor. */
-const PATIENCE = 120_000;
+const pages = new Pages();
+const { complaints, requests } = pages;
+const open = (hash) => pages.open(hash);
 
-let browser;
-let address;
-/** What went wrong on any page, and what any page asked the network for. */
-const complaints = [];
-const requests = [];
+before(() => pages.start());
 
-before(async () => {
-  address = pathToFileURL(resolve(built("ISOPHOTE_PAGE"))).href;
-  browser = await launch();
-});
-
-after(() => browser?.close());
-
-/** Opens the page and waits until its first picture is shown. */
-async function open(hash = "") {
-  const page = await browser.newPage({ viewport: { width: 800, height: 420 }, acceptDownloads: true });
-  page.setDefaultTimeout(PATIENCE);
-  page.on("console", (message) => ["error", "warning"].includes(message.type()) && complaints.push(message.text()));
-  page.on("pageerror", (error) => complaints.push(error.message));
-  page.on("request", (request) => /^(https?|wss?|ftp):/.test(request.url()) && requests.push(request.url()));
-  await page.goto(address + hash);
-  await opened(page, "A fountain");
-  return page;
-}
-
-/** Waits until something is open and shown; fails at once with what the page tells instead. */
-async function opened(page, name) {
-  await page.waitForFunction((start) => {
-    const fault = document.querySelector(".note.error[data-key='start'], .note.error[data-key='computing'], .note.error[data-key='fault']");
-    if (fault !== null) {
-      throw new Error(`the page says: ${fault.textContent}`);
-    }
-    return document.querySelector("#info").textContent.startsWith(start);
-  }, name);
-  await settled(page);
-}
-
-/** Waits until the newest look is shown. */
-async function settled(page) {
-  await page.waitForFunction(() => {
-    const fault = document.querySelector(".note.error[data-key='computing'], .note.error[data-key='fault']");
-    if (fault !== null) {
-      throw new Error(`the page says: ${fault.textContent}`);
-    }
-    return document.querySelector("#stage").getAttribute("aria-busy") === "false";
-  });
-  // Browsers show a frame after they are given it.
-  await page.evaluate(() => new Promise((done) => { requestAnimationFrame(() => requestAnimationFrame(done)); }));
-}
-
-/** Drops files on the picture. */
-function drop(page, files) {
-  const entries = files.map(({ name, type = "", data }) => ({ name, type, data: Buffer.from(data).toString("base64") }));
-  return page.evaluate((given) => {
-    const transfer = new DataTransfer();
-    for (const { name, type, data } of given) {
-      transfer.items.add(new File([Uint8Array.from(atob(data), (c) => c.charCodeAt(0))], name, { type }));
-    }
-    for (const kind of ["dragenter", "dragover", "drop"]) {
-      const event = new DragEvent(kind, { dataTransfer: transfer, bubbles: true, cancelable: true });
-      document.querySelector("#canvas").dispatchEvent(event);
-    }
-  }, entries);
-}
-
-const dropPhoto = async (page) => {
-  await drop(page, [{ name: "hill.png", type: "image/png", data: photo() }]);
-  await opened(page, "hill.png");
-};
-
-/** What the stage shows, as the bytes of a PNG, which are the same for the same pixels. */
-async function shot(page) {
-  const clip = await page.locator("#canvas").boundingBox();
-  return page.screenshot({ clip });
-}
-
-/** The message of a kind, once it is there. */
-async function message(page, key) {
-  return page.locator(`.note[data-key="${key}"]`).innerText();
-}
-
-const lookOf = (page) => page.evaluate(() => JSON.parse(decodeURIComponent(location.hash.slice("#look=".length))));
+after(() => pages.close());
 
 /** Sets a slider as a person does, and waits for the picture. */
 async function slide(page, label, value) {
@@ -103,9 +23,6 @@ async function slide(page, label, value) {
   }, value);
   await settled(page);
 }
-
-/** Waits until the address says what it should. */
-const addressSays = (page, text) => page.waitForFunction((part) => decodeURIComponent(location.hash).includes(part), text);
 
 test("a dropped photo, thumbnails, a look, a slider, undo, and the same pixels from the link", async () => {
   const page = await open();
@@ -176,18 +93,6 @@ test("the edge, the key for the original, defaults and going back", async () => 
   await page.close();
 });
 
-/** The look in the address, once it is as wanted. */
-async function lookOfSettled(page, isWanted) {
-  for (let round = 0; round < 40; round += 1) {
-    const look = await lookOf(page);
-    if (isWanted(look)) {
-      return look;
-    }
-    await new Promise((done) => { setTimeout(done, 100); });
-  }
-  throw new Error(`the address keeps ${JSON.stringify(await lookOf(page))}`);
-}
-
 test("presets are opened and saved; what is none is told", async () => {
   const page = await open();
   const preset = { name: "Mine", style: "ink", lengths: "relative", parameters: { style: "woodcut", line_width: 3 } };
@@ -197,7 +102,9 @@ test("presets are opened and saved; what is none is told", async () => {
   assert.deepEqual((await lookOf(page)).parameters, preset.parameters);
   const [download] = await Promise.all([page.waitForEvent("download"), page.getByRole("button", { name: "Save preset" }).click()]);
   const saved = JSON.parse(readFileSync(await download.path(), "utf8"));
-  assert.deepEqual({ ...saved, name: "Mine" }, preset);
+  assert.equal(await page.locator("#look-name").innerText(), "Mine");
+  assert.equal(download.suggestedFilename(), "mine.json");
+  assert.deepEqual(saved, preset);
 
   await drop(page, [{ name: "other.json", data: '{"style":"cartoon","parameters":{"line_widht":3}}' }]);
   assert.match(await message(page, "file"), /other\.json is no preset of Isophote: .*line_widht/);

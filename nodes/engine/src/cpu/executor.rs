@@ -157,12 +157,14 @@ impl Run<'_> {
         for step in 0..steps {
             for (place, index) in needed.iter().enumerate() {
                 self.control.check()?;
-                let started = Instant::now();
+                // Only where times are wanted: WebAssembly has no clock of its own.
+                let started = self.executor.times.is_some().then(Instant::now);
                 done += self.compute(step, &plan.passes()[*index])?;
                 if step + 1 == steps {
                     self.release(*index);
                 }
-                if let Some(time) = self.executor.times.as_mut().and_then(|times| times.get_mut(place)) {
+                let time = self.executor.times.as_mut().and_then(|times| times.get_mut(place));
+                if let Some((time, started)) = time.zip(started) {
                     time.time += started.elapsed();
                 }
                 if let Some(progress) = self.control.progress {

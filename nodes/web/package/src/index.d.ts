@@ -131,7 +131,7 @@ export interface StylizerOptions extends PictureOptions {
 }
 
 export interface ApplyOptions extends Omit<PictureOptions, "space" | "alpha"> {
-  /** Bytes that textures may take; larger pictures are computed in tiles. 512 MiB without. */
+  /** Bytes that textures, or the images of a part, may take; larger pictures are computed in tiles. 512 MiB without. */
   memory?: number;
   /** Told the share that is done. */
   onProgress?: (share: number) => void;
@@ -168,16 +168,34 @@ export class Painter {
   paint(encoder: GPUCommandEncoder, picture: GPUTexture, target: GPUTexture, options?: PaintOptions): void;
 }
 
+/** A graphics device of WebGPU, or the processor: WebAssembly in up to two workers. */
+export type Backend = "gpu" | "cpu";
+
+type CpuModule = string | URL | Response | ArrayBuffer | Promise<Response | ArrayBuffer>;
+
 export class Isophote {
-  /** Loads the planner and opens a graphics device, or uses the page's own. */
+  /** Loads the planner and opens a graphics device, or uses the page's own. Where there is none, the processor computes. */
   static create(options?: {
     wasm?: string | URL | Response | BufferSource | WebAssembly.Module | Promise<Response>;
     device?: GPUDevice;
     adapter?: GPUAdapter;
+    /** `auto`: a graphics device where there is one, the processor otherwise (the default). `gpu` and `cpu` allow no other. */
+    backend?: "auto" | Backend;
+    /** What the processor computes with, beside the package without: loaded when it is needed. */
+    cpu?: {
+      wasm?: CpuModule | (() => CpuModule);
+      /** Starts a worker that runs `cpu-worker.js`. */
+      worker?: () => Worker;
+    };
   }): Promise<Isophote>;
+  /** What computes. It changes from `gpu` to `cpu` where the device is lost while `apply` uses it and does not come back. */
+  readonly backend: Backend;
+  /** Why the processor computes though it was not asked for; `null` otherwise. */
+  readonly reason: string | null;
+  /** Throws where the processor computes, as `stylizer` and `texture` do. */
   readonly device: GPUDevice;
   readonly painter: Painter;
-  /** Whether the device computes on the CPU. */
+  /** Whether the processor computes, by itself or as a device. */
   readonly isSoftware: boolean;
   readonly catalogue: Catalogue;
   /** The graph that a look comes to. Throws a {@link LookError} that says what is wrong with it. */

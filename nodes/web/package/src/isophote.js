@@ -1,22 +1,68 @@
 // The door of the package.
 
 import { apply } from "./apply.js";
+import { applyOnCpu } from "./apply-cpu.js";
 import { Kernels } from "./kernels.js";
 import { Painter } from "./painter.js";
-import { Planner } from "./planner.js";
+import { Planner, bytesOf } from "./planner.js";
+import { Processor } from "./processor.js";
 import { Stylizer } from "./stylizer.js";
 
 /** Kinds of guides that may be pictures of a page; the others hold numbers beyond 0 to 1. */
 const OF_EIGHT_BITS = ["scalar", "flow"];
 
-/** The planner with a graphics device. */
+/** The planner with a graphics device, or with the processor where there is none. */
 export class Isophote {
   #catalogue;
+  #device = null;
+  #processor = null;
+  #cpu;
+  #reason = null;
   #lost = null;
 
-  constructor(planner, device, { isSoftware = false } = {}) {
+  /** Takes the planner alone; see {@link Isophote.create}. */
+  constructor(planner, cpu = {}) {
     this.planner = planner;
-    this.device = device;
+    this.#cpu = cpu;
+  }
+
+  /**
+   * Loads the planner and opens a graphics device, or uses the page's. Where there is none the processor computes.
+   * @param options `wasm`: the planner's bytes or where it is, beside this file without; `device`: the page's own device;
+   *   `adapter`: where a device is opened; `backend`: `gpu` and `cpu` allow no other; `cpu`: the module and the worker of the
+   *   processor, beside this file without
+   */
+  static async create({ wasm = new URL("../isophote.wasm", import.meta.url), device, adapter, backend = "auto", cpu } = {}) {
+    const isophote = new Isophote(await Planner.load(wasm), backend === "gpu" ? null : { ...cpu });
+    if (device !== undefined) {
+      isophote.#use(device, device.adapterInfo?.isFallbackAdapter ?? false);
+    } else if (backend === "cpu") {
+      isophote.#compute(null);
+    } else {
+      await isophote.#open(adapter);
+    }
+    return isophote;
+  }
+
+  async #open(given) {
+    try {
+      const adapter = given ?? await openAdapter();
+      const { maxTextureDimension2D, maxBufferSize } = adapter.limits;
+      const device = await adapter.requestDevice({
+        label: "isophote",
+        requiredLimits: { maxTextureDimension2D, maxBufferSize },
+      });
+      this.#use(device, adapter.info?.isFallbackAdapter ?? false);
+    } catch (error) {
+      if (this.#cpu === null) {
+        throw error;
+      }
+      this.#compute(error.message);
+    }
+  }
+
+  #use(device, isSoftware) {
+    this.#device = device;
     this.kernels = new Kernels(device, isSoftware);
     this.painter = new Painter(device);
     this.isSoftware = isSoftware;
@@ -27,23 +73,42 @@ export class Isophote {
     });
   }
 
-  /**
-   * Loads the planner and opens a graphics device, or uses the page's.
-   * @param options `wasm`: the planner's bytes or where it is, beside this file without; `device`: the page's own device;
-   *   `adapter`: where a device is opened
-   */
-  static async create({ wasm = new URL("../isophote.wasm", import.meta.url), device, adapter } = {}) {
-    const planner = await Planner.load(wasm);
-    if (device !== undefined) {
-      return new Isophote(planner, device, { isSoftware: device.adapterInfo?.isFallbackAdapter ?? false });
+  /** Lets the processor compute. */
+  #compute(reason) {
+    const {
+      wasm = new URL("../isophote-cpu.wasm", import.meta.url),
+      worker = () => new Worker(new URL("./cpu-worker.js", import.meta.url), { type: "module" }),
+    } = this.#cpu;
+    this.#processor = new Processor(() => bytesOf(typeof wasm === "function" ? wasm() : wasm), worker);
+    [this.#device, this.#reason] = [null, reason];
+    this.isSoftware = true;
+  }
+
+  /** What computes: `gpu` or `cpu`. */
+  get backend() {
+    return this.#processor === null ? "gpu" : "cpu";
+  }
+
+  /** Why the processor computes though it was not asked for; `null` where it does not. */
+  get reason() {
+    return this.#reason;
+  }
+
+  /** @throws {Error} where the processor computes */
+  get device() {
+    this.#needsDevice();
+    return this.#device;
+  }
+
+  #needsDevice() {
+    if (this.#device === null) {
+      throw new Error(`there is no graphics device: ${this.#reason ?? "the processor was asked for"}. On the processor, pictures are stylized by 'apply'`);
     }
-    const found = adapter ?? await openAdapter();
-    const { maxTextureDimension2D, maxBufferSize } = found.limits;
-    const opened = await found.requestDevice({
-      label: "isophote",
-      requiredLimits: { maxTextureDimension2D, maxBufferSize },
-    });
-    return new Isophote(planner, opened, { isSoftware: found.info?.isFallbackAdapter ?? false });
+  }
+
+  /** What computes where there is no device. */
+  get processor() {
+    return this.#processor;
   }
 
   /** All nodes with their inputs and parameters, and the guides. */
@@ -62,6 +127,7 @@ export class Isophote {
 
   /** Makes a look ready for pictures of one size; see `index.d.ts` for the options. */
   async stylizer(look, options) {
+    this.#needsDevice();
     return new Stylizer(this, look, picture(options)).start();
   }
 
@@ -74,13 +140,26 @@ export class Isophote {
     const sources = "color" in inputs ? inputs : { color: inputs };
     const { width, height } = extent(sources.color);
     const given = this.catalogue.guides.filter(({ id }) => sources[id] !== undefined);
-    const coarse = given.find(({ id, kind }) => !(sources[id] instanceof GPUTexture) && !OF_EIGHT_BITS.includes(kind));
+    const coarse = given.find(({ id, kind }) => !isTexture(sources[id]) && !OF_EIGHT_BITS.includes(kind));
     const guides = given.map(({ id }) => id);
     if (coarse !== undefined) {
       throw new Error(`the guide '${coarse.id}' holds numbers that a picture of a page cannot: give a texture of floats`);
     }
     const { precision, frame, origin, scale } = options;
-    return apply(this, look, picture({ width, height, guides, precision, frame, origin, scale }), sources, options);
+    const wanted = picture({ width, height, guides, precision, frame, origin, scale });
+    if (this.#processor === null) {
+      try {
+        return await apply(this, look, wanted, sources, options);
+      } catch (error) {
+        const isOnDevice = Object.values(sources).some(isTexture);
+        if (this.#lost === null || this.#cpu === null || isOnDevice) {
+          throw error;
+        }
+        // The device does not come back, and the picture is still here.
+        this.#compute(this.#lost);
+      }
+    }
+    return applyOnCpu(this, look, wanted, sources, options);
   }
 
   /** A picture as a texture that stylizers read: gamma-encoded, premultiplied, 8 bits. */
@@ -126,11 +205,15 @@ export class Isophote {
     }
   }
 
-  /** Gives the device back, if the page does not use it for other work. */
+  /** Gives the device back, if the page does not use it for other work, or the threads. */
   destroy() {
-    this.device.destroy();
+    this.#device?.destroy();
+    this.#processor?.destroy();
   }
 }
+
+/** Whether it lies on a device; browsers without WebGPU know no such thing. */
+const isTexture = (source) => typeof GPUTexture !== "undefined" && source instanceof GPUTexture;
 
 async function openAdapter() {
   if (!globalThis.navigator?.gpu) {

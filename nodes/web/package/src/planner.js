@@ -1,4 +1,5 @@
-// The planner: a module of WebAssembly that says what a look comes to on a graphics device. It runs nothing.
+// The planner: a module of WebAssembly that says what a look comes to on a graphics device. It runs nothing; the second module,
+// which `cpu-worker.js` loads, computes as well and is asked in the same way.
 //
 // A call is JSON. An answer is JSON and bytes: the length of the JSON in four bytes, the JSON, the bytes.
 
@@ -8,6 +9,22 @@ const decoder = new TextDecoder();
 /** A request that the planner refuses: an unknown name, a value out of range, an open input. */
 export class LookError extends Error {
   name = "LookError";
+}
+
+/** The bytes of a module that is a response or an address; others are what they are. */
+export async function bytesOf(source) {
+  let wasm = await source;
+  if (typeof wasm === "string" || wasm instanceof URL) {
+    wasm = await fetch(wasm);
+  }
+  if (typeof Response !== "undefined" && wasm instanceof Response) {
+    if (!wasm.ok) {
+      throw new Error(`the module of WebAssembly is not at ${wasm.url}: ${wasm.status} ${wasm.statusText}`);
+    }
+    // Not streamed, since many servers do not know the type of the file.
+    wasm = await wasm.arrayBuffer();
+  }
+  return wasm;
 }
 
 export class Planner {
@@ -23,29 +40,24 @@ export class Planner {
    * @param source its bytes, a compiled module, a response, or where it is
    */
   static async load(source) {
-    let wasm = await source;
+    const wasm = await bytesOf(source);
     if (wasm instanceof WebAssembly.Module) {
       return new Planner(await WebAssembly.instantiate(wasm));
-    }
-    if (typeof wasm === "string" || wasm instanceof URL) {
-      wasm = await fetch(wasm);
-    }
-    if (typeof Response !== "undefined" && wasm instanceof Response) {
-      if (!wasm.ok) {
-        throw new Error(`the planner is not at ${wasm.url}: ${wasm.status} ${wasm.statusText}`);
-      }
-      // Not streamed, since many servers do not know the type of the file.
-      wasm = await wasm.arrayBuffer();
     }
     return new Planner((await WebAssembly.instantiate(wasm)).instance);
   }
 
   /**
    * Asks, and throws a {@link LookError} where the answer is one.
+   * @param {Uint8Array} [pixels] what the request is about
    * @returns {{json: object, bytes: Uint8Array}}
    */
-  ask(request) {
+  ask(request, pixels) {
     const wasm = this.#exports;
+    if (pixels !== undefined) {
+      const place = wasm.isophote_pixels(pixels.length);
+      new Uint8Array(wasm.memory.buffer, place, pixels.length).set(pixels);
+    }
     const text = encoder.encode(JSON.stringify(request));
     const at = wasm.isophote_request(text.length);
     new Uint8Array(wasm.memory.buffer, at, text.length).set(text);

@@ -46,10 +46,13 @@ function decode(text) {
 /** The look that was chosen before it was changed, as the browser's history keeps it beside the address. */
 export const chosen = () => history.state?.chosen;
 
+/** What that look is called, if it is none of ours. */
+export const title = () => history.state?.title ?? null;
+
 /** Keeps the address up to date with the look. */
 export class Address {
   #wanted = null;
-  #chosen = null;
+  #state = {};
   #timer = null;
   #last = 0;
 
@@ -71,20 +74,20 @@ export class Address {
 
   /**
    * Shows a look in the address.
-   * @param chosen the look that it was made of
+   * @param {{chosen: object, title: object|null}} state the look that it was made of, and what that is called
    * @param {boolean} isStep whether going back returns to what is shown now
    */
-  show(look, chosen, isStep) {
+  show(look, state, isStep) {
     const hash = fragment(look);
     if (isStep) {
       this.flush();
-      this.#chosen = chosen;
+      this.#state = state;
       if (hash !== location.hash) {
         this.#write(hash, "pushState");
       }
       return;
     }
-    [this.#wanted, this.#chosen] = [hash, chosen];
+    [this.#wanted, this.#state] = [hash, state];
     const wait = Math.max(0, this.#last + PACE - performance.now());
     this.#timer ??= setTimeout(() => this.flush(), wait);
   }
@@ -101,7 +104,7 @@ export class Address {
   #write(hash, how) {
     this.#last = performance.now();
     try {
-      history[how]({ chosen: this.#chosen }, "", hash);
+      history[how](this.#state, "", hash);
     } catch {
       // Too many in a short time: the next change writes it.
     }

@@ -3,6 +3,14 @@
 import { looks } from "isophote";
 import { byId, make } from "./dom.js";
 import { firstSentence, isSame } from "./look.js";
+import { Roving } from "./roving.js";
+
+/** The styles in the order in which looks are made of them, which is that of the list of looks. */
+function styles(catalogue) {
+  const order = [...new Set(Object.values(looks).map(({ style }) => style))];
+  const rank = ({ id }) => (order.includes(id) ? order.indexOf(id) : order.length);
+  return catalogue.nodes.filter(({ group }) => group === "styles").sort((a, b) => rank(a) - rank(b));
+}
 
 /** Looks, styles and filters as cards; `{id, name, about, style, look, words}`. */
 function entries(catalogue) {
@@ -28,7 +36,7 @@ function entries(catalogue) {
   const filters = catalogue.nodes.filter((node) => node.group !== "styles" && node.group !== "time" && needsColor(node));
   return [
     ...shipped,
-    ...catalogue.nodes.filter(({ group }) => group === "styles").map((node) => plain(node, "Styles")),
+    ...styles(catalogue).map((node) => plain(node, "Styles")),
     ...filters.map((node) => plain(node, "Filters")),
   ];
 }
@@ -47,6 +55,7 @@ export class Browser {
   #seen;
   #style = "";
   #visible = new Set();
+  #roving;
 
   /** @param {(entry: object) => void} onChoose told which card is chosen */
   constructor(catalogue, thumbnails, onChoose) {
@@ -61,7 +70,8 @@ export class Browser {
     }
     this.#chips(catalogue);
     byId("search").addEventListener("input", () => this.#filter());
-    byId("cards").addEventListener("keydown", (event) => this.#walk(event));
+    this.#roving = new Roving(byId("cards"), ".card", (card) => getComputedStyle(card.parentElement).gridTemplateColumns.split(" ").length);
+    new Roving(byId("styles"), "button", () => 1);
   }
 
   #section(section, onChoose) {
@@ -81,8 +91,7 @@ export class Browser {
   }
 
   #chips(catalogue) {
-    const styles = catalogue.nodes.filter(({ group }) => group === "styles");
-    for (const { id, label } of [{ id: "", label: "All" }, ...styles]) {
+    for (const { id, label } of [{ id: "", label: "All" }, ...styles(catalogue)]) {
       byId("styles").append(make("button", {
         "aria-pressed": String(id === ""),
         dataset: { style: id },
@@ -113,21 +122,7 @@ export class Browser {
     if (found === 0) {
       byId("cards").append(make("p", { class: "none faint" }, "No look has these words. Try fewer, or another style."));
     }
-  }
-
-  /** Arrow keys go from card to card. */
-  #walk(event) {
-    const cards = [...byId("cards").querySelectorAll(".card:not([hidden])")];
-    const at = cards.indexOf(document.activeElement);
-    if (at < 0) {
-      return;
-    }
-    const columns = getComputedStyle(cards[at].parentElement).gridTemplateColumns.split(" ").length;
-    const step = { ArrowLeft: -1, ArrowRight: 1, ArrowUp: -columns, ArrowDown: columns }[event.key];
-    if (step !== undefined) {
-      event.preventDefault();
-      cards[Math.min(Math.max(at + step, 0), cards.length - 1)].focus();
-    }
+    this.#roving.renew();
   }
 
   #see({ target, isIntersecting }) {
@@ -174,7 +169,11 @@ export class Browser {
   /** Marks the card whose look it is. */
   mark(look) {
     for (const [entry, { card }] of this.#cards) {
-      card.setAttribute("aria-pressed", String(isSame(entry.look, look)));
+      const isChosen = isSame(entry.look, look);
+      card.setAttribute("aria-pressed", String(isChosen));
+      if (isChosen) {
+        this.#roving.stopAt(card);
+      }
     }
   }
 

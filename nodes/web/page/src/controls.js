@@ -109,13 +109,35 @@ function color(param, id, onInput) {
 
 const KINDS = { float: number, int: number, bool, choice, color };
 
+/** Keys that change a value step by step. */
+const STEPS = new Set(["ArrowLeft", "ArrowRight", "ArrowUp", "ArrowDown", "PageUp", "PageDown", "Home", "End"]);
+
+/** Tells where one change of a control begins and ends: a drag, a colour that is picked, presses of keys in a row. */
+function rows(element, onHold, onSettle) {
+  let isStepped = false;
+  element.addEventListener("keydown", ({ key }) => { isStepped = STEPS.has(key); });
+  element.addEventListener("pointerdown", () => {
+    isStepped = false;
+    onHold();
+    const end = () => {
+      ["pointerup", "pointercancel"].forEach((kind) => removeEventListener(kind, end, true));
+      // What is picked from a list or a palette comes after the pointer is up.
+      setTimeout(() => element.querySelector("input[type=color]") === null && onSettle());
+    };
+    ["pointerup", "pointercancel"].forEach((kind) => addEventListener(kind, end, true));
+  });
+  // Browsers tell of a change at each press of a key.
+  element.addEventListener("change", () => !isStepped && onSettle());
+  element.addEventListener("focusout", onSettle);
+}
+
 /**
  * The control of a parameter.
  * @param {{param: object, standard: unknown}} entry
  * @param {(value: unknown) => void} onInput
- * @param {() => void} onSettle told when the person lets go
+ * @param {{hold: () => void, settle: () => void}} row told when a change begins that may take its time, and when it ends
  */
-export function control({ param, standard }, onInput, onSettle) {
+export function control({ param, standard }, onInput, { hold: onHold, settle: onSettle }) {
   const id = fresh();
   const { parts, set } = KINDS[param.type](param, id, onInput);
   const what = param.type === "color" ? hex(standard) : param.options?.find((option) => option.id === standard)?.label ?? String(standard);
@@ -129,7 +151,7 @@ export function control({ param, standard }, onInput, onSettle) {
       document.getElementById(id).focus({ preventScroll: true });
     }
   });
-  element.addEventListener("change", onSettle);
+  rows(element, onHold, onSettle);
   element.addEventListener("dblclick", (event) => {
     if (!(event.target instanceof HTMLInputElement && event.target.type === "number")) {
       set(standard);

@@ -14,6 +14,12 @@ export function fromFile(json) {
   return bare(Array.isArray(json.nodes) ? { style: json } : json);
 }
 
+/** What a preset calls itself and says of itself, or the file that it came in: `{name, about}`. */
+export function titleOf(json, file) {
+  const text = (value) => (typeof value === "string" ? value.trim() : "");
+  return { name: text(json.name) || file.replace(/\.json$/i, ""), about: text(json.about) };
+}
+
 /** Whether two looks compute the same. */
 export function isSame(a, b) {
   return JSON.stringify(canonical(a)) === JSON.stringify(canonical(b));

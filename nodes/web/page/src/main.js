@@ -1,12 +1,14 @@
 // The page: what is open, the look, and what ties them together.
 
-import { Address, chosen, fragment, read } from "./address.js";
+import { Address, chosen, read, title } from "./address.js";
 import { Browser } from "./browser.js";
+import { busy } from "./busy.js";
 import { byId } from "./dom.js";
 import { openEngine, sentence } from "./engine.js";
 import { listen, sort } from "./files.js";
 import { keys, tabs } from "./keys.js";
-import { description, fromFile, isSame } from "./look.js";
+import { copyLink } from "./link.js";
+import { description, fromFile, isSame, titleOf } from "./look.js";
 import { readModel } from "./gltf.js";
 import { Model } from "./model.js";
 import { Navigation } from "./navigation.js";
@@ -22,6 +24,9 @@ import { Stage } from "./stage.js";
 import { Thumbnails } from "./thumbnails.js";
 import { Wipe } from "./wipe.js";
 
+/** Times that a device may be lost before the processor takes over. */
+const LOSSES = 3;
+
 /** The look that a page without a link begins with. */
 const FIRST = "saturday_comic";
 
@@ -33,10 +38,10 @@ class Page {
   #again = null;
   #opening = 0;
   #isSaving = false;
+  #losses = 0;
 
   async start() {
-    this.isophote = await openEngine((message) => this.#lost(message));
-    this.stage.connect(this.isophote);
+    await this.#connect();
     const { catalogue } = this.isophote;
     this.browser = new Browser(catalogue, this.thumbnails, (entry) => this.session.choose(entry.look));
     this.panel = new Panel(catalogue, this.session);
@@ -46,14 +51,28 @@ class Page {
     this.address = new Address((hash) => this.#follow(hash));
     this.session.addEventListener("look", ({ detail }) => this.#changed(detail));
     this.#tools();
-    this.stage.addEventListener("busy", () => byId("stage").setAttribute("aria-busy", "true"));
-    this.stage.addEventListener("rest", () => byId("stage").setAttribute("aria-busy", "false"));
+    this.stage.addEventListener("busy", () => busy("computing", true));
+    this.stage.addEventListener("rest", () => busy("computing", false));
     this.stage.addEventListener("shown", () => {
-      byId("stage").setAttribute("aria-busy", "false");
+      busy("computing", false);
       drop("computing");
     });
     listen((entries) => this.open(entries), (error) => this.failed(error));
     this.#begin();
+    busy("start", false);
+  }
+
+  /** Opens what computes, and tells when that is the processor. */
+  async #connect() {
+    const { isophote, why } = await openEngine((message) => this.#lost(message), this.#losses < LOSSES);
+    this.isophote = isophote;
+    this.stage.connect(isophote);
+    const isSlow = isophote.backend === "cpu";
+    byId("backend").hidden = !isSlow;
+    if (isSlow) {
+      byId("backend").title = why;
+      note(`Computed on the processor: slower. ${why}`, { key: "backend" });
+    }
   }
 
   #begin() {
@@ -64,7 +83,8 @@ class Page {
     } catch (error) {
       fault(error.message, { key: "link" });
     }
-    this.session.choose(look ?? first, "address", look === null ? first : chosen());
+    const own = look === null ? { chosen: first } : { chosen: chosen(), title: title() };
+    this.session.choose(look ?? first, { why: "address", ...own });
     const [sample] = samples();
     this.#openPicture(sample.blob(), sample.name);
   }
@@ -86,7 +106,7 @@ class Page {
       const look = this.#checked(read(hash));
       if (look !== null) {
         drop("link");
-        this.session.choose(look, "address", chosen());
+        this.session.choose(look, { why: "address", chosen: chosen(), title: title() });
       }
     } catch (error) {
       fault(error.message, { key: "link" });
@@ -94,8 +114,9 @@ class Page {
   }
 
   #changed(why) {
-    const { look, chosen: before } = this.session;
-    const { name, about } = this.browser.find(before) ?? description(this.isophote.catalogue, look);
+    const { look, chosen: before, title: own } = this.session;
+    const known = this.browser.find(before) ?? description(this.isophote.catalogue, look);
+    const [name, about] = [own?.name || known.name, own?.about || known.about];
     this.lookName = name;
     byId("look-name").textContent = name;
     byId("look-about").textContent = about;
@@ -110,7 +131,7 @@ class Page {
     this.browser.mark(look);
     this.stage.setLook(look);
     if (why !== "address") {
-      this.address.show(look, before, why === "choose");
+      this.address.show(look, { chosen: before, title: own }, why === "choose");
     }
     document.title = `${this.lookName} – Isophote`;
   }
@@ -134,9 +155,10 @@ class Page {
 
   async #openPreset(file) {
     try {
-      const look = fromFile(JSON.parse(await file.text()));
+      const json = JSON.parse(await file.text());
+      const look = fromFile(json);
       this.isophote.graph(look);
-      this.session.choose(look);
+      this.session.choose(look, { title: titleOf(json, file.name) });
       drop("file");
     } catch (error) {
       const why = error instanceof SyntaxError ? "it is no JSON" : error.message;
@@ -147,7 +169,7 @@ class Page {
   #openPicture(blob, name) {
     return this.#show(async () => {
       const bitmap = await readPicture(blob, name);
-      return () => Picture.open(this.isophote, bitmap, name);
+      return () => Picture.open(this.isophote, bitmap, name, this.stage);
     });
   }
 
@@ -173,7 +195,7 @@ class Page {
   async #show(read) {
     this.#opening += 1;
     const opening = this.#opening;
-    byId("stage").dataset.opening = "";
+    busy("opening", true);
     try {
       const make = await read();
       const subject = await make();
@@ -196,7 +218,7 @@ class Page {
       }
     } finally {
       if (opening === this.#opening) {
-        delete byId("stage").dataset.opening;
+        busy("opening", false);
       }
     }
   }
@@ -206,7 +228,10 @@ class Page {
     byId("undo").addEventListener("click", () => session.undo());
     byId("redo").addEventListener("click", () => session.redo());
     byId("reset").addEventListener("click", () => this.reset());
-    byId("link").addEventListener("click", () => this.#copyLink());
+    byId("link").addEventListener("click", () => {
+      this.address.flush();
+      copyLink(session.look);
+    });
     byId("preset").addEventListener("click", () => savePreset(session.look, this.lookName));
     byId("save").addEventListener("click", () => this.save());
     byId("hint-close").addEventListener("click", () => { byId("hint").hidden = true; });
@@ -230,6 +255,7 @@ class Page {
     }
     this.#isSaving = true;
     byId("save").disabled = true;
+    busy("saving", true);
     try {
       await savePicture(this.isophote, this.session.look, subject, this.lookName);
     } catch (error) {
@@ -237,17 +263,7 @@ class Page {
     } finally {
       this.#isSaving = false;
       byId("save").disabled = false;
-    }
-  }
-
-  async #copyLink() {
-    this.address.flush();
-    const link = new URL(fragment(this.session.look), location.href).href;
-    try {
-      await navigator.clipboard.writeText(link);
-      note("The link is copied. It holds the look and no picture.", { key: "link-copied", seconds: 4 });
-    } catch {
-      fault("The browser does not let the page copy. Copy the address of this page instead: it holds the look, too.", { key: "link-copied" });
+      busy("saving", false);
     }
   }
 
@@ -260,6 +276,7 @@ class Page {
 
   #lost(message) {
     this.isLost = true;
+    this.#losses += 1;
     const why = message ? ` (${message})` : "";
     fault(`The graphics device was lost${why}. Often it was busy for too long, or its driver was renewed.`, {
       key: "lost",
@@ -269,9 +286,8 @@ class Page {
 
   async #goOn() {
     try {
-      this.isophote = await openEngine((message) => this.#lost(message));
+      await this.#connect();
       this.isLost = false;
-      this.stage.connect(this.isophote);
       await this.#show(async () => this.#again);
     } catch (error) {
       fault(`${sentence(error)} Load the page again; the look stays in its address.`, { key: "lost" });
@@ -288,5 +304,6 @@ addEventListener("error", (event) => fault(sentence(event.error ?? event.message
 
 new Page().start().catch((error) => {
   document.body.classList.add("dead");
+  busy("start", false);
   fault(sentence(error), { key: "start" });
 });

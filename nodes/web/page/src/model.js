@@ -97,6 +97,9 @@ export class Model {
    * @param stage whose canvas it is turned on
    */
   static async open(isophote, { root, clips, name, faces }, stage) {
+    if (isophote.backend === "cpu") {
+      throw new Error("Models are drawn by a graphics card that the browser may use, and there is none. Pictures are stylized without one.");
+    }
     const model = new Model();
     const renderer = await rendererOf(isophote);
     Object.assign(model, { isophote, renderer, root, clips, name, faces, stage });

@@ -84,7 +84,7 @@ export class Panel {
     const made = control(
       entry,
       (value) => session.edit(withValue(session.look, entry, value), entry.name),
-      () => session.settle(),
+      { hold: () => session.hold(), settle: () => session.settle() },
     );
     this.#rows.push({ entry, ...made });
     return made.element;

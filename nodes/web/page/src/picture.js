@@ -1,7 +1,10 @@
 // Pictures: read from files, and small enough to be worked on.
 
-/** Pixels of the longer side while a picture is worked on: with a graphics card, and without one. */
+/** Pixels of the longer side while a picture is worked on: with a graphics card, and with a driver without one. */
 const [SIDE, SIDE_WITHOUT] = [2560, 640];
+
+/** Pixels of the longer side on the processor: of what comes at once, and of what the screen shows at most. */
+const [COARSE, FINE] = [400, 1280];
 
 /** Pixels of the longer side of thumbnails. */
 export const small = (isophote) => (isophote.isSoftware ? 192 : 320);
@@ -31,20 +34,34 @@ async function shrunk(bitmap, side) {
   return createImageBitmap(bitmap, { resizeWidth, resizeHeight, resizeQuality: "high" });
 }
 
+/** Pixels of the longer side that are worked on. */
+function side(isophote, screen) {
+  if (isophote.backend === "cpu") {
+    return Math.min(FINE, Math.max(COARSE, ...screen));
+  }
+  return Math.min(isophote.isSoftware ? SIDE_WITHOUT : SIDE, isophote.device.limits.maxTextureDimension2D);
+}
+
 /** A picture as a subject of the stage. */
 export class Picture {
   kind = "picture";
   guides = [];
   isMoving = false;
   number = 0;
+  /** Pictures that the processor goes through, the smallest first. */
+  steps = [];
 
   /** Makes one of a bitmap. */
-  static async open(isophote, bitmap, name) {
+  static async open(isophote, bitmap, name, stage) {
     const picture = new Picture();
-    const limit = Math.min(isophote.isSoftware ? SIDE_WITHOUT : SIDE, isophote.device.limits.maxTextureDimension2D);
-    const worked = await shrunk(bitmap, limit);
-    Object.assign(picture, { name, bitmap, width: worked.width, height: worked.height });
-    picture.texture = isophote.texture(worked);
+    const worked = await shrunk(bitmap, side(isophote, stage.size));
+    Object.assign(picture, { name, bitmap, worked, width: worked.width, height: worked.height });
+    if (isophote.backend === "gpu") {
+      picture.texture = isophote.texture(worked);
+    } else {
+      const coarse = await shrunk(worked, COARSE);
+      picture.steps = coarse === worked ? [worked] : [coarse, worked];
+    }
     picture.small = await shrunk(worked, small(isophote));
     return picture;
   }
@@ -70,6 +87,6 @@ export class Picture {
 
   /** Gives the textures back; the bitmap stays with who opened it. */
   close() {
-    this.texture.destroy();
+    this.texture?.destroy();
   }
 }

@@ -5,7 +5,7 @@ import { bare, isSame } from "./look.js";
 /** Steps that can be undone. */
 const MOST = 200;
 
-/** Milliseconds within which changes of one control are one step. */
+/** Milliseconds within which changes of one control are one step: presses of a key, one after the other. */
 const PAUSE = 1200;
 
 /**
@@ -16,6 +16,7 @@ export class Session extends EventTarget {
   #at = -1;
   #lastKey = null;
   #lastTime = 0;
+  #isHeld = false;
 
   /** The look now. */
   get look() {
@@ -25,6 +26,11 @@ export class Session extends EventTarget {
   /** The look that was chosen, to which a reset goes back. */
   get chosen() {
     return this.#steps[this.#at].chosen;
+  }
+
+  /** What the person called the look that was chosen, and says of it: `{name, about}`, or nothing. */
+  get title() {
+    return this.#steps[this.#at].title;
   }
 
   get canUndo() {
@@ -37,10 +43,11 @@ export class Session extends EventTarget {
 
   /**
    * Takes a look of the browser, a file or a link.
-   * @param chosen the look that it was made of, if it is another
+   * @param {{why?: string, chosen?: object, title?: object}} more `chosen`: the look that it was made of, if it is another;
+   *   `title`: what it is called, if it is none of ours
    */
-  choose(look, why = "choose", chosen = look) {
-    this.#put({ look: bare(look), chosen: bare(chosen) }, null, why);
+  choose(look, { why = "choose", chosen = look, title = null } = {}) {
+    this.#put({ look: bare(look), chosen: bare(chosen), title }, null, why);
   }
 
   /**
@@ -49,13 +56,19 @@ export class Session extends EventTarget {
    */
   edit(look, key) {
     if (!isSame(look, this.look)) {
-      this.#put({ look, chosen: this.chosen }, key, "edit");
+      this.#put({ look, chosen: this.chosen, title: this.title }, key, "edit");
     }
+  }
+
+  /** Begins a row of changes that lasts until it is ended, however slowly they come: something is dragged. */
+  hold() {
+    this.settle();
+    this.#isHeld = true;
   }
 
   /** Ends a row of changes: the next one is a step of its own. */
   settle() {
-    this.#lastKey = null;
+    [this.#lastKey, this.#isHeld] = [null, false];
   }
 
   undo() {
@@ -76,7 +89,7 @@ export class Session extends EventTarget {
 
   #put(step, key, why) {
     const now = performance.now();
-    const isRow = key !== null && key === this.#lastKey && now - this.#lastTime < PAUSE;
+    const isRow = key !== null && key === this.#lastKey && (this.#isHeld || now - this.#lastTime < PAUSE);
     this.#steps.length = isRow ? this.#at : this.#at + 1;
     this.#steps.push(step);
     this.#steps.splice(0, this.#steps.length - MOST);

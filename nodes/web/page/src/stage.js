@@ -2,8 +2,8 @@
 // another part of what is computed costs little and waits for nothing.
 
 import { nextFrame } from "./dom.js";
-import { precision } from "./engine.js";
-import { isTimed } from "./look.js";
+import { Screen } from "./screen.js";
+import { CpuScreen } from "./screen-cpu.js";
 import { Viewport } from "./viewport.js";
 
 /**
@@ -19,18 +19,11 @@ export class Stage extends EventTarget {
   edge = 0;
   /** Whether the original is shown alone. */
   isOriginal = false;
-  #isophote = null;
   #canvas;
-  #context;
+  /** What computes and shows: a device, or the processor. */
+  #screen = null;
   #subject = null;
-  #stylizer = null;
   #look = null;
-  /** Whether the look of the stylizer changes with the number of the frame, and the number that it has. */
-  #isTimed = false;
-  #number = 0;
-  /** What is shown: 8 bits, so that painting is cheap and what is computed may change meanwhile. */
-  #shown = null;
-  #before = null;
   #dirty = { look: false, picture: false };
   #isComputing = false;
   #paintsWaiting = false;
@@ -44,12 +37,11 @@ export class Stage extends EventTarget {
     new ResizeObserver(() => this.#resize()).observe(canvas.parentElement);
   }
 
-  /** Takes a device, for the first time or after another was lost. */
+  /** Takes what computes, for the first time or after a device was lost. */
   connect(isophote) {
-    this.#isophote = isophote;
-    this.#context ??= this.#canvas.getContext("webgpu");
-    this.#context.configure({ device: isophote.device, format: navigator.gpu.getPreferredCanvasFormat(), alphaMode: "premultiplied" });
-    [this.#stylizer, this.#shown, this.#subject] = [null, null, null];
+    this.#screen?.close();
+    this.#screen = isophote.backend === "gpu" ? new Screen(isophote, this.#canvas) : new CpuScreen(isophote, this.#canvas);
+    this.#subject = null;
   }
 
   get subject() {
@@ -74,7 +66,8 @@ export class Stage extends EventTarget {
   /** Shows another picture or model. */
   show(subject) {
     this.#subject?.close();
-    [this.#subject, this.#before] = [subject, null];
+    this.#subject = subject;
+    this.#screen.forget();
     this.#dirty = { look: true, picture: true };
     this.dispatchEvent(new Event("busy"));
     this.#resize();
@@ -85,6 +78,7 @@ export class Stage extends EventTarget {
   setLook(look) {
     this.#look = look;
     this.#dirty.look = true;
+    this.#screen.interrupt();
     this.dispatchEvent(new Event("busy"));
     this.#compute();
   }
@@ -92,13 +86,14 @@ export class Stage extends EventTarget {
   /** Computes again, because the subject looks different. */
   renew() {
     this.#dirty.picture = true;
+    this.dispatchEvent(new Event("busy"));
     this.#compute();
   }
 
   /** Shows what is computed anew, because another part is shown. */
   repaint() {
     this.dispatchEvent(new Event("view"));
-    if (this.#paintsWaiting || this.#shown === null) {
+    if (this.#paintsWaiting || !this.#screen?.hasPicture) {
       return;
     }
     this.#paintsWaiting = true;
@@ -145,82 +140,23 @@ export class Stage extends EventTarget {
   }
 
   async #round() {
-    const { device } = this.#isophote;
     const [subject, look, dirty] = [this.#subject, this.#look, this.#dirty];
     this.#dirty = { look: false, picture: false };
-    const { number } = subject;
-    if (dirty.look || !this.#fits(subject)) {
-      await this.#prepare(subject, look, number);
-    } else if (this.#isTimed && number !== this.#number) {
-      await this.#stylizer.update(look, { frame: number });
-    }
-    this.#number = number;
-    const inputs = await subject.inputs();
-    if (subject !== this.#subject) {
-      return;
-    }
-    await this.#isophote.checked(() => {
-      const encoder = device.createCommandEncoder();
-      const picture = this.#stylizer.encode(encoder, inputs);
-      this.#isophote.painter.paint(encoder, picture, this.#target(subject));
-      device.queue.submit([encoder.finish()]);
-    });
-    if (subject !== this.#subject) {
-      return;
-    }
-    this.#before = inputs.color;
-    this.viewport.resize(this.viewport.canvas, [subject.width, subject.height]);
-    this.#paint();
-    await device.queue.onSubmittedWorkDone();
-    if (!this.#dirty.look && !this.#dirty.picture) {
+    const isCurrent = () => subject === this.#subject;
+    const show = () => {
+      this.viewport.resize(this.viewport.canvas, [subject.width, subject.height]);
+      this.#paint();
+    };
+    await this.#screen.compute(subject, look, { isNewLook: dirty.look, isCurrent, show });
+    if (isCurrent() && !this.#dirty.look && !this.#dirty.picture) {
       this.dispatchEvent(new Event("shown"));
     }
   }
 
-  #fits({ width, height }) {
-    return this.#stylizer?.width === width && this.#stylizer.height === height;
-  }
-
-  /** A stylizer for the look: the same one as long as pictures have the size and the guides. */
-  async #prepare(subject, look, number) {
-    const guides = subject.guides.join();
-    if (this.#fits(subject) && this.#stylizer.guides === guides) {
-      await this.#stylizer.update(look, { frame: number });
-      this.#isTimed = isTimed(look, this.#isophote.graph(look));
-      return;
-    }
-    const { width, height } = subject;
-    const options = { width, height, guides: subject.guides, frame: number, precision: precision(this.#isophote) };
-    const made = await this.#isophote.stylizer(look, options);
-    made.guides = guides;
-    this.#stylizer?.destroy();
-    this.#stylizer = made;
-    this.#isTimed = isTimed(look, this.#isophote.graph(look));
-  }
-
-  #target({ width, height }) {
-    if (this.#shown?.width !== width || this.#shown.height !== height) {
-      this.#shown?.destroy();
-      this.#shown = this.#isophote.device.createTexture({
-        label: "shown",
-        size: [width, height],
-        format: "rgba8unorm",
-        usage: GPUTextureUsage.RENDER_ATTACHMENT | GPUTextureUsage.TEXTURE_BINDING,
-      });
-    }
-    return this.#shown;
-  }
-
   #paint() {
-    if (this.#shown === null || this.#before === null) {
-      return;
+    if (this.#screen.hasPicture) {
+      this.#screen.paint(this.viewport, this.isOriginal ? 2 : this.edge);
+      this.dispatchEvent(new Event("view"));
     }
-    const { device, painter } = this.#isophote;
-    const encoder = device.createCommandEncoder();
-    const edge = this.isOriginal ? 2 : this.edge;
-    const options = { beside: this.#before, edge, ...this.viewport.part };
-    painter.paint(encoder, this.#shown, this.#context.getCurrentTexture(), options);
-    device.queue.submit([encoder.finish()]);
-    this.dispatchEvent(new Event("view"));
   }
 }
