@@ -2,13 +2,16 @@
 //!
 //! When the device is lost, the stage is thrown away and made anew; what is shown and how is kept outside.
 
+mod counted;
+
 use std::sync::Arc;
 use std::time::{Duration, Instant};
 
 use winit::event_loop::OwnedDisplayHandle;
 use winit::window::Window;
 
-use super::canvas::{Arrangement, Canvas, SURROUND, Shown};
+use super::canvas::{Arrangement, Canvas, Reading, SURROUND, Shown};
+use super::counter::Counter;
 use super::live_look::{LiveLook, Part};
 use super::made::{FrameState, Made};
 use super::panel::Panel;
@@ -21,8 +24,9 @@ use super::sources::Sources;
 use crate::jobs::worker::{Wake, Worker};
 use crate::state::document::frame::Frame;
 use crate::state::look::EditedLook;
+use crate::state::notes::Subject;
 use crate::state::session::{Session, Which};
-use isophote_example::kernels::{Counts, Kernels};
+use isophote_example::kernels::Kernels;
 use isophote_files::error::{Error, Result};
 use isophote_render::gpu::Gpu;
 use isophote_render::layouts;
@@ -40,6 +44,7 @@ pub struct Stage {
     canvas: Canvas,
     probe: Probe,
     snapshots: Snapshots<FrameState>,
+    counter: Counter,
     /// Colours under the pointer, before and after, as of the last frame.
     pub probed: Option<[[f32; 4]; 2]>,
     /// Draws the controls.
@@ -137,6 +142,7 @@ impl Stage {
             canvas,
             probe,
             snapshots: Snapshots::new(wake)?,
+            counter: Counter::new(&gpu, wake)?,
             probed: None,
             panel,
             clock: None,
@@ -167,12 +173,12 @@ impl Stage {
     ///
     /// # Errors
     /// [`Error::Failure`] when the device fails.
-    pub fn follow(&mut self, session: &Session, scale: f32) -> Result<Vec<Error>> {
+    pub fn follow(&mut self, session: &Session, scale: f32) -> Result<Vec<(Subject, Error)>> {
         let mut problems = Vec::new();
         match self.sources.follow(session, scale) {
             Ok(false) => {}
             Ok(true) => self.looks.iter_mut().for_each(LiveLook::unbind),
-            Err(problem) => problems.push(problem),
+            Err(problem) => problems.push((Subject::Other, problem)),
         }
         // What is covered is built when it is seen, where that takes the processor's time.
         if session.is_covered() && self.is_software() {
@@ -189,7 +195,8 @@ impl Stage {
         let compared = session.looks.compared.clone().unwrap_or_else(EditedLook::plain);
         let request = source.request();
         for (live, look) in self.looks.iter_mut().zip([&*seen, &compared, &overlay]) {
-            problems.extend(live.follow(&session.library, look, session.precision, request).err());
+            let built = live.follow(&session.library, look, session.precision, request);
+            problems.extend(built.err().map(|problem| (Subject::Look, problem)));
             if let LookInput::Scene(source) = source
                 && live.wants_rest_positions()?
                 && source.add_rest_positions()
@@ -458,6 +465,10 @@ impl Stage {
             exposure: viewport.exposure.exp2(),
             middle: session.open.scenery().map_or(1.0, |scenery| scenery.distance()),
             square: 8.0,
+            reading: match viewport.is_difference() && left != right {
+                true => Reading::Difference(viewport.amplification),
+                false => Reading::Seen,
+            },
         };
         self.canvas.set(&self.gpu.device, &self.gpu.queue, &arrangement);
     }
@@ -473,25 +484,5 @@ impl Stage {
         let (before, _) = source.original();
         let after = self.looks[0].output().map_or(before, |(view, ..)| view);
         self.probe.encode(encoder, [before, after], place);
-    }
-
-    /// The device.
-    pub fn gpu(&self) -> &Gpu {
-        &self.gpu
-    }
-
-    /// Numbers of things made and uploaded on the device for looks.
-    pub fn counts(&self) -> Counts {
-        self.kernels.counts()
-    }
-
-    /// Most texels of a texture across.
-    pub fn most_texels(&self) -> usize {
-        self.gpu.device.limits().max_texture_dimension_2d as usize
-    }
-
-    /// Name of the adapter.
-    pub fn adapter(&self) -> String {
-        self.gpu.adapter.get_info().name
     }
 }

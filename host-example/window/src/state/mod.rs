@@ -8,6 +8,8 @@ pub mod demo;
 pub mod dialogs;
 pub mod document;
 pub mod file_steps;
+pub mod folder;
+pub mod histogram;
 pub mod history;
 pub mod leaving;
 pub mod look;
