@@ -314,15 +314,20 @@ fn nothing_is_cut_and_no_two_labels_overlap_on_any_screen_at_any_size() {
     let folder = support::folder();
     let mut problems = Vec::new();
     for (name, session, click) in SCREENS {
-        for size in SIZES {
-            let mut harness = harness(session(folder.path()), size);
-            if let Some(label) = click {
-                let found = harness.query_by_label(label).map(|node| node.click());
-                found.unwrap_or_else(|| panic!("{name} at {size:?}: there is no '{label}'"));
-                harness.run_ok();
-            }
-            assert!(things(&harness).len() > 4, "{name} at {size:?}");
-            let of = |problem| format!("{name} at {size:?}: {problem}");
+        let mut harness = harness(session(folder.path()), SIZES[0]);
+        if let Some(label) = click {
+            let found = harness.query_by_label(label).map(|node| node.click());
+            found.unwrap_or_else(|| panic!("{name}: there is no '{label}'"));
+            harness.run_ok();
+        }
+        for ([width, height], scale) in SIZES {
+            // Another scale changes the size as well, which is given after that.
+            harness.set_pixels_per_point(scale).run_ok();
+            harness.set_size(egui::vec2(width / scale, height / scale));
+            harness.run_ok();
+            let at = format!("{name} at {width} x {height}, letters times {scale}");
+            assert!(things(&harness).len() > 4, "{at}: there is nothing to look at");
+            let of = |problem| format!("{at}: {problem}");
             problems.extend(overlapping(&harness).into_iter().map(of));
             problems.extend(cut(&mut harness).into_iter().map(of));
         }

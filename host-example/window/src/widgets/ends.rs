@@ -1,6 +1,6 @@
 //! Bars with two ends: what is at the left one scrolls where there is no room for it beside what is at the right one.
 
-use egui::{Align, Id, Label, Layout, RichText, ScrollArea, Ui};
+use egui::{Align, Id, Label, Layout, RichText, ScrollArea, Ui, vec2};
 
 use crate::state::session::Session;
 
@@ -21,10 +21,9 @@ pub fn show(
         ui.set_min_height(height);
         let room = ui.available_width() - known.unwrap_or_default() - ui.spacing().item_spacing.x;
         ScrollArea::horizontal().id_salt(id).max_width(room.max(0.0)).show(ui, |ui| {
-            ui.horizontal(|ui| {
-                ui.set_min_height(height);
-                left(ui, session);
-            });
+            let size = vec2(ui.available_width(), height);
+            let row = Layout::left_to_right(Align::Center);
+            ui.allocate_ui_with_layout(size, row, |ui| left(ui, session));
         });
         ui.with_layout(Layout::right_to_left(Align::Center), |ui| {
             right(ui, session);
