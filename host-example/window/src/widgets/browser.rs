@@ -210,7 +210,7 @@ fn grid(ui: &mut Ui, viewport: Rect, session: &mut Session) {
     if let Some((rect, _)) = selected
         && std::mem::take(&mut session.browser.scrolls)
     {
-        let at = rect.translate(corner).expand(GAP);
+        let at = rect.translate(corner).expand2(vec2(GAP, HEADING));
         ui.scroll_to_rect_animation(at, None, egui::style::ScrollAnimation::none());
     }
     if let Some(act) = act {
