@@ -310,7 +310,7 @@ fn desktops_know_the_program_by_its_entry_and_its_icons() {
     unpacked.run_in(&share, &format!("desktop-file-validate applications/{id}.desktop"));
     unpacked.run_in(&share, &format!("appstreamcli validate --no-net metainfo/{id}.metainfo.xml"));
     let entry = std::fs::read_to_string(share.join(format!("applications/{id}.desktop"))).unwrap();
-    for line in [&format!("Icon={id}"), &format!("StartupWMClass={id}"), "Exec=isophote view %f"] {
+    for line in [format!("Icon={id}"), format!("StartupWMClass={id}"), "Exec=isophote view %f".to_owned()] {
         assert!(entry.lines().any(|known| known == line), "{line}: {entry}");
     }
     let icons = share.join("icons/hicolor");

@@ -1,4 +1,4 @@
-//! What desktops know the program by: its entry, what software centres say of it, and its icon in all sizes.
+//! The program as desktops know it: its entry, what software centres say of it, and its icon in all sizes.
 
 use crate::error::{Error, Result};
 use crate::tree::Tree;

@@ -100,6 +100,10 @@ mod tests {
     fn the_window_has_the_icon_of_the_program() {
         let file = Path::new(env!("CARGO_MANIFEST_DIR")).join("../../host-example/window/icon/128.png");
         let picture = image::open(file).expect("the window's icon").into_rgba8();
-        assert_eq!(picture, of_program().raster(picture.width()), "draw it anew by `isophote-icons program DIR`");
+        assert_eq!(
+            picture,
+            of_program().raster(picture.width()),
+            "draw it anew by `isophote-icons program DIR`"
+        );
     }
 }

@@ -1,4 +1,4 @@
-//! What desktops know of the window: the application that it belongs to, its icon, and whether files can be dropped on it.
+//! The window as desktops know it: the application that it belongs to, its icon, and whether files can be dropped on it.
 
 use image::ImageFormat;
 use winit::event_loop::ActiveEventLoop;

@@ -55,9 +55,7 @@ impl SystemDialogs {
             let _ = choose.send((dialog, path));
             wake();
         });
-        spawned.map_err(|e| {
-            Error::failure(format!("no dialog can be opened: {e}"), otherwise)
-        })?;
+        spawned.map_err(|e| Error::failure(format!("no dialog can be opened: {e}"), otherwise))?;
         self.is_open = true;
         Ok(())
     }
@@ -81,7 +79,9 @@ fn proposed(dialog: Dialog, session: &Session) -> (Option<PathBuf>, String) {
 /// Advice where the system has no dialogs.
 const fn otherwise(dialog: Dialog, takes_drops: bool) -> &'static str {
     match dialog {
-        Dialog::File | Dialog::Look if takes_drops => "drop the file on the window, or install zenity or xdg-desktop-portal",
+        Dialog::File | Dialog::Look if takes_drops => {
+            "drop the file on the window, or install zenity or xdg-desktop-portal"
+        }
         Dialog::Export => "type where it is to go, or install zenity or xdg-desktop-portal",
         _ => "install zenity or xdg-desktop-portal",
     }

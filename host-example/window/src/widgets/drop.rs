@@ -28,7 +28,7 @@ pub fn show(context: &Context, session: &Session) {
     });
 }
 
-/// What becomes of files that are dropped.
+/// Words on what becomes of files that are dropped.
 fn words(files: &[PathBuf], session: &Session) -> String {
     let (looks, others): (Vec<&PathBuf>, Vec<&PathBuf>) = files.iter().partition(|file| is_look(file));
     match (others.as_slice(), looks.as_slice()) {
