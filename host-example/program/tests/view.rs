@@ -35,6 +35,9 @@ fn a_window_shows_every_style_resizes_and_closes() {
             shown(&window.title()).is_some_and(|(s, n)| s == *name && n >= FRAMES)
         });
     }
+    // The name by which desktops find its entry, and with that its icon.
+    let of_application = display.xdotool(&["search", "--class", "org.isophote.Isophote"]).unwrap_or_default();
+    assert!(of_application.lines().any(|id| id == window.id), "{of_application}");
     window.resize(300, 180);
     std::thread::sleep(Duration::from_secs(1));
     window.wait_for("frames of the new size", |window| {
