@@ -183,6 +183,8 @@ fn what_cannot_be_packed_leaves_what_was_there() {
         .arg(built)
         .arg("--bundle")
         .arg(&bundle)
+        .arg("--icons")
+        .arg(folder.path())
         .arg("--packed")
         .arg(folder.path())
         .arg("--out")
@@ -299,6 +301,27 @@ fn the_program_runs_from_a_prefix_with_its_library() {
     let listed = unpacked.run_in(&place.join("work"), "../bin/isophote preset list");
     let looks = listed.lines().filter(|line| line.trim_start().starts_with("look:")).count();
     assert_eq!(files(&place.join("share/isophote/looks")).len(), looks);
+}
+
+#[test]
+fn desktops_know_the_program_by_its_entry_and_its_icons() {
+    let unpacked = Unpacked::get();
+    let share = unpacked.of("program").join("share");
+    let id = "org.isophote.Isophote";
+    // Words of Debian's own validators, of which the second would look for addresses on the network.
+    unpacked.run_in(&share, &format!("desktop-file-validate applications/{id}.desktop"));
+    unpacked.run_in(&share, &format!("appstreamcli validate --no-net metainfo/{id}.metainfo.xml"));
+    let entry = std::fs::read_to_string(share.join(format!("applications/{id}.desktop"))).unwrap();
+    for line in [format!("Icon={id}"), format!("StartupWMClass={id}"), "Exec=isophote view %f".to_owned()] {
+        assert!(entry.lines().any(|known| known == line), "{line}: {entry}");
+    }
+    let icons = share.join("icons/hicolor");
+    for side in [16, 32, 48, 64, 128, 256, 512] {
+        let icon = image::open(icons.join(format!("{side}x{side}/apps/{id}.png"))).unwrap();
+        assert_eq!((icon.width(), icon.height()), (side, side));
+    }
+    let drawing = std::fs::read_to_string(icons.join(format!("scalable/apps/{id}.svg"))).unwrap();
+    assert!(drawing.starts_with("<svg") && drawing.trim_end().ends_with("</svg>"));
 }
 
 #[test]

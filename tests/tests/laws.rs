@@ -384,7 +384,11 @@ const READERS: [(&str, &[&str], &[&str]); 11] = [
     (
         "a picture of eight bits",
         &["ImageReader", "image::open", "load_from_memory"],
-        &["host-example/scene/src/decode.rs", "host-example/window/src/state/samples.rs"],
+        &[
+            "host-example/scene/src/decode.rs",
+            "host-example/window/src/app/desktop.rs",
+            "host-example/window/src/state/samples.rs",
+        ],
     ),
     ("DDS", &["dds::Dec"], &["host-example/scene/src/decode.rs"]),
     ("glTF", &["gltf::"], &["host-example/scene/src/gltf_file"]),

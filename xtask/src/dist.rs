@@ -1,7 +1,7 @@
 //! `cargo xtask dist`: all that users install, for the system and the machine that it runs on.
 
 use crate::bundle;
-use crate::error::Result;
+use crate::error::{Context, Result};
 use crate::packing;
 use crate::python::{self, RELEASED};
 use crate::setup::{self, C_COMPILER, NODE, PYTHON, WASM};
@@ -39,6 +39,9 @@ pub fn run(options: &Options) -> Result<()> {
     build_with_host(profile, &[bundle::ICONS, packing::PACKAGE])?;
     let bundle = target_dir("packed-bundle").join(bundle::FOLDER);
     bundle::write(&bundle, profile)?;
+    let icons = target_dir("packed-icons");
+    std::fs::create_dir_all(&icons).context(|| format!("cannot create {}", icons.display()))?;
+    run_command(program(bundle::ICONS, profile).arg("program").arg(&icons))?;
     let packed = target_dir("packed");
     heading("Python");
     python::pack(profile, &packed)?;
@@ -50,6 +53,8 @@ pub fn run(options: &Options) -> Result<()> {
         .arg(target_dir(profile))
         .arg("--bundle")
         .arg(bundle)
+        .arg("--icons")
+        .arg(icons)
         .arg("--packed")
         .arg(packed);
     pack.arg("--out").arg(root().join(&options.out)).args(options.is_draft().then_some("--draft"));

@@ -78,11 +78,15 @@ pub const NODE: Need = Need {
     packages: &["nodejs", "npm"],
 };
 
-/// Programs that users of the library build with, and that show manual pages.
+/// Programs that users of the library build with, that show manual pages, and that tell whether desktops take the program's
+/// entry.
 pub const PACKAGING: Need = Need {
-    what: "CMake, pkg-config and man",
-    present: || ["cmake", "make", "pkg-config", "man"].into_iter().all(program),
-    packages: &["cmake", "make", "pkg-config", "man-db"],
+    what: "CMake, pkg-config, man, appstreamcli and desktop-file-validate",
+    present: || {
+        let programs = ["cmake", "make", "pkg-config", "man", "appstreamcli", "desktop-file-validate"];
+        programs.into_iter().all(program)
+    },
+    packages: &["cmake", "make", "pkg-config", "man-db", "appstream", "desktop-file-utils"],
 };
 
 /// Python with virtual environments.

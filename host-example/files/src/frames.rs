@@ -316,7 +316,7 @@ pub fn sequence_of(path: &Path) -> Option<PathBuf> {
 }
 
 /// The name of a picture with a place instead of the last number before its extension.
-fn numbered(name: &OsStr) -> Option<String> {
+pub fn numbered(name: &OsStr) -> Option<String> {
     let (stem, extension) = name.to_str()?.rsplit_once('.')?;
     let end = stem.rfind(|c: char| c.is_ascii_digit())? + 1;
     let digits = stem[..end].bytes().rev().take_while(u8::is_ascii_digit).count();

@@ -10,13 +10,15 @@ use std::time::Duration;
 use support::window::{Display, Part, Window, screen, view};
 
 const STYLES: [&str; 3] = ["none", "cartoon", "blueprint"];
+/// Name of each, as titles have it, in small letters.
+const NAMES: [&str; 3] = ["original", "cartoon", "blueprint"];
 const FRAMES: u32 = 10;
 
-/// Style, and frames since the last switch or resize, that a title tells.
+/// Look, and frames since the last switch or resize, that a title tells where a report is wanted.
 fn shown(title: &str) -> Option<(String, u32)> {
-    let mut parts = title.split(" - ");
-    let (_, style, frame) = (parts.next()?, parts.next()?, parts.next()?);
-    Some((style.to_owned(), frame.strip_prefix("frame ")?.parse().ok()?))
+    let mut parts = title.split(" – ");
+    let (_, look, frame) = (parts.next()?, parts.next()?, parts.next()?);
+    Some((look.to_lowercase(), frame.strip_prefix("frame ")?.parse().ok()?))
 }
 
 #[test]
@@ -30,12 +32,15 @@ fn a_window_shows_every_style_resizes_and_closes() {
         .arg(&scene)
         .args(STYLES.iter().flat_map(|s| ["--style", s]));
     let mut window = Window::open(&display, &mut command);
-    for (number, style) in STYLES.iter().enumerate() {
+    for (number, name) in NAMES.iter().enumerate() {
         window.key(&format!("{}", number + 1));
-        window.wait_for(&format!("{FRAMES} frames of {style}"), |window| {
-            shown(&window.title()).is_some_and(|(s, n)| s == *style && n >= FRAMES)
+        window.wait_for(&format!("{FRAMES} frames of {name}"), |window| {
+            shown(&window.title()).is_some_and(|(s, n)| s == *name && n >= FRAMES)
         });
     }
+    // The name by which desktops find its entry, and with that its icon.
+    let of_application = display.xdotool(&["search", "--class", "org.isophote.Isophote"]).unwrap_or_default();
+    assert!(of_application.lines().any(|id| id == window.id), "{of_application}");
     window.resize(300, 180);
     std::thread::sleep(Duration::from_secs(1));
     window.wait_for("frames of the new size", |window| {
@@ -73,7 +78,7 @@ fn a_slider_is_moved_and_taken_back_and_a_wipe_shows_the_original() {
         Window::open(&display, command.args(["--style", "none", "--style", "blueprint"]).arg(&scene));
     let part = |part| screen(display.folder(), part);
     window.point(ASIDE, &[]);
-    window.wait_for("the original", |window| shown(&window.title()).is_some_and(|(s, _)| s == "none"));
+    window.shows("cube.gltf", "none");
     let original = window.settled(LEFT);
     let before = part(CANVAS);
     window.key("2");
@@ -155,7 +160,7 @@ fn half_precision_shows_all_but_the_same_and_says_so() {
         let mut window = Window::open(&display, command.arg(&photo));
         window.point(ASIDE, &[]);
         window.shows("photo.png", "gaussian");
-        let says = |window: &mut Window<'_>| window.title().ends_with(" - half precision");
+        let says = |window: &mut Window<'_>| window.title().ends_with(" – half precision – Isophote");
         match precision {
             "half" => window.wait_for("the precision", says),
             _ => assert!(!says(&mut window), "{}", window.title()),
@@ -197,6 +202,37 @@ fn both_processors_show_the_same_scene() {
     }
 }
 
+#[test]
+fn the_difference_to_the_original_is_shown_and_is_nothing_where_there_is_no_look() {
+    let Some(display) = Display::open("800x600") else { return };
+    let folder = support::folder();
+    let photo = folder.path().join("photo.png");
+    support::picture(240, 160).save(&photo).unwrap();
+    let mut command = view(folder.path(), "700x420");
+    let mut window =
+        Window::open(&display, command.args(["--style", "none", "--style", "blueprint"]).arg(&photo));
+    window.point(ASIDE, &[]);
+    window.shows("photo.png", "none");
+    // The middle of the picture, below the words on it.
+    let middle: Part = [60, 180, 290, 260];
+    let original = window.settled(middle);
+    window.key("d");
+    window.changes("the difference of equal pictures", middle, &original);
+    let none = window.settled(middle);
+    assert!(none.chunks_exact(4).all(|pixel| pixel[..3] == [0; 3]), "equal pictures are nowhere apart");
+    window.key("2");
+    window.shows("photo.png", "blueprint");
+    window.changes("the difference", middle, &none);
+    let weak = window.settled(middle);
+    let light =
+        |pixels: &[u8]| pixels.chunks_exact(4).filter(|pixel| pixel[..3].iter().any(|v| *v > 40)).count();
+    assert!(light(&weak) * 4 > weak.len() / 4, "a blueprint is another picture nearly everywhere");
+    window.key("d");
+    window.changes("the look", middle, &weak);
+    assert!(is_blue(&window.settled(middle)));
+    window.close();
+}
+
 /// Within the picture of the first card of the browser in a window of 700x420 pixels.
 const CARD: Part = [50, 215, 190, 285];
 /// The middle of that card.
@@ -218,17 +254,17 @@ fn a_look_is_taken_from_the_grid_where_it_was_seen_on_the_picture() {
     let mut window = Window::open(&display, command.args(["--style", "none"]).arg(&photo));
     let part = |part| screen(display.folder(), part);
     window.point(ASIDE, &[]);
-    window.wait_for("the picture", |window| shown(&window.title()).is_some_and(|(s, _)| s == "none"));
+    window.shows("photo.png", "none");
     let original = window.settled(WHOLE);
     assert!(!is_blue(&original));
     window.key("l");
     window.wait_for("the preview on the first card", |_| is_blue(&part(CARD)));
     window.point(MIDDLE, &["sleep", "0.2", "click", "1"]);
-    window.wait_for("the look", |window| window.title().contains("- plan"));
+    window.wait_for("the look", |window| !window.title().contains("Original"));
     window.key("Return");
     window.point(ASIDE, &[]);
     window.wait_for("the picture with the look", |window| {
-        is_blue(&part(WHOLE)) && window.title().contains("- plan - frame")
+        is_blue(&part(WHOLE)) && window.title() == "photo.png – plan – Isophote"
     });
     window.key("ctrl+z");
     window.wait_for("the picture of before", |_| part(WHOLE) == original);

@@ -131,7 +131,7 @@ fn a_look_that_is_not_saved_is_asked_about_and_kept_saved_or_discarded() {
         window.point([2, 200], &[]);
         window.key("Escape");
         window.goes_on(&bright);
-        assert!(window.settled(CANVAS) == reset && window.title().contains("- mine -"), "{}", window.title());
+        assert!(window.settled(CANVAS) == reset && window.title().contains("– mine –"), "{}", window.title());
         let id = window.id.clone();
         window.asks(|_| others::close(&display.name, &id));
         others::close(&display.name, &id);

@@ -54,7 +54,7 @@ fn what_is_dropped_opens_and_what_cannot_be_opened_leaves_what_was_there() {
     ] {
         drops(&display, &window, &[&at(name)]);
         window.wait_for(why, |window| window.said().contains(name) && window.said().contains(why));
-        assert!(window.title().starts_with("a photo, größer.png - cartoon"), "{}", window.title());
+        assert_eq!(window.title(), "a photo, größer.png – Cartoon – Isophote");
     }
     assert!(window.settled(CANVAS) == before, "the picture of before stays");
     drops(&display, &window, &[&at("mine.json")]);
@@ -67,6 +67,57 @@ fn what_is_dropped_opens_and_what_cannot_be_opened_leaves_what_was_there() {
     window.shows("shot.####.png", "mine");
     window.close();
     assert!(!window.said().contains("panicked"), "{}", window.said());
+}
+
+/// Middle of the strip where messages appear.
+const MESSAGE: Part = [250, 640, 400, 655];
+
+#[test]
+fn an_error_goes_away_when_another_file_is_opened() {
+    let Some(display) = Display::open("1100x800") else { return };
+    let folder = folder();
+    let at = |name: &str| folder.path().join(name);
+    for name in ["first.png", "second.png"] {
+        picture(96, 20).save(at(name)).unwrap();
+    }
+    fs::write(at("broken.png"), &fs::read(at("second.png")).unwrap()[..400]).unwrap();
+    let mut window =
+        Window::open(&display, view(folder.path(), SIZE).args(["--style", "none"]).arg(at("first.png")));
+    window.shows("first.png", "none");
+    let before = window.settled(MESSAGE);
+    drops(&display, &window, &[&at("broken.png")]);
+    window.changes("what is wrong", MESSAGE, &before);
+    window.settled(MESSAGE);
+    drops(&display, &window, &[&at("second.png")]);
+    window.shows("second.png", "none");
+    window.becomes("no message", MESSAGE, &before);
+    window.close();
+}
+
+#[test]
+fn keys_open_the_files_of_the_folder_as_people_count_and_the_look_stays() {
+    let Some(display) = Display::open("1100x800") else { return };
+    let folder = folder();
+    let at = |name: &str| folder.path().join("shown").join(name);
+    fs::create_dir(folder.path().join("shown")).unwrap();
+    for name in ["img10.png", "img2b.png", "shot.0001.png", "shot.0002.png", "shot.0003.png"] {
+        picture(48, 32).save(at(name)).unwrap();
+    }
+    fs::write(at("notes.txt"), "no picture").unwrap();
+    let mut window =
+        Window::open(&display, view(folder.path(), SIZE).args(["--style", "blueprint"]).arg(at("img2b.png")));
+    window.shows("img2b.png", "blueprint");
+    for (key, name) in
+        [("Next", "img10.png"), ("Next", "shot.####.png"), ("Prior", "img10.png"), ("Prior", "img2b.png")]
+    {
+        window.key(key);
+        window.shows(name, "blueprint");
+    }
+    // Before the first there is none.
+    window.key("Prior");
+    window.settled(CANVAS);
+    window.shows("img2b.png", "blueprint");
+    window.close();
 }
 
 #[test]

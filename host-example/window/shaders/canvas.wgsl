@@ -5,11 +5,11 @@ struct Settings {
     area: vec4f,
     // So of the pictures on the left and on the right of the split.
     places: array<vec4f, 2>,
-    // What the numbers of each picture are, and, in z, whether the surface wants encoded values.
+    // What the numbers of each picture are; in z, whether the surface wants encoded values; in w, what becomes of pixels.
     kinds: vec4u,
     // Column at which the right picture begins; factor on light; half-way distance of depths; width of a square.
     numbers: vec4f,
-    // What surrounds the pictures, as it is shown.
+    // What surrounds the pictures, as it is shown; in w, the factor on their difference.
     surround: vec4f,
 }
 
@@ -21,6 +21,10 @@ const NORMAL = 4u;
 const DEPTH = 5u;
 const OBJECT_ID = 6u;
 const MOTION = 7u;
+
+// What becomes of pixels, where they are not seen as they are.
+const DIFFERENCE = 1u;
+const SAMPLES = 2u;
 
 // Samples along each side of a pixel, at most, where pictures are made smaller.
 const MOST_TAPS = 4.0;
@@ -120,7 +124,7 @@ fn picture(is_right: bool, position: vec2f) -> vec4f {
     let at = within * size;
     let step = size / place.zw;
     // Numbers that stand for things have no means.
-    if all(step <= vec2f(0.5)) || all(abs(step - 1.0) < vec2f(1e-3)) || kind == OBJECT_ID {
+    if all(step <= vec2f(0.5)) || all(abs(step - 1.0) < vec2f(1e-3)) || kind == OBJECT_ID || settings.kinds.w == SAMPLES {
         return texel(is_right, kind, vec2i(floor(at)));
     }
     let taps = clamp(ceil(max(step.x, step.y) * 0.5), 1.0, MOST_TAPS);
@@ -138,11 +142,25 @@ fn shown(light: vec3f) -> vec4f {
     return vec4f(select(value, encoded(value), settings.kinds.z != 0u), 1.0);
 }
 
+// How far apart both pictures are at a place of the window, as they are seen, where they cover it.
+fn difference(before: vec4f, after: vec4f) -> vec3f {
+    let one = vec3f(1.0);
+    let apart = encoded(min(before.rgb, one)) - encoded(min(after.rgb, one));
+    return decoded(min(abs(apart) * settings.surround.w, one));
+}
+
 @fragment
 fn canvas_fragment(@builtin(position) position: vec4f) -> @location(0) vec4f {
     let found = picture(position.x >= settings.numbers.x, position.xy);
     if found.a < 0.0 {
         return shown(decoded(settings.surround.rgb));
+    }
+    if settings.kinds.w == SAMPLES {
+        let colour = clamp(found.rgb / max(found.a, 1e-4), vec3f(0.0), vec3f(1.0));
+        return vec4f(encoded(colour), clamp(found.a, 0.0, 1.0));
+    }
+    if settings.kinds.w == DIFFERENCE {
+        return shown(difference(picture(false, position.xy), found));
     }
     let square = vec2i(floor((position.xy - settings.area.xy) / settings.numbers.w));
     let checker = decoded(vec3f(select(0.22, 0.28, ((square.x + square.y) & 1) == 0)));

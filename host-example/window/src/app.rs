@@ -1,6 +1,7 @@
 //! The window: its events, and when a frame is drawn.
 
 mod clicks;
+mod desktop;
 mod keys;
 mod opening;
 mod pace;
@@ -188,7 +189,7 @@ impl App {
         }
         let scale = self.pace.scale(session);
         let problems = stage.follow(session, scale)?;
-        problems.iter().for_each(|problem| session.notes.complain(problem));
+        problems.iter().for_each(|(subject, problem)| session.notes.complain_of(*subject, problem));
         let was_busy = session.work.busy;
         session.work.busy = stage.doing(session).or(self.background.busy());
         session.work.share = stage.progress();
@@ -237,6 +238,10 @@ impl App {
         session.probed = stage.probed;
         if let Some(frame) = stage.snapshot(session)? {
             session.show_scene_frame(frame);
+            self.due = Some(Instant::now());
+        }
+        if let Some(histograms) = stage.count(session)? {
+            session.histograms = Some(histograms);
             self.due = Some(Instant::now());
         }
         if drawn == Drawn::Picture {

@@ -1,6 +1,7 @@
 //! Archives and the content of each: the one list that everything else walks.
 
 use crate::binary;
+use crate::desktop;
 use crate::editors;
 use crate::error::{Error, Result};
 use crate::pack;
@@ -71,6 +72,8 @@ pub struct Built {
     pub folder: PathBuf,
     /// The OpenFX bundle.
     pub bundle: PathBuf,
+    /// Folder of the program's icons.
+    pub icons: PathBuf,
     /// Folder of what the tools of other languages have packed: wheel, Blender extension, npm package, page.
     pub packed: PathBuf,
     /// True where it is not what users get.
@@ -83,7 +86,7 @@ impl Built {
     /// # Errors
     /// [`Error::File`] naming what is missing.
     pub fn check(&self) -> Result<()> {
-        for path in [&self.root, &self.folder, &self.bundle, &self.packed] {
+        for path in [&self.root, &self.folder, &self.bundle, &self.icons, &self.packed] {
             std::fs::metadata(path).map_err(Error::at(path))?;
         }
         Ok(())
@@ -189,10 +192,13 @@ fn openfx(built: &Built, tree: &mut Tree) -> Result<()> {
     add_licences(tree, "licences", &built.root, &[LIBRARY])
 }
 
-/// The program with its library, pages, completions and looks.
+/// The program with its library, pages, completions, looks, and what desktops know it by.
 fn program(built: &Built, tree: &mut Tree) -> Result<()> {
     let program = add_program(built, tree)?;
     documents(&program, tree)?;
+    if cfg!(target_os = "linux") {
+        desktop::add(tree, &built.icons)?;
+    }
     tree.folder("share/isophote/looks", &built.source("nodes/library/looks"), ".json")?;
     tree.folder("share/isophote/graphs", &built.source("host-example/graphs"), ".json")?;
     tree.text("README.md", include_str!("../files/program.md").replace("@VERSION@", VERSION));

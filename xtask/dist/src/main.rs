@@ -4,6 +4,7 @@
 
 mod archives;
 mod binary;
+mod desktop;
 mod editors;
 mod error;
 mod licences;
@@ -49,6 +50,9 @@ struct Pack {
     /// The OpenFX bundle, with its catalogue beside it
     #[arg(long, value_name = "DIR")]
     bundle: PathBuf,
+    /// Folder of the program's icons
+    #[arg(long, value_name = "DIR")]
+    icons: PathBuf,
     /// Folder of the wheel, the Blender extension, the npm package and the page
     #[arg(long, value_name = "DIR")]
     packed: PathBuf,
@@ -86,6 +90,7 @@ fn pack_all(options: &Pack) -> Result<()> {
         root: root(),
         folder: options.built.clone(),
         bundle: options.bundle.clone(),
+        icons: options.icons.clone(),
         packed: options.packed.clone(),
         draft: options.draft,
     };

@@ -4,7 +4,7 @@
 use image::{Rgba, RgbaImage};
 use std::fmt::Write as _;
 
-/// Side of the icons, in pixels.
+/// Side of effects' icons in pixels, and of all drawings in their own units.
 pub const SIDE: u32 = 128;
 /// Bands, from the outermost in.
 const BANDS: usize = 6;
@@ -63,12 +63,13 @@ impl Icon {
         size * (1.0 + swing)
     }
 
-    /// As pixels.
-    pub fn raster(&self) -> RgbaImage {
-        RgbaImage::from_fn(SIDE, SIDE, |x, y| {
+    /// As so many pixels across and down.
+    pub fn raster(&self, side: u32) -> RgbaImage {
+        let unit = SIDE as f32 / side as f32;
+        RgbaImage::from_fn(side, side, |x, y| {
             let (mut sum, mut covered) = ([0.0_f32; 3], 0.0_f32);
             for sample in 0..SAMPLES * SAMPLES {
-                let at = |pixel: u32, n: u32| pixel as f32 + (n as f32 + 0.5) / SAMPLES as f32;
+                let at = |pixel: u32, n: u32| (pixel as f32 + (n as f32 + 0.5) / SAMPLES as f32) * unit;
                 let (x, y) = (at(x, sample % SAMPLES), at(y, sample / SAMPLES));
                 if outside(x, y) {
                     continue;
@@ -126,10 +127,12 @@ mod tests {
     #[test]
     fn icons_differ_and_stay() {
         let (a, b) = (Icon::new("gaussian", "smoothing"), Icon::new("cartoon", "styles"));
-        assert_ne!(a.raster(), b.raster());
+        assert_ne!(a.raster(SIDE), b.raster(SIDE));
         assert_eq!(a.drawing(), Icon::new("gaussian", "smoothing").drawing());
-        let picture = a.raster();
-        assert_eq!(picture.get_pixel(0, 0)[3], 0);
-        assert_eq!(picture.get_pixel(64, 64)[3], 255);
+        for side in [16, SIDE, 512] {
+            let picture = a.raster(side);
+            assert_eq!(picture.get_pixel(0, 0)[3], 0);
+            assert_eq!(picture.get_pixel(side / 2, side / 2)[3], 255);
+        }
     }
 }

@@ -1,10 +1,11 @@
 //! `isophote-icons CATALOGUE DIR`, run by `cargo xtask bundle`: draws the icon of each effect, as PNG and
 //! as SVG, under the names by which OpenFX hosts look for them. CATALOGUE is what `isophote nodes --json`
-//! prints.
+//! prints. `isophote-icons program DIR` draws the icon of the program: `SIDE.png` of each size that desktops want, and
+//! `scalable.svg`. The window's own, in `host-example/window/icon`, is one of them.
 
 mod icon;
 
-use icon::Icon;
+use icon::{Icon, SIDE};
 use serde_json::Value;
 use std::path::{Path, PathBuf};
 use std::process::ExitCode;
@@ -24,11 +25,12 @@ enum Error {
 
 fn main() -> ExitCode {
     let arguments: Vec<PathBuf> = std::env::args_os().skip(1).map(PathBuf::from).collect();
-    let [catalogue, folder] = &arguments[..] else {
-        eprintln!("usage: isophote-icons CATALOGUE DIR");
+    let [what, folder] = &arguments[..] else {
+        eprintln!("usage: isophote-icons CATALOGUE|program DIR");
         return ExitCode::from(2);
     };
-    match run(catalogue, folder) {
+    let drawn = if what.as_os_str() == "program" { program(folder) } else { run(what, folder) };
+    match drawn {
         Ok(()) => ExitCode::SUCCESS,
         Err(error) => {
             eprintln!("isophote-icons: {error}");
@@ -37,7 +39,26 @@ fn main() -> ExitCode {
     }
 }
 
-/// Draws all icons.
+/// Sides of the program's icons.
+const SIDES: [u32; 7] = [16, 32, 48, 64, 128, 256, 512];
+
+/// The icon of the program.
+fn of_program() -> Icon {
+    Icon::new("isophote", "smoothing")
+}
+
+/// Draws the icon of the program.
+fn program(folder: &Path) -> Result<(), Error> {
+    let icon = of_program();
+    for side in SIDES {
+        let path = folder.join(format!("{side}.png"));
+        icon.raster(side).save(&path).map_err(|source| Error::Picture { path, source })?;
+    }
+    let drawing = folder.join("scalable.svg");
+    std::fs::write(&drawing, icon.drawing()).map_err(|source| Error::File { path: drawing, source })
+}
+
+/// Draws the icons of all effects.
 fn run(catalogue: &Path, folder: &Path) -> Result<(), Error> {
     let text = std::fs::read(catalogue).map_err(|source| Error::File { path: catalogue.into(), source })?;
     let value = serde_json::from_slice(&text)
@@ -67,6 +88,22 @@ fn draw(folder: &Path, id: &str, group: &str) -> Result<(), Error> {
     let icon = Icon::new(id, group);
     let file = |ending: &str| folder.join(format!("org.isophote.{id}.{ending}"));
     let (picture, drawing) = (file("png"), file("svg"));
-    icon.raster().save(&picture).map_err(|source| Error::Picture { path: picture, source })?;
+    icon.raster(SIDE).save(&picture).map_err(|source| Error::Picture { path: picture, source })?;
     std::fs::write(&drawing, icon.drawing()).map_err(|source| Error::File { path: drawing, source })
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn the_window_has_the_icon_of_the_program() {
+        let file = Path::new(env!("CARGO_MANIFEST_DIR")).join("../../host-example/window/icon/128.png");
+        let picture = image::open(file).expect("the window's icon").into_rgba8();
+        assert_eq!(
+            picture,
+            of_program().raster(picture.width()),
+            "draw it anew by `isophote-icons program DIR`"
+        );
+    }
 }

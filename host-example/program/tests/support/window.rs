@@ -152,10 +152,10 @@ impl<'d> Window<'d> {
         self.display.xdotool(&["getwindowname", &self.id]).unwrap_or_default()
     }
 
-    /// Waits until the title begins with what is open and the look, and a picture of both has been shown.
+    /// Waits until the title names what is open and the look, by its name or its id, since a picture of both has been shown.
     pub fn shows(&mut self, file: &str, look: &str) {
-        let wanted = format!("{file} - {look} - frame ");
-        self.wait_for(&wanted, |window| window.title().starts_with(&wanted));
+        let wanted = titled(file, look);
+        self.wait_for(&wanted, |window| window.title().to_lowercase().starts_with(&wanted));
     }
 
     /// Presses keys.
@@ -281,6 +281,12 @@ impl<'d> Window<'d> {
     pub fn goes_on(&mut self, before: &[u8]) {
         self.becomes("the window of before", CORNER, before);
     }
+}
+
+/// Beginning of the title of a window that shows a look on a file, in small letters.
+pub fn titled(file: &str, look: &str) -> String {
+    let look = if look == "none" { "original" } else { look };
+    format!("{file} – {look}").to_lowercase()
 }
 
 /// `isophote view` of a size, with settings of its own in a folder.

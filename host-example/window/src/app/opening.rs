@@ -8,10 +8,10 @@ use winit::dpi::PhysicalSize;
 use winit::event_loop::ActiveEventLoop;
 use winit::window::Window;
 
-use super::{App, FIX};
+use super::{App, FIX, desktop};
 use crate::drawing::stage::Stage;
 use crate::widgets;
-use isophote_files::desktop;
+use isophote_files::desktop::no_window;
 use isophote_files::error::Result;
 
 /// Number of times that a device is opened anew, in vain, before what is open is put away, and then before the window
@@ -58,12 +58,14 @@ impl App {
             return Ok(Arc::clone(window));
         }
         let (width, height) = self.size.or(self.session.settings.window).unwrap_or(SIZE);
-        let attributes = Window::default_attributes()
+        self.session.takes_drops = desktop::takes_drops(event_loop);
+        let attributes = desktop::named(Window::default_attributes())
+            .with_window_icon(desktop::icon())
             .with_title(self.session.title())
             // What reads the window aloud must be there before it is seen.
             .with_visible(false)
             .with_inner_size(PhysicalSize::new(width, height));
-        let window = event_loop.create_window(attributes).map_err(|e| desktop::no_window(e, FIX))?;
+        let window = event_loop.create_window(attributes).map_err(|e| no_window(e, FIX))?;
         Ok(Arc::clone(self.window.insert(Arc::new(window))))
     }
 

@@ -36,6 +36,17 @@ pub struct Shown<'a> {
     pub place: Area,
 }
 
+/// Reading of pictures: what becomes of their pixels.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum Reading {
+    /// They are seen, over squares where they are transparent.
+    Seen,
+    /// Their difference is seen in the place of both, times a factor.
+    Difference(f32),
+    /// Single pixels are taken, with their alpha beside colour.
+    Samples,
+}
+
 /// Arrangement of pictures on the canvas.
 #[derive(Clone, Copy, Debug)]
 pub struct Arrangement<'a> {
@@ -51,6 +62,8 @@ pub struct Arrangement<'a> {
     pub middle: f32,
     /// Side of the squares behind transparent pictures.
     pub square: f32,
+    /// Reading of the pictures.
+    pub reading: Reading,
 }
 
 /// Grey that surrounds pictures, gamma-encoded.
@@ -91,16 +104,22 @@ impl Canvas {
 
     /// Changes what is drawn from now on.
     pub fn set(&mut self, device: &wgpu::Device, queue: &wgpu::Queue, arrangement: &Arrangement<'_>) {
-        let Arrangement { area, pictures: [left, right], split, exposure, middle, square } = arrangement;
+        let Arrangement { area, pictures: [left, right], split, exposure, middle, square, reading } =
+            arrangement;
         let place = |area: &Area| [area.x, area.y, area.width.max(1e-3), area.height.max(1e-3)];
-        let kinds = [left.numbers as u32, right.numbers as u32, self.encode, 0];
+        let (reading, factor) = match *reading {
+            Reading::Seen => (0, 1.0),
+            Reading::Difference(factor) => (1, factor),
+            Reading::Samples => (2, 1.0),
+        };
+        let kinds = [left.numbers as u32, right.numbers as u32, self.encode, reading];
         let words: Vec<u32> = [place(area), place(&left.place), place(&right.place)]
             .concat()
             .into_iter()
             .map(f32::to_bits)
             .chain(kinds)
             .chain([*split, *exposure, middle.max(1e-6), square.max(1.0)].map(f32::to_bits))
-            .chain([SURROUND, SURROUND, SURROUND, 1.0].map(f32::to_bits))
+            .chain([SURROUND, SURROUND, SURROUND, factor].map(f32::to_bits))
             .collect();
         queue.write_buffer(&self.settings, 0, bytemuck::cast_slice(&words));
         if self.bound.as_ref().is_none_or(|(views, _)| views[0] != *left.view || views[1] != *right.view) {

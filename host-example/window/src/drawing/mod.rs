@@ -1,6 +1,7 @@
 //! Drawing: everything of the window that lives on the graphics device.
 
 mod canvas;
+mod counter;
 mod live_look;
 mod made;
 mod origin;

@@ -2,6 +2,7 @@
 //!
 //! When the device is lost, the stage is thrown away and made anew; what is shown and how is kept outside.
 
+mod counted;
 mod on_cpu;
 mod painting;
 
@@ -12,6 +13,7 @@ use winit::event_loop::OwnedDisplayHandle;
 use winit::window::Window;
 
 use super::canvas::Canvas;
+use super::counter::Counter;
 use super::live_look::{LiveLook, Part};
 use super::made::{FrameState, Made};
 use super::panel::Panel;
@@ -25,9 +27,10 @@ use super::sources::Sources;
 use crate::jobs::worker::{Wake, Worker};
 use crate::state::document::frame::Frame;
 use crate::state::look::EditedLook;
+use crate::state::notes::Subject;
 use crate::state::probed::Probed;
 use crate::state::session::{Session, Which};
-use isophote_example::kernels::{Counts, Kernels};
+use isophote_example::kernels::Kernels;
 use isophote_files::error::{Error, Result};
 use isophote_finishing::stylize::precision::Precision;
 use isophote_render::gpu::Gpu;
@@ -55,6 +58,7 @@ pub struct Stage {
     canvas: Canvas,
     probe: Probe,
     snapshots: Snapshots<FrameState>,
+    counter: Counter,
     /// The pixel under the pointer, as of the last frame.
     pub probed: Option<Probed>,
     /// Draws the controls.
@@ -161,6 +165,7 @@ impl Stage {
             canvas,
             probe,
             snapshots: Snapshots::new(wake)?,
+            counter: Counter::new(&gpu, wake)?,
             probed: None,
             panel,
             clock: None,
@@ -191,7 +196,7 @@ impl Stage {
     ///
     /// # Errors
     /// [`Error::Failure`] when the device fails.
-    pub fn follow(&mut self, session: &Session, scale: f32) -> Result<Vec<Error>> {
+    pub fn follow(&mut self, session: &Session, scale: f32) -> Result<Vec<(Subject, Error)>> {
         let mut problems = Vec::new();
         self.moves = scale < 1.0 || session.open.is_playing();
         self.follow_needs(session)?;
@@ -200,7 +205,7 @@ impl Stage {
         match self.sources.follow(session, if is_whole { 1.0 } else { scale }) {
             Ok(false) => {}
             Ok(true) => self.looks.iter_mut().for_each(LiveLook::unbind),
-            Err(problem) => problems.push(problem),
+            Err(problem) => problems.push((Subject::Other, problem)),
         }
         if on_cpu {
             problems.extend(self.follow_on_cpu(session)?);
@@ -221,7 +226,8 @@ impl Stage {
         let compared = session.looks.compared.clone().unwrap_or_else(EditedLook::plain);
         let request = source.request();
         for (live, look) in self.looks.iter_mut().zip([&*seen, &compared, &overlay]) {
-            problems.extend(live.follow(&session.library, look, session.precision, request).err());
+            let built = live.follow(&session.library, look, session.precision, request);
+            problems.extend(built.err().map(|problem| (Subject::Look, problem)));
             if let LookInput::Scene(source) = source
                 && live.wants_rest_positions()?
                 && source.add_rest_positions()
@@ -442,26 +448,6 @@ impl Stage {
             }
         }
         Ok(is_whole)
-    }
-
-    /// The device.
-    pub fn gpu(&self) -> &Gpu {
-        &self.gpu
-    }
-
-    /// Numbers of things made and uploaded on the device for looks.
-    pub fn counts(&self) -> Counts {
-        self.kernels.counts()
-    }
-
-    /// Most texels of a texture across.
-    pub fn most_texels(&self) -> usize {
-        self.gpu.device.limits().max_texture_dimension_2d as usize
-    }
-
-    /// Name of the adapter.
-    pub fn adapter(&self) -> String {
-        self.gpu.adapter.get_info().name
     }
 }
 

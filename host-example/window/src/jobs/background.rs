@@ -8,6 +8,7 @@ use egui::ColorImage;
 use super::dialogs::SystemDialogs;
 use super::document::Document;
 use super::exporting::Exporting;
+use super::folder::FolderReader;
 use super::idle::IdleSearch;
 use super::look_work::LookWork;
 use super::opening::{self, OpenJob, WithFrames};
@@ -27,6 +28,7 @@ pub struct Background {
     library: Library,
     opener: Worker<OpenJob, Result<WithFrames>>,
     frames: Reader,
+    folder: FolderReader,
     idle: IdleSearch,
     looks: LookWork,
     /// Makes the pictures of the start small.
@@ -47,6 +49,7 @@ impl Background {
             library: library.clone(),
             opener: Worker::new("open", Arc::clone(wake), opening::open)?,
             frames: Reader::default(),
+            folder: FolderReader::new(wake)?,
             idle: IdleSearch::new(wake)?,
             looks: LookWork::new(library, wake)?,
             reducer: Worker::new("samples", Arc::clone(wake), |()| samples::small())?,
@@ -100,6 +103,7 @@ impl Background {
             }
             Err(error) => Outcome::Failed(error),
         }));
+        outcomes.extend(self.folder.answer());
         outcomes.extend(self.idle.answer());
         outcomes
     }
@@ -118,6 +122,7 @@ impl Background {
     /// Follows the look that is shown, and asks for what is to be known of it and of the start.
     pub fn follow(&mut self, session: &Session) {
         self.looks.follow(session);
+        self.folder.follow(session);
         self.idle.follow(session);
     }
 

@@ -48,15 +48,14 @@ impl SystemDialogs {
         }
         let (folder, name) = proposed(dialog, session);
         let (choose, wake) = (self.choose.clone(), Arc::clone(&self.wake));
+        let otherwise = otherwise(dialog, session.takes_drops);
         let spawned = std::thread::Builder::new().name("dialog".into()).spawn(move || {
-            let path = shown(|| ask(dialog, folder, &name), otherwise(dialog));
+            let path = shown(|| ask(dialog, folder, &name), otherwise);
             // The window may be closed by now.
             let _ = choose.send((dialog, path));
             wake();
         });
-        spawned.map_err(|e| {
-            Error::failure(format!("no dialog can be opened: {e}"), "drop the file on the window")
-        })?;
+        spawned.map_err(|e| Error::failure(format!("no dialog can be opened: {e}"), otherwise))?;
         self.is_open = true;
         Ok(())
     }
@@ -78,11 +77,13 @@ fn proposed(dialog: Dialog, session: &Session) -> (Option<PathBuf>, String) {
 }
 
 /// Advice where the system has no dialogs.
-const fn otherwise(dialog: Dialog) -> &'static str {
+const fn otherwise(dialog: Dialog, takes_drops: bool) -> &'static str {
     match dialog {
-        Dialog::File | Dialog::Look => "drop the file on the window, or install zenity or xdg-desktop-portal",
+        Dialog::File | Dialog::Look if takes_drops => {
+            "drop the file on the window, or install zenity or xdg-desktop-portal"
+        }
         Dialog::Export => "type where it is to go, or install zenity or xdg-desktop-portal",
-        Dialog::LookFolder | Dialog::Save | Dialog::Surroundings => "install zenity or xdg-desktop-portal",
+        _ => "install zenity or xdg-desktop-portal",
     }
 }
 

@@ -5,6 +5,7 @@ mod dialogs;
 pub mod document;
 pub mod export;
 mod exporting;
+mod folder;
 mod idle;
 pub mod listing;
 mod look_work;

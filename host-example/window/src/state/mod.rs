@@ -9,6 +9,8 @@ pub mod dialogs;
 pub mod document;
 pub mod expression;
 pub mod file_steps;
+pub mod folder;
+pub mod histogram;
 pub mod history;
 pub mod leaving;
 pub mod look;

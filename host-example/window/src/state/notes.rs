@@ -10,6 +10,21 @@ const STAYS: Duration = Duration::from_secs(4);
 /// Most notes at a time.
 const MOST: usize = 3;
 
+/// Subject of what went wrong, by which it is known to be mended.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Subject {
+    /// Anything that nothing is heard of again, such as a file that cannot be opened.
+    Other,
+    /// The look that is shown, and its files.
+    Look,
+    /// The list of looks.
+    List,
+    /// A frame of what is open.
+    Frame,
+    /// An export.
+    Export,
+}
+
 /// One line.
 #[derive(Clone, Debug)]
 pub struct Note {
@@ -17,6 +32,9 @@ pub struct Note {
     pub text: String,
     /// True where something went wrong.
     pub is_bad: bool,
+    subject: Subject,
+    /// True once it was shown.
+    is_seen: bool,
     since: Instant,
 }
 
@@ -29,35 +47,52 @@ pub struct Notes {
 impl Notes {
     /// Adds a note of something that was done.
     pub fn say(&mut self, text: impl Into<String>) {
-        self.add(text.into(), false);
+        self.add(text.into(), false, Subject::Other);
     }
 
     /// Adds a note of what went wrong, here and where the program was started.
     pub fn complain(&mut self, error: &Error) {
+        self.complain_of(Subject::Other, error);
+    }
+
+    /// As [`Notes::complain`], until the subject is mended.
+    pub fn complain_of(&mut self, subject: Subject, error: &Error) {
         let text = error.to_string();
         if self.notes.iter().any(|note| note.text == text) {
             return;
         }
         output::warn(&text);
-        self.add(text, true);
+        self.add(text, true, subject);
     }
 
-    fn add(&mut self, text: String, is_bad: bool) {
+    fn add(&mut self, text: String, is_bad: bool, subject: Subject) {
         self.notes.retain(|note| note.is_bad && note.text != text);
-        self.notes.push(Note { text, is_bad, since: Instant::now() });
+        self.notes.push(Note { text, is_bad, subject, is_seen: false, since: Instant::now() });
         if self.notes.len() > MOST {
             self.notes.remove(0);
         }
     }
 
-    /// Takes what went wrong back: it has been mended.
-    pub fn clear(&mut self) {
-        self.notes.clear();
+    /// Takes back what went wrong with a subject: it has been mended.
+    pub fn mended(&mut self, subject: Subject) {
+        self.mended_but(subject, &[]);
     }
 
-    /// Notes in the order in which they came.
+    /// As [`Notes::mended`], but for problems that are still there.
+    pub fn mended_but(&mut self, subject: Subject, left: &[Error]) {
+        let is_left = |note: &Note| left.iter().any(|error| error.to_string() == note.text);
+        self.notes.retain(|note| !note.is_bad || note.subject != subject || is_left(note));
+    }
+
+    /// Takes back what went wrong and was seen: something else is open now.
+    pub fn leave_behind(&mut self) {
+        self.notes.retain(|note| !note.is_bad || !note.is_seen);
+    }
+
+    /// Notes in the order in which they came, which are shown now.
     pub fn present(&mut self) -> &[Note] {
         self.notes.retain(|note| note.is_bad || note.since.elapsed() < STAYS);
+        self.notes.iter_mut().for_each(|note| note.is_seen = true);
         &self.notes
     }
 

@@ -28,6 +28,8 @@ pub enum Outcome {
     ExportBegun(Result<()>),
     /// An export has come so far.
     Export(Progress),
+    /// Files beside one that can be opened.
+    Beside(PathBuf, Vec<PathBuf>),
     /// These looks were found.
     Listed(Listing),
     /// A preview was made, or could not be.

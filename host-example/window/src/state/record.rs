@@ -91,10 +91,9 @@ impl Record {
         self.begins = true;
     }
 
-    /// Frames of the present look and the time of the last.
-    pub fn present(&self) -> Option<(usize, Duration)> {
-        let last = self.stretches.last().filter(|_| !self.begins)?;
-        Some((last.times.len(), *last.times.last()?))
+    /// Frames of the present look, once there is one.
+    pub fn present(&self) -> Option<usize> {
+        self.stretches.last().filter(|_| !self.begins).map(|last| last.times.len())
     }
 
     /// True where all frames that were asked for have been shown.

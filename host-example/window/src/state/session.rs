@@ -1,5 +1,6 @@
 //! State of the window: what it shows and what was done to it. All of it outlives a lost device.
 
+mod beside;
 mod browsing;
 mod leaving;
 mod looks;
@@ -12,7 +13,10 @@ use std::time::{Duration, Instant};
 
 use super::browser::Browser;
 use super::dialogs::Dialogs;
+use super::document::kind::Kind;
 use super::file_steps::FileSteps;
+use super::folder::Beside;
+use super::histogram::Histograms;
 use super::history::History;
 use super::look::EditedLook;
 use super::looks::Looks;
@@ -33,6 +37,8 @@ use isophote_finishing::stylize::precision::Precision;
 use isophote_loader::{Library, printable};
 use isophote_pictures::exr::Guide;
 
+/// Name of the program for people.
+const PRODUCT: &str = "Isophote";
 /// Longest pause of the wheel within one step.
 pub const TURNS: Duration = Duration::from_millis(600);
 
@@ -69,6 +75,8 @@ pub struct Session {
     pub backend: Backend,
     /// The scene or the pictures that are open.
     pub open: Open,
+    /// Files of the folder of what is open.
+    pub beside: Beside,
     /// Looks at hand, and the one that is shown.
     pub looks: Looks,
     /// Placement of pictures, and what is under the pointer.
@@ -77,10 +85,14 @@ pub struct Session {
     pub probed: Option<Probed>,
     /// Time at which the wheel has changed a value last.
     pub wheeled: Option<Instant>,
+    /// Histograms of what is shown.
+    pub histograms: Option<Histograms>,
     /// The browser of looks, and those that are compared.
     pub browser: Browser,
     /// Small pictures in the looks.
     pub previews: Previews,
+    /// True where files can be dropped on the window.
+    pub takes_drops: bool,
     /// Dialogs that are open.
     pub dialogs: Dialogs,
     /// Work beside the window.
@@ -107,11 +119,14 @@ impl Session {
             precision: Precision::default(),
             backend: Backend::default(),
             open: Open::default(),
+            beside: Beside::default(),
+            histograms: None,
             viewport: Viewport::default(),
             probed: None,
             wheeled: None,
-            browser: Browser::default(),
+            browser: Browser::new(settings.favourites.clone()),
             previews: Previews::default(),
+            takes_drops: true,
             dialogs: Dialogs::default(),
             work: Work::default(),
             notes: Notes::default(),
@@ -174,7 +189,7 @@ impl Session {
         match self.viewport.compare {
             _ if self.viewport.peek || self.is_covered() => [Which::Original; 2],
             Compare::Off => [look; 2],
-            Compare::Wipe | Compare::Side => [other, look],
+            Compare::Wipe | Compare::Side | Compare::Difference => [other, look],
         }
     }
 
@@ -210,6 +225,9 @@ impl Session {
 
     fn begin(&mut self, open: Open) {
         self.open = open;
+        self.notes.leave_behind();
+        self.beside.open(self.open.file(), self.open.kind() == Kind::Picture);
+        self.histograms = None;
         if let Some(file) = self.open.file() {
             self.settings.remember(file);
         }
@@ -221,25 +239,23 @@ impl Session {
         self.forget_lighting();
     }
 
-    /// Title of the window: what is open, the look, frames shown since the last switch, time of the last one.
+    /// Title of the window: what is open, and the look once it is seen on it; frames are counted there where a report is wanted.
     pub fn title(&self) -> String {
-        // Programs that list windows print their titles.
-        let style = self.look().source.file_stem().unwrap_or_default().to_string_lossy();
-        let style = printable(&style);
         if !self.open.has_picture() {
-            return "Isophote".into();
+            return PRODUCT.into();
         }
-        let precision = match self.precision {
-            Precision::Exact => String::new(),
-            precision => format!(" - {} precision", precision.name()),
-        };
-        let name = printable(self.open.name());
-        match self.record.present() {
-            Some((frames, time)) => {
-                let time = time.as_secs_f64() * 1e3;
-                format!("{name} - {style} - frame {frames} - {time:.1} ms{precision}")
+        // Programs that list windows print their titles.
+        let mut parts = vec![printable(self.open.name()).to_string()];
+        if let Some(frames) = self.record.present() {
+            parts.push(printable(&self.look().name).to_string());
+            if self.record.is_wanted {
+                parts.push(format!("frame {frames}"));
             }
-            None => format!("{name} - {style}{precision}"),
         }
+        if self.precision != Precision::Exact {
+            parts.push(format!("{} precision", self.precision.name()));
+        }
+        parts.push(PRODUCT.into());
+        parts.join(" – ")
     }
 }

@@ -14,6 +14,8 @@ const PLACE: &str = "ISOPHOTE_SETTINGS";
 const MOST_RECENT: usize = 12;
 /// Most folders of looks.
 const MOST_FOLDERS: usize = 64;
+/// Most favourite looks.
+const MOST_FAVOURITES: usize = 500;
 /// Most bytes of the file.
 const MOST_BYTES: u64 = 1 << 20;
 
@@ -37,6 +39,10 @@ pub struct Settings {
     pub panel_hidden: bool,
     /// Width of the panel in points, where it is another than usual.
     pub panel_width: Option<f32>,
+    /// Favourite looks, by the names that they are opened by.
+    pub favourites: Vec<PathBuf>,
+    /// True where histograms are shown.
+    pub shows_histogram: bool,
     #[serde(skip)]
     place: Option<PathBuf>,
 }
@@ -65,6 +71,7 @@ impl Settings {
         let text = fs::read_to_string(place).map_err(|e| unusable(e.to_string()))?;
         let mut settings: Self = serde_json::from_str(&text).map_err(|e| unusable(e.to_string()))?;
         settings.recent.truncate(MOST_RECENT);
+        settings.favourites.truncate(MOST_FAVOURITES);
         settings.window = settings.window.filter(|(width, height)| *width > 0 && *height > 0);
         Ok(settings)
     }
@@ -95,6 +102,15 @@ impl Settings {
     /// Offers them no more; the files stay.
     pub fn remove_look_folder(&mut self, folder: &Path) {
         self.look_folders.retain(|known| known != folder);
+    }
+
+    /// Makes a look a favourite, or no more.
+    pub fn toggle_favourite(&mut self, source: &Path) {
+        let before = self.favourites.len();
+        self.favourites.retain(|known| known != source);
+        if self.favourites.len() == before && before < MOST_FAVOURITES {
+            self.favourites.push(source.to_owned());
+        }
     }
 
     /// Folder where looks are saved: where one was last, or beside this file.
@@ -157,12 +173,16 @@ mod tests {
             settings.remember(Path::new(&format!("/pictures/{number}.png")));
         }
         settings.remember(Path::new("/pictures/12.png"));
+        for look in ["look:noir", "cartoon", "look:noir"] {
+            settings.toggle_favourite(Path::new(look));
+        }
         settings.write().unwrap();
         let read = Settings::read_from(&place).unwrap();
         assert_eq!((read.window, read.recent.len()), (Some((900, 500)), MOST_RECENT));
         assert_eq!(read.panel_width, Some(412.5));
         assert_eq!(read.recent[0], Path::new("/pictures/12.png"));
         assert_eq!(read.look_folders, [Path::new("/looks")]);
+        assert_eq!(read.favourites, [Path::new("cartoon")]);
         assert_eq!(read.folder.as_deref(), Some(Path::new("/pictures")));
         for broken in ["", "{", r#"{"window": "large"}"#] {
             fs::write(&place, broken).unwrap();

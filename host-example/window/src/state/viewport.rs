@@ -23,6 +23,8 @@ pub enum Compare {
     Wipe,
     /// Beside each other.
     Side,
+    /// Their difference, made stronger, in the place of both.
+    Difference,
 }
 
 /// Picture that is shown instead of the look.
@@ -77,6 +79,8 @@ pub struct Viewport {
     pub compare: Compare,
     /// Position of the line of the wipe, as a share of the canvas from the left.
     pub wipe: f32,
+    /// Factor on the difference, where that is shown.
+    pub amplification: f32,
     /// True where the original is shown for the moment.
     pub peek: bool,
     /// Picture that is shown instead of the look.
@@ -98,6 +102,7 @@ impl Default for Viewport {
         Self {
             compare: Compare::Off,
             wipe: 0.5,
+            amplification: 4.0,
             peek: false,
             overlay: Overlay::None,
             exposure: 0.0,
@@ -120,10 +125,15 @@ impl Viewport {
         [Area { width, ..area }, Area { x: area.x + width, width: (area.width - width).max(1.0), ..area }]
     }
 
+    /// True where the difference of two pictures is shown.
+    pub fn is_difference(&self) -> bool {
+        self.compare == Compare::Difference
+    }
+
     /// Column of the window at which the right picture begins.
     pub fn split(&self) -> f32 {
         match self.compare {
-            Compare::Off => self.area.x,
+            Compare::Off | Compare::Difference => self.area.x,
             Compare::Wipe => self.area.x + (self.area.width * self.wipe).round(),
             Compare::Side => self.halves()[1].x,
         }

@@ -15,6 +15,8 @@ pub enum Act {
     ApplyAndClose(u64),
     /// Mark it to be compared, or no more.
     Mark(u64),
+    /// Make it a favourite, or no more.
+    Star(u64),
     /// Ask for its name and tags.
     Title(u64),
     /// Ask for the name of a copy.
@@ -32,6 +34,7 @@ pub fn perform(ui: &Ui, session: &mut Session, act: Act) {
         Act::Apply(id) => session.apply(id, false),
         Act::ApplyAndClose(id) => session.apply(id, true),
         Act::Mark(id) => session.mark(id),
+        Act::Star(id) => session.star(id),
         Act::Title(id) => session.ask_title(id),
         Act::Copy(id) => session.ask_copy(id),
         Act::Delete(file) => session.browser.deleting = Some(file),

@@ -8,7 +8,7 @@ use egui::{
 };
 
 use super::act::{Act, perform};
-use super::{card, theme};
+use super::{card, star, theme};
 use crate::state::browser::Step;
 use crate::state::browser::entry::{Entry, Group};
 use crate::state::browser::filter::{Filter, tags};
@@ -120,6 +120,7 @@ fn chips(ui: &mut Ui, session: &mut Session) {
     shown.extend(counted.iter().skip(most).map(|(tag, _)| tag.as_str()).filter(|tag| is_wanted(tag)));
     ui.horizontal_wrapped(|ui| {
         ui.spacing_mut().item_spacing = vec2(6.0, 6.0);
+        star::filter(ui, session);
         for tag in shown {
             let text = RichText::new(tag).size(12.0);
             let chip = Button::selectable(is_wanted(tag), text).corner_radius(10.0).frame_when_inactive(true);
@@ -173,7 +174,13 @@ fn grid(ui: &mut Ui, viewport: Rect, session: &mut Session) {
         ui.label(RichText::new("Reading the looks…").color(theme::FAINT));
     } else if items.is_empty() {
         ui.add_space(24.0);
-        ui.label(RichText::new("No look is like that.").color(theme::FAINT));
+        let text = match session.browser.filter.favourites {
+            true => {
+                "No look with a star is like that. A click on the star of a card, or *, makes it a favourite."
+            }
+            false => "No look is like that.",
+        };
+        ui.label(RichText::new(text).color(theme::FAINT));
     }
     let mut act = None;
     ask_plain(ui, session, &items);
@@ -203,7 +210,7 @@ fn grid(ui: &mut Ui, viewport: Rect, session: &mut Session) {
     if let Some((rect, _)) = selected
         && std::mem::take(&mut session.browser.scrolls)
     {
-        let at = rect.translate(corner).expand(GAP);
+        let at = rect.translate(corner).expand2(vec2(GAP, HEADING));
         ui.scroll_to_rect_animation(at, None, egui::style::ScrollAnimation::none());
     }
     if let Some(act) = act {
@@ -225,6 +232,7 @@ fn ask_plain(ui: &Ui, session: &mut Session, items: &[(Rect, Item)]) {
 
 fn heading(ui: &mut Ui, rect: Rect, session: &Session, group: &Group, count: usize) -> Option<Act> {
     let text = match group {
+        Group::Favourites => "Favourites".to_owned(),
         Group::Folder(folder) => folder.display().to_string(),
         Group::Shipped => "Looks that come with the program".to_owned(),
         Group::Styles => "Styles with their defaults".to_owned(),

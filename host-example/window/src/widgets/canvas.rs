@@ -136,6 +136,10 @@ fn names(ui: &Ui, rect: Rect, session: &Session) {
     let [left, right] = session.shown();
     if session.viewport.peek {
         tag(ui, rect.left_top() + vec2(12.0, 12.0), Align2::LEFT_TOP, "Original");
+    } else if session.viewport.is_difference() {
+        let factor = session.viewport.amplification;
+        let text = format!("Difference of {} and {}, times {factor}", name(left), name(right));
+        tag(ui, rect.left_top() + vec2(12.0, 12.0), Align2::LEFT_TOP, &text);
     } else if session.viewport.compare != Compare::Off {
         let split = session.viewport.split() / ui.pixels_per_point();
         tag(ui, rect.left_top() + vec2(12.0, 12.0), Align2::LEFT_TOP, &name(left));

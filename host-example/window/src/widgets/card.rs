@@ -7,7 +7,7 @@ use egui::{
 use std::sync::Arc;
 
 use super::act::Act;
-use super::theme;
+use super::{star, theme};
 use crate::state::browser::entry::{Content, Entry};
 use crate::state::preview::order::{FINENESS, Order};
 use crate::state::preview::picture::Picture;
@@ -63,6 +63,7 @@ pub fn show(ui: &mut Ui, rect: Rect, session: &mut Session, entry: &Arc<Entry>) 
         ui.painter().rect_stroke(rect, 7.0, Stroke::new(2.0, theme::ACCENT), StrokeKind::Inside);
     }
     let marked = mark(ui, place(rect), session, entry, &response);
+    let starred = star::show(ui, place(rect), session, entry, &response);
     let mut act = None;
     response.context_menu(|ui| {
         ui.set_min_width(180.0);
@@ -71,6 +72,7 @@ pub fn show(ui: &mut Ui, rect: Rect, session: &mut Session, entry: &Arc<Entry>) 
     let response = hint(response, entry);
     match () {
         () if marked => Some(Act::Mark(entry.id)),
+        () if starred => Some(Act::Star(entry.id)),
         () if act.is_some() => act,
         () if response.double_clicked() => Some(Act::ApplyAndClose(entry.id)),
         () if response.clicked() => Some(Act::Apply(entry.id)),
@@ -205,6 +207,9 @@ pub fn actions(ui: &mut Ui, session: &Session, entry: &Entry) -> Option<Act> {
     item(ui, "Apply", is_look, &|| Act::ApplyAndClose(entry.id));
     let mark = if is_marked { "Remove the mark" } else { "Mark to compare" };
     item(ui, mark, is_look, &|| Act::Mark(entry.id));
+    let star =
+        if session.browser.is_favourite(entry) { "Remove from favourites" } else { "Add to favourites" };
+    item(ui, star, is_look, &|| Act::Star(entry.id));
     item(ui, "Save a copy…", is_look && !entry.style.is_empty(), &|| Act::Copy(entry.id));
     if let Some(file) = entry.file() {
         item(ui, "Name and tags…", entry.has_title(), &|| Act::Title(entry.id));

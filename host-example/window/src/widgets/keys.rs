@@ -7,7 +7,7 @@ use crate::state::session::Session;
 use crate::state::viewport::Compare;
 
 /// Keys and what they do, for the help of the program and of the window.
-pub const KEYS: [(&str, &str); 30] = [
+pub const KEYS: [(&str, &str); 34] = [
     ("drag", "turns the scene; moves a picture"),
     ("Shift+drag", "pans, as other buttons do"),
     ("wheel", "zooms"),
@@ -20,16 +20,20 @@ pub const KEYS: [(&str, &str); 30] = [
     ("l", "shows all looks as they make this picture, and the picture again"),
     ("arrows, Enter", "among the looks: go from card to card; take one"),
     ("m, c", "among the looks: marks one; compares those that are marked"),
+    ("*", "among the looks: makes one a favourite, or no more"),
     ("\\ (hold)", "shows the original while it is held"),
     ("w", "compares by a wipe"),
     ("e", "compares side by side"),
+    ("d", "shows the difference to the original, made stronger"),
     ("z", "shows pixels as large as the screen's, or all of the picture"),
     ("0", "shows all of the picture"),
     ("Space", "plays and pauses"),
     ("Left, Right", "show the frame before and the next"),
+    ("Page Up, Page Down", "open the file before and the next of the folder; the look stays"),
     ("f", "frames the scene"),
     ("c", "looks through the file's camera"),
     ("p", "hides and shows the panel"),
+    ("h", "hides and shows the histogram"),
     ("Ctrl+Z, Ctrl+Y", "takes the last step back, and takes it again"),
     ("Ctrl+O", "opens a file"),
     ("Ctrl+E", "asks what is to be exported"),
@@ -71,9 +75,15 @@ pub fn press(session: &mut Session, key: &Key) {
         }
         Key::Character("w") => session.viewport.compare = toggled(session.viewport.compare, Compare::Wipe),
         Key::Character("e") => session.viewport.compare = toggled(session.viewport.compare, Compare::Side),
+        Key::Character("d") => {
+            session.viewport.compare = toggled(session.viewport.compare, Compare::Difference);
+        }
+        Key::Named(NamedKey::PageUp) => session.open_beside(-1),
+        Key::Named(NamedKey::PageDown) => session.open_beside(1),
         Key::Character("z") => session.viewport.toggle_actual(),
         Key::Character("0") => session.viewport.fit(),
         Key::Character("p") => session.settings.panel_hidden = !session.settings.panel_hidden,
+        Key::Character("h") => session.settings.shows_histogram = !session.settings.shows_histogram,
         Key::Character("r") => session.reset_all(),
         Key::Character(text) => {
             if let Some(number) = text.parse::<usize>().ok().filter(|number| *number > 0) {
@@ -105,6 +115,11 @@ fn cover(session: &mut Session, key: &Key) -> bool {
         Key::Character("m") => {
             if let Some(id) = session.browser.selected {
                 session.mark(id);
+            }
+        }
+        Key::Character("*") => {
+            if let Some(id) = session.browser.selected {
+                session.star(id);
             }
         }
         _ => return false,

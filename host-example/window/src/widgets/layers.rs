@@ -51,7 +51,7 @@ pub fn show(ui: &mut Ui, session: &mut Session) {
         ui.horizontal(|ui| {
             ui.add_space(12.0);
             ui.label(title(*guide));
-            ui.label(RichText::new(channels.join(", ")).color(theme::FAINT));
+            ui.add(egui::Label::new(RichText::new(channels.join(", ")).color(theme::FAINT)).truncate());
         })
         .response
         .on_hover_text("Looks follow it. It was found by its name");
@@ -70,7 +70,7 @@ fn row(ui: &mut Ui, label: &str, id: &str, shown: &str, list: impl FnOnce(&mut U
     ui.horizontal(|ui| {
         ui.add_space(12.0);
         let label = ui.label(label);
-        let shown = ComboBox::from_id_salt(id).selected_text(shown).width(200.0).show_ui(ui, list);
+        let shown = ComboBox::from_id_salt(id).selected_text(shown).width(200.0).truncate().show_ui(ui, list);
         shown.response.labelled_by(label.id);
     });
 }

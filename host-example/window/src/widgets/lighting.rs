@@ -79,7 +79,8 @@ fn camera(ui: &mut Ui, session: &mut Session) {
     ui.horizontal(|ui| {
         ui.add_space(12.0);
         let label = ui.label("Camera");
-        let shown = egui::ComboBox::from_id_salt("camera").selected_text(name).show_ui(ui, |ui| {
+        let list = egui::ComboBox::from_id_salt("camera").width(200.0).truncate();
+        let shown = list.selected_text(name).show_ui(ui, |ui| {
             if ui.selectable_label(now.is_none(), "By mouse").clicked() {
                 scenery.look_through(None);
             }
@@ -104,7 +105,8 @@ fn background(ui: &mut Ui, session: &mut Session) {
     ui.horizontal(|ui| {
         ui.add_space(12.0);
         let label = ui.label("Behind it");
-        let shown = egui::ComboBox::from_id_salt("background").selected_text(name).show_ui(ui, |ui| {
+        let list = egui::ComboBox::from_id_salt("background").width(200.0).truncate();
+        let shown = list.selected_text(name).show_ui(ui, |ui| {
             for (name, background) in [
                 ("Sky", Background::Sky),
                 ("Nothing", Background::Transparent),

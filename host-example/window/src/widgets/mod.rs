@@ -10,10 +10,13 @@ mod comparison;
 mod control;
 mod details;
 mod dialogs;
+mod drop;
+mod ends;
 mod export;
 mod help;
 mod hex;
 mod hint;
+mod histogram;
 pub mod keys;
 mod layers;
 mod leaving;
@@ -24,6 +27,7 @@ mod panel;
 mod probe;
 mod scale;
 mod side;
+mod star;
 mod start;
 mod status;
 pub mod theme;
@@ -40,9 +44,15 @@ const DETAILS: f32 = 940.0;
 /// The smallest window, in points, that has room for the panel and the bars.
 const ROOM: [f32; 2] = [620.0, 300.0];
 
+/// Points of the window's height that lists leave free.
+const LIST: f32 = 90.0;
+
 /// Shows everything.
 pub fn show(ui: &mut Ui, session: &mut Session) {
     let size = ui.available_size();
+    // Lists that open are no higher than the window.
+    let most = ui.spacing().combo_height.min(size.y - LIST);
+    ui.spacing_mut().combo_height = most.max(60.0);
     let has_room = size.x >= ROOM[0] && size.y >= ROOM[1];
     let mut beside = None;
     if has_room {
@@ -85,6 +95,7 @@ pub fn show(ui: &mut Ui, session: &mut Session) {
     help::show(ui.ctx(), session);
     session.follow_saving();
     leaving::show(ui.ctx(), session);
+    drop::show(ui.ctx(), session);
 }
 
 fn bar(panel: Panel) -> Panel {

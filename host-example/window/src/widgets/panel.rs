@@ -4,7 +4,7 @@ use std::sync::Arc;
 
 use egui::{CollapsingHeader, RichText, ScrollArea, Ui};
 
-use super::{chain, control, hint, layers, lighting, theme};
+use super::{chain, control, hint, histogram, layers, lighting, theme};
 use crate::state::look::Parameter;
 use crate::state::resetting::Goal;
 use crate::state::session::{Session, TURNS};
@@ -14,6 +14,9 @@ const OPEN: [&str; 2] = ["look", ""];
 
 /// Shows the panel.
 pub fn show(ui: &mut Ui, session: &mut Session) {
+    let height = ui.available_height();
+    let below = egui::Panel::bottom("histogram").frame(egui::Frame::new()).resizable(false);
+    below.show_separator_line(false).show(ui, |ui| histogram::show(ui, session, height));
     chooser(ui, session);
     ui.add_space(6.0);
     ScrollArea::vertical().auto_shrink([false, false]).show(ui, |ui| {

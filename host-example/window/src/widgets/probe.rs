@@ -10,7 +10,8 @@ pub fn show(ui: &mut Ui, session: &Session) {
     let Some(probed) = &session.probed else { return };
     let frame = session.open.playback().and_then(|playback| playback.frame(false));
     let font = TextStyle::Monospace.resolve(ui.style());
-    let room = ui.available_width();
+    // The end of the bar scrolls, so that its own width says nothing.
+    let room = ui.clip_rect().right() - ui.cursor().left();
     let fits = |line: &String| {
         let laid = ui.painter().layout_no_wrap(line.clone(), font.clone(), theme::FAINT);
         laid.size().x <= room

@@ -49,7 +49,7 @@ pub fn show(ui: &mut Ui, session: &mut Session, has_room: bool) {
             let hint = session
                 .work
                 .busy
-                .map_or_else(|| "or drop a file on this window".to_owned(), |what| format!("{what}…"));
+                .map_or_else(|| otherwise(session.takes_drops).to_owned(), |what| format!("{what}…"));
             ui.label(RichText::new(hint).color(theme::FAINT));
         });
         if has_samples {
@@ -57,6 +57,15 @@ pub fn show(ui: &mut Ui, session: &mut Session, has_room: bool) {
         }
         recent(ui, session, (left / HEIGHTS[2]) as usize);
     });
+}
+
+/// Other ways to open something.
+const fn otherwise(takes_drops: bool) -> &'static str {
+    if takes_drops {
+        "or drop a file on this window"
+    } else {
+        "or open a file with Isophote in a file manager"
+    }
 }
 
 /// Pictures to try looks on.

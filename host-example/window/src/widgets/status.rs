@@ -3,14 +3,18 @@
 use egui::{Button, RichText, Slider, Ui, vec2};
 
 use super::number::Number;
-use super::{probe, theme};
+use super::{ends, probe, theme};
 use crate::state::session::Session;
 use crate::state::work::Request;
 
 /// Shows the bar.
 pub fn show(ui: &mut Ui, session: &mut Session) {
-    ui.horizontal(|ui| {
-        ui.set_min_height(22.0);
+    let right: ends::End = |ui, session| {
+        if session.open.has_picture() {
+            magnification(ui, session);
+        }
+    };
+    ends::show(ui, session, ("bottom", 22.0, right), |ui, session| {
         if let Some(share) = session.work.exported {
             ui.add(egui::ProgressBar::new(share).desired_width(160.0).text("Exporting"));
             if ui.button("Cancel").clicked() {
@@ -18,22 +22,33 @@ pub fn show(ui: &mut Ui, session: &mut Session) {
             }
         }
         if session.open.has_picture() {
+            beside(ui, session);
             timeline(ui, session);
             frames(ui, session);
+            if !session.is_covered() {
+                probe::show(ui, session);
+            }
         } else {
             ui.label(RichText::new(&session.record.adapter).small().color(theme::FAINT));
         }
-        ui.with_layout(egui::Layout::right_to_left(egui::Align::Center), |ui| {
-            if session.open.has_picture() {
-                magnification(ui, session);
-                if !session.is_covered() {
-                    ui.with_layout(egui::Layout::left_to_right(egui::Align::Center), |ui| {
-                        probe::show(ui, session)
-                    });
-                }
-            }
-        });
     });
+}
+
+/// Place of the file in its folder, and the way to the others.
+fn beside(ui: &mut Ui, session: &mut Session) {
+    let Some((index, count)) = session.beside.place().filter(|(_, count)| *count > 1) else { return };
+    let mut step = |ui: &mut Ui, text: &str, name: &str, hint: &str, by: i64| {
+        let button = ui.add(Button::new(text)).on_hover_text(hint);
+        button.widget_info(|| egui::WidgetInfo::labeled(egui::Role::Button, true, name));
+        if button.clicked() {
+            session.open_beside(by);
+        }
+    };
+    step(ui, "‹", "File before", "The file before in the folder (Page Up)", -1);
+    let place = format!("{} of {count}", index + 1);
+    ui.label(RichText::new(place).color(theme::FAINT)).on_hover_text("Files of this folder");
+    step(ui, "›", "Next file", "The next file in the folder (Page Down)", 1);
+    ui.add_space(10.0);
 }
 
 fn timeline(ui: &mut Ui, session: &mut Session) {

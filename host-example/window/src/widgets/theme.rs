@@ -12,6 +12,8 @@ pub const TEXT: Color32 = Color32::from_gray(206);
 pub const BRIGHT: Color32 = Color32::from_gray(232);
 /// Colour of what went wrong.
 pub const BAD: Color32 = Color32::from_rgb(226, 132, 110);
+/// Colour of the stars of favourites.
+pub const STAR: Color32 = Color32::from_rgb(232, 190, 92);
 /// Behind text that lies on the picture.
 pub const VEIL: Color32 = Color32::from_rgba_premultiplied(14, 14, 14, 190);
 /// Panels.

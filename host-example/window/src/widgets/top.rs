@@ -1,29 +1,32 @@
 //! The bar at the top: files, steps, comparing.
 
-use egui::{Button, RichText, Ui};
+use egui::{Button, DragValue, RichText, Ui};
 
-use super::theme;
+use super::{ends, theme};
 use crate::state::command;
 use crate::state::outcome::Dialog;
 use crate::state::session::Session;
 use crate::state::viewport::{Compare, Overlay};
 use crate::state::work::Request;
 
-/// Points of the bar, beside the menu, up to which the name is left out.
-const NARROW: f32 = 660.0;
+/// Points of the bar up to which the name is left out.
+const NARROW: f32 = 760.0;
+/// The narrowest window, in points, that has room for what the menu has, too.
+const WIDE: f32 = 900.0;
 
 /// Shows the bar.
 pub fn show(ui: &mut Ui, session: &mut Session) {
-    ui.horizontal(|ui| {
-        ui.set_min_height(24.0);
+    let bar = ("top", 24.0, right as ends::End);
+    ends::show(ui, session, bar, |ui, session| {
+        let width = ui.clip_rect().width();
         file_menu(ui, session);
         let name = if session.open.has_picture() { session.open.name() } else { "Isophote" };
         // The title of the window has it, too.
-        if ui.available_width() > NARROW {
-            ui.label(RichText::new(name).color(theme::FAINT));
+        if width > NARROW {
+            ends::cut(ui, RichText::new(name).color(theme::FAINT), (width - NARROW).clamp(60.0, 220.0));
         }
         if !session.open.has_picture() {
-            return right(ui, session);
+            return;
         }
         ui.add_space(10.0);
         let [undo, redo] = session.can();
@@ -40,12 +43,11 @@ pub fn show(ui: &mut Ui, session: &mut Session) {
             ui.add_space(10.0);
             overlays(ui, session);
         }
-        right(ui, session);
     });
 }
 
 fn file_menu(ui: &mut Ui, session: &mut Session) {
-    ui.menu_button("File", |ui| {
+    ends::menu(ui, "File", |ui| {
         ui.set_min_width(240.0);
         item(ui, session, "Open…", "Ctrl+O", Request::Choose(Dialog::File), true);
         item(ui, session, "Open the demo scene", "", Request::OpenDemo, true);
@@ -122,6 +124,7 @@ fn compare(ui: &mut Ui, session: &mut Session) {
         (Compare::Off, "Look", "The look alone"),
         (Compare::Wipe, "Wipe", "Before and after, divided by a line that can be dragged (w)"),
         (Compare::Side, "Side by side", "Before and after beside each other (e)"),
+        (Compare::Difference, "Difference", "How far before and after are apart, made stronger (d)"),
     ] {
         if ui.selectable_label(session.viewport.compare == compare, text).on_hover_text(hint).clicked() {
             session.viewport.compare = compare;
@@ -130,6 +133,14 @@ fn compare(ui: &mut Ui, session: &mut Session) {
     ui.spacing_mut().item_spacing.x = 8.0;
     if session.viewport.compare == Compare::Off {
         return;
+    }
+    if session.viewport.is_difference() {
+        let factor = DragValue::new(&mut session.viewport.amplification).range(1.0..=64.0).speed(0.05);
+        let factor = ui.add(factor.max_decimals(1).prefix("× ")).on_hover_text("Factor on the difference");
+        factor.widget_info(|| egui::WidgetInfo {
+            label: Some("Factor on the difference".into()),
+            ..egui::WidgetInfo::drag_value(true, f64::from(session.viewport.amplification))
+        });
     }
     let mut chosen = None;
     let name = session.looks.compared.as_ref().map_or("Original", |look| look.name.as_str());
@@ -181,22 +192,19 @@ fn overlays(ui: &mut Ui, session: &mut Session) {
 }
 
 fn right(ui: &mut Ui, session: &mut Session) {
-    // The menu has it all.
-    let is_narrow = ui.available_width() < 260.0;
-    ui.with_layout(egui::Layout::right_to_left(egui::Align::Center), |ui| {
-        if ui.button("?").on_hover_text("Keys and mouse").clicked() {
-            session.dialogs.shows_help = !session.dialogs.shows_help;
-        }
-        if !session.open.has_picture() || is_narrow {
-            return;
-        }
-        let copy = ui.add_enabled(session.open.file().is_some(), Button::new("Copy command"));
-        if copy.on_hover_text("The command line that gives this picture").clicked() {
-            ui.ctx().copy_text(command::copied(session));
-        }
-        let has_look = !session.look().is_plain();
-        if ui.add_enabled(has_look, Button::new("Save look")).on_hover_text("Ctrl+S").clicked() {
-            session.save_look(false);
-        }
-    });
+    if ui.button("?").on_hover_text("Keys and mouse").clicked() {
+        session.dialogs.shows_help = !session.dialogs.shows_help;
+    }
+    // The menu has the rest, too.
+    if !session.open.has_picture() || ui.ctx().content_rect().width() < WIDE {
+        return;
+    }
+    let copy = ui.add_enabled(session.open.file().is_some(), Button::new("Copy command"));
+    if copy.on_hover_text("The command line that gives this picture").clicked() {
+        ui.ctx().copy_text(command::copied(session));
+    }
+    let has_look = !session.look().is_plain();
+    if ui.add_enabled(has_look, Button::new("Save look")).on_hover_text("Ctrl+S").clicked() {
+        session.save_look(false);
+    }
 }

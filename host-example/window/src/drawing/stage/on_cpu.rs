@@ -12,6 +12,7 @@ use crate::drawing::scene_frames::{SceneFrame, SceneFrames};
 use crate::drawing::shown::Output;
 use crate::drawing::source::LookInput;
 use crate::state::look::EditedLook;
+use crate::state::notes::Subject as About;
 use crate::state::session::{Session, Which};
 use isophote_files::error::{Error, Result};
 
@@ -55,12 +56,12 @@ impl Stage {
     }
 
     /// Follows the looks on what is open; returns what went wrong with them.
-    pub(super) fn follow_on_cpu(&mut self, session: &Session) -> Result<Option<Error>> {
+    pub(super) fn follow_on_cpu(&mut self, session: &Session) -> Result<Option<(About, Error)>> {
         let looks = looks(session)?;
         let looks = looks.each_ref().map(Option::as_ref);
         if session.open.scenery().is_some() {
             if let Err(problem) = self.frames.collect() {
-                return Ok(Some(problem));
+                return Ok(Some((About::Other, problem)));
             }
         } else {
             self.frames.forget();
@@ -69,7 +70,10 @@ impl Stage {
         // What is covered is made when it is seen.
         let subject = subject(session, &self.frames, self.moves).filter(|_| !session.is_covered());
         match subject {
-            Some(subject) => Ok(processed.follow(looks, shown(session), &subject).err()),
+            Some(subject) => {
+                let followed = processed.follow(looks, shown(session), &subject);
+                Ok(followed.err().map(|problem| (About::Look, problem)))
+            }
             None => {
                 processed.wait();
                 Ok(None)

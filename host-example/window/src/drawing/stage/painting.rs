@@ -1,7 +1,7 @@
 //! The window as the stage draws it: pictures on the canvas, the pixels under the pointer, the controls.
 
 use super::Stage;
-use crate::drawing::canvas::{Arrangement, SURROUND, Shown};
+use crate::drawing::canvas::{Arrangement, Reading, SURROUND, Shown};
 use crate::drawing::shown::picture;
 use crate::state::session::Session;
 use isophote_render::layouts;
@@ -63,6 +63,10 @@ impl Stage {
             exposure: viewport.exposure.exp2(),
             middle: session.open.scenery().map_or(1.0, |scenery| scenery.distance()),
             square: 8.0,
+            reading: match viewport.is_difference() && left != right {
+                true => Reading::Difference(viewport.amplification),
+                false => Reading::Seen,
+            },
         };
         self.canvas.set(&self.gpu.device, &self.gpu.queue, &arrangement);
     }

@@ -9,6 +9,8 @@ use isophote_finishing::stylize::preset::Title;
 /// Group that a look belongs to.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub enum Group {
+    /// Favourites, which come first wherever they are from.
+    Favourites,
     /// A folder of the user.
     Folder(PathBuf),
     /// It ships with the program.

@@ -9,12 +9,14 @@ pub struct Filter {
     pub text: String,
     /// Tags that are all wanted.
     pub tags: Vec<String>,
+    /// True where favourites alone are shown.
+    pub favourites: bool,
 }
 
 impl Filter {
     /// True where everything is shown.
     pub fn is_empty(&self) -> bool {
-        self.text.trim().is_empty() && self.tags.is_empty()
+        self.text.trim().is_empty() && self.tags.is_empty() && !self.favourites
     }
 
     /// True where a look is shown.
@@ -82,6 +84,7 @@ mod tests {
         let filter = |text: &str, tags: &[&str]| Filter {
             text: text.into(),
             tags: tags.iter().map(|t| (*t).to_owned()).collect(),
+            favourites: false,
         };
         for (text, tags) in
             [("", &[][..]), ("noir DARK", &[]), ("toon", &["dark", "comic"]), (" ", &["Comic"])]

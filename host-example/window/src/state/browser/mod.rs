@@ -25,6 +25,8 @@ pub struct Browser {
     pub is_open: bool,
     /// Conditions of the looks that are shown.
     pub filter: Filter,
+    /// Favourite looks, by the names that they are opened by.
+    pub favourites: Vec<PathBuf>,
     /// The look whose details are shown.
     pub selected: Option<u64>,
     /// Looks that are to be compared, in the order in which they were marked.
@@ -61,6 +63,11 @@ pub enum Step {
 }
 
 impl Browser {
+    /// A browser that is closed, with these favourites.
+    pub fn new(favourites: Vec<PathBuf>) -> Self {
+        Self { favourites, ..Self::default() }
+    }
+
     /// Takes over what was found. Looks that are as they were keep their numbers.
     pub fn take(&mut self, library: &Library, listing: Listing) {
         let old = std::mem::take(&mut self.entries);
@@ -106,10 +113,20 @@ impl Browser {
         self.entries.iter().find(|entry| entry.source == source)
     }
 
-    /// The looks that are shown, by groups.
+    /// True for a favourite.
+    pub fn is_favourite(&self, entry: &Entry) -> bool {
+        self.favourites.contains(&entry.source)
+    }
+
+    /// The looks that are shown, by groups, of which favourites are the first.
     pub fn groups(&self) -> Vec<(&Group, Vec<&Arc<Entry>>)> {
+        let shown = self.entries.iter().filter(|entry| self.filter.takes(entry));
+        let (favourites, others): (Vec<_>, Vec<_>) = shown.partition(|entry| self.is_favourite(entry));
         let mut groups: Vec<(&Group, Vec<&Arc<Entry>>)> = Vec::new();
-        for entry in self.entries.iter().filter(|entry| self.filter.takes(entry)) {
+        if !favourites.is_empty() {
+            groups.push((&Group::Favourites, favourites));
+        }
+        for entry in others.into_iter().filter(|_| !self.filter.favourites) {
             match groups.last_mut() {
                 Some((group, list)) if **group == entry.group => list.push(entry),
                 _ => groups.push((&entry.group, vec![entry])),

@@ -28,6 +28,12 @@ const GLB: &[u8] = b"glTF";
 /// List of the kinds that can be opened, for messages.
 const KNOWN: &str = "open a picture (PNG, JPEG, TIFF, WebP, HDR, EXR), a sequence of them, a video, or a scene (glTF, GLB, OBJ)";
 
+/// True where a path ends as those of documents do.
+pub fn is_known(path: &Path) -> bool {
+    let is_scene = path.extension().is_some_and(|e| SCENES.iter().any(|known| e.eq_ignore_ascii_case(known)));
+    is_scene || frames::is_picture(path) || video::becomes_video(path)
+}
+
 impl Kind {
     /// The kind of a path with the path that is meant: the pattern of a sequence where a folder of frames is named, or one of
     /// its frames and `as_sequence`.

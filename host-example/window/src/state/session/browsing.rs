@@ -11,6 +11,7 @@ use crate::state::browser::title_edit::{self, TitleEdit, Words};
 use crate::state::comparison::Comparison;
 use crate::state::document::frame::Frame;
 use crate::state::look::EditedLook;
+use crate::state::notes::Subject;
 use crate::state::preview::picture::Picture;
 use crate::state::saving::Saving;
 use crate::state::viewport::Compare;
@@ -35,7 +36,8 @@ impl Session {
 
     /// Takes over which looks there are.
     pub fn list(&mut self, listing: Listing) {
-        listing.problems.iter().for_each(|problem| self.notes.complain(problem));
+        self.notes.mended_but(Subject::List, &listing.problems);
+        listing.problems.iter().for_each(|problem| self.notes.complain_of(Subject::List, problem));
         self.browser.take(&self.library, listing);
         if self.browser.selected.is_none() {
             self.select_present();

@@ -7,6 +7,7 @@ use super::Session;
 use crate::state::chain::Chain;
 use crate::state::look::{EditedLook, Parameter};
 use crate::state::looks::Looks;
+use crate::state::notes::Subject;
 use crate::state::resetting::Goal;
 use isophote_files::error::Result;
 use isophote_finishing::stylize::value::Value;
@@ -28,8 +29,9 @@ impl Session {
         if index != self.looks.current() {
             self.record.begin();
         }
+        self.notes.mended(Subject::Look);
         if let Err(error) = turn(&mut self.looks) {
-            self.notes.complain(&error);
+            self.notes.complain_of(Subject::Look, &error);
         }
     }
 
@@ -44,7 +46,7 @@ impl Session {
                 self.let_go();
                 self.turn_to(self.looks.current());
             }
-            Err(error) => self.notes.complain(&error),
+            Err(error) => self.notes.complain_of(Subject::Look, &error),
         }
     }
 
@@ -52,6 +54,7 @@ impl Session {
     pub fn edit(&mut self, what: &str, change: impl FnOnce(&mut EditedLook)) {
         let before = self.state();
         if self.looks.edit(change) {
+            self.notes.mended(Subject::Look);
             self.edits.record(what, &before);
         }
     }
@@ -116,6 +119,9 @@ impl Session {
             return;
         }
         let name = source.file_name().unwrap_or_default().to_string_lossy();
+        if read.is_ok() {
+            self.notes.mended(Subject::Look);
+        }
         match read {
             // What the window has written itself is known.
             Ok(look) if look.has_origin_of(self.look()) => self.looks.keep(&look),
@@ -129,7 +135,7 @@ impl Session {
                 let rest = if lost { "; undo brings your changes back" } else { "" };
                 self.notes.say(format!("{name} has changed and was read again{rest}"));
             }
-            Err(error) => self.notes.complain(&error),
+            Err(error) => self.notes.complain_of(Subject::Look, &error),
         }
     }
 

@@ -5,6 +5,7 @@ use std::path::{Path, PathBuf};
 use std::sync::Arc;
 
 use super::Session;
+use crate::state::notes::Subject;
 use crate::state::outcome::{Dialog, IdleControls, Opened, Outcome};
 use crate::state::progress::{Progress, State};
 use crate::state::scenery::{Scenery, Staging};
@@ -22,11 +23,21 @@ impl Session {
             Outcome::ExportBegun(begun) => {
                 self.dialogs.plan = None;
                 match begun {
-                    Ok(()) => self.work.exported = Some(0.0),
-                    Err(error) => self.notes.complain(&error),
+                    Ok(()) => {
+                        self.work.exported = Some(0.0);
+                        self.notes.mended(Subject::Export);
+                    }
+                    Err(error) => self.notes.complain_of(Subject::Export, &error),
                 }
             }
             Outcome::Export(progress) => self.follow_export(progress),
+            Outcome::Beside(of, files) => {
+                if self.open.file() == Some(&of)
+                    && let Some(file) = self.beside.take(of, files)
+                {
+                    self.work.ask(Request::Open(file));
+                }
+            }
             Outcome::Listed(listing) => self.list(listing),
             Outcome::Preview(done) => self.previews.take(done),
             Outcome::Samples(small) => self.previews.samples.take(small),
@@ -37,8 +48,13 @@ impl Session {
                 }
             }
             Outcome::Frames(frames, wanted) => {
+                let is_read = wanted.as_ref().is_some_and(Result::is_ok);
                 let taken = self.open.playback_mut().map_or(Ok(()), |playback| playback.take(frames, wanted));
-                taken.unwrap_or_else(|error| self.notes.complain(&error));
+                match taken {
+                    Err(error) => self.notes.complain_of(Subject::Frame, &error),
+                    Ok(()) if is_read => self.notes.mended(Subject::Frame),
+                    Ok(()) => {}
+                }
             }
             Outcome::Failed(error) => self.notes.complain(&error),
         }
@@ -133,7 +149,9 @@ impl Session {
             State::Running => return,
             State::Done => self.notes.say("Exported"),
             State::Cancelled => self.notes.say("The export was cancelled"),
-            State::Failed(problem) => self.notes.complain(&Error::failure(problem, "export again")),
+            State::Failed(problem) => {
+                self.notes.complain_of(Subject::Export, &Error::failure(problem, "export again"));
+            }
         }
         self.end_export(is_done);
     }
