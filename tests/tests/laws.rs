@@ -422,3 +422,34 @@ fn no_format_has_two_readers() {
     assert_eq!(found.len(), READERS.len(), "{found:?}");
     assert!(wrong.is_empty(), "\n{}", wrong.join("\n"));
 }
+
+/// Text of a page in Markdown as people read it: without code, and without the addresses of links.
+fn prose(page: &str) -> String {
+    let unfenced: Vec<&str> = page.split("```").step_by(2).collect();
+    let unmarked: Vec<String> =
+        unfenced.iter().map(|text| text.split('`').step_by(2).collect::<Vec<_>>().join(" ")).collect();
+    let text = unmarked.join(" ");
+    let unlinked = text.split("](").map(|part| part.split_once(')').map_or(part, |(_, rest)| rest));
+    text.split_once("](").map_or(text.as_str(), |(first, _)| first).to_owned()
+        + &unlinked.skip(1).collect::<Vec<_>>().join(" ")
+}
+
+#[test]
+fn pages_spell_colour_in_one_way() {
+    let mut wrong = Vec::new();
+    for path in sources(&[".md"])
+        .into_iter()
+        .filter(|path| !path.components().any(|c| c.as_os_str() == "node_modules"))
+    {
+        let text = prose(&std::fs::read_to_string(&path).unwrap());
+        let words = text.split(|c: char| !c.is_alphanumeric() && c != '_');
+        // The id of the style is its name in tables.
+        let is_id = |word: &&str| *word == "watercolor";
+        let bad: Vec<&str> =
+            words.filter(|word| word.to_lowercase().contains("color") && !is_id(word)).collect();
+        if !bad.is_empty() {
+            wrong.push(format!("{}: {bad:?}", path.display()));
+        }
+    }
+    assert!(wrong.is_empty(), "write 'colour':\n{}", wrong.join("\n"));
+}

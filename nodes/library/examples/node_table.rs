@@ -7,11 +7,11 @@ const ENOUGH: usize = 30;
 
 fn main() {
     for node in registry::nodes() {
-        println!("- `{}`: {}", node.id, brief(node.doc));
+        println!("- `{}`: {}", node.id, brief(node.hint));
     }
 }
 
-/// The first clause of a node's documentation; up to a comma where it says enough.
+/// The first clause of a node's hint; up to a comma where it says enough.
 fn brief(doc: &str) -> &str {
     let ends = [". ", ":", " ("].iter().filter_map(|mark| doc.find(mark));
     let comma = doc.match_indices(',').map(|(at, _)| at).find(|at| *at >= ENOUGH);

@@ -34,8 +34,11 @@ pub fn descriptors_say_what_the_standard_asks_for(binary: &Binary, effect: Expec
     let set = &described.descriptor.set;
     let label = if node.id == "tensor_view" { "Structure" } else { node.label };
     assert_eq!(set.text(kOfxPropLabel).unwrap(), label.replace('-', " "));
-    assert_eq!(set.text(kOfxImageEffectPluginPropGrouping).unwrap(), format!("Isophote/{}", node.group));
-    assert!(set.text(kOfxPropPluginDescription).unwrap().starts_with(node.doc));
+    assert_eq!(
+        set.text(kOfxImageEffectPluginPropGrouping).unwrap(),
+        format!("Isophote/{}{}", node.group[..1].to_uppercase(), &node.group[1..])
+    );
+    assert_eq!(set.text(kOfxPropPluginDescription).unwrap(), node.hint);
     let contexts = set.texts(kOfxImageEffectPropSupportedContexts);
     assert_eq!(contexts, ["OfxImageEffectContextFilter", "OfxImageEffectContextGeneral"]);
     let depths = set.texts(kOfxImageEffectPropSupportedPixelDepths);
@@ -90,7 +93,7 @@ fn check(effect: &Effect, name: &str, param: &Param) {
         }
         found += 1;
         let set = &control.set;
-        assert!(set.text(kOfxParamPropHint).unwrap().starts_with(param.doc), "{name}");
+        assert!(set.text(kOfxParamPropHint).unwrap().starts_with(param.hint), "{name}");
         assert_eq!(set.text(kOfxPropLabel).unwrap(), param.label);
         assert_eq!(set.text(kOfxParamPropScriptName).unwrap(), name);
         let ranges = [

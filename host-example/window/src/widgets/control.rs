@@ -75,12 +75,18 @@ fn label(ui: &mut Ui, parameter: &Parameter, is_idle: bool, animated: bool) -> R
     let text = RichText::new(parameter.param.label);
     let text = if is_idle { text.color(theme::FAINT.gamma_multiply(0.7)) } else { text };
     let (rect, _) = ui.allocate_exact_size(vec2(LABEL, ROW), Sense::hover());
-    let mut hint = parameter.param.doc.to_owned();
+    let mut hint = parameter.param.hint.to_owned();
+    hint += match parameter.param.unit {
+        "px" => " In pixels of a picture 1080 lines high.",
+        "%" => " In per cent.",
+        "deg" => " In degrees.",
+        _ => "",
+    };
     if is_idle {
-        hint += "\n\nIt has no effect with the other values as they are.";
+        hint += "\n\nIt does nothing while the other settings are as they are.";
     }
     if animated {
-        hint += "\n\nIt changes from frame to frame; this is its value at the first. To change it here gives it one value.";
+        hint += "\n\nIt is animated; this is its value in the first frame. Changing it here makes it the same in all frames.";
     }
     let mut place =
         ui.new_child(egui::UiBuilder::new().max_rect(rect).layout(Layout::left_to_right(Align::Center)));
