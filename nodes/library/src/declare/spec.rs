@@ -113,8 +113,7 @@ pub const MIX: Param = Param::float("mix", "Mix", 1.0, [0.0, 1.0])
 pub(crate) const HOLD: Param = Param::int("hold", "Hold", 0, [0, 1000])
     .slider(0.0, 24.0)
     .group("time")
-    .hint("Frames that grain and strokes last: 1 draws them anew in each frame, 0 keeps them for ever.")
-    .doc("Hold of hand-drawn noise.");
+    .hint("Frames that grain and strokes last: 1 draws them anew in each frame, 0 keeps them for ever.");
 
 /// `steadiness` of nodes that carry what they have found from frame to frame.
 pub(crate) const STEADINESS: Param = Param::float("steadiness", "Steadiness", 0.0, [0.0, 1.0])

@@ -17,7 +17,7 @@ pub(crate) const SIGMA_E: Param = Param::length("sigma_e", "Edge scale", 1.0, [0
     .hint("Size of the edges that become lines, which sets how wide the lines are.").doc("Standard deviation of the narrower Gaussian; sets the width of lines (4.5). Half a pixel of the picture at least: lines that are to be narrower are lighter instead.");
 pub(crate) const K: Param = Param::float("k", "Scale ratio", 1.6, [1.01, 4.0])
     .slider(1.1, 3.0)
-    .hint("How much coarser a detail must be to draw no line: low values give finer lines.")
+    .hint("How much wider the second blur is than the first: higher values give broader lines.")
     .doc("Ratio of the two standard deviations (4.5); 1.6 after Marr and Hildreth.");
 pub(crate) const FORM: Param = Param::choice("form", "Drawn as", Form::Tau.selected())
     .uniform()
