@@ -3,7 +3,7 @@
 use std::fmt::{self, Display, Formatter};
 
 use isophote_loader::Library;
-use isophote_loader::catalogue::{Node, ParamKind};
+use isophote_loader::catalogue::Node;
 use isophote_loader::preset::LOOK;
 
 /// Words of artists and of other programs, with the style, the look or the medium that comes nearest.
