@@ -388,7 +388,8 @@ typedef struct IsophoteParam {
   const char *id;
   // For people.
   const char *label;
-  // One sentence.
+  // Text for people. Its first paragraph is a hint for panels, in artists' words and at most 160 bytes long; after an
+  // empty line may follow documentation with symbols and sources.
   const char *doc;
   // Heading under which panels show it; empty for the node's own.
   const char *group;
@@ -422,7 +423,8 @@ typedef struct IsophoteNode {
   const char *label;
   // `structure`, `smoothing`, `lines`, `painting`, `coherence`, `colour` or `styles`.
   const char *group;
-  // One paragraph.
+  // Text for people. Its first paragraph is a sentence for lists, in artists' words and at most 160 bytes long; after an
+  // empty line follows documentation with symbols and sources.
   const char *doc;
   // Sections of the thesis, such as "3.4".
   const char *section;

@@ -89,7 +89,8 @@ pub struct IsophoteParam {
     pub id: *const c_char,
     /// For people.
     pub label: *const c_char,
-    /// One sentence.
+    /// Text for people. Its first paragraph is a hint for panels, in artists' words and at most 160 bytes long; after an
+    /// empty line may follow documentation with symbols and sources.
     pub doc: *const c_char,
     /// Heading under which panels show it; empty for the node's own.
     pub group: *const c_char,
@@ -125,7 +126,8 @@ pub struct IsophoteNode {
     pub label: *const c_char,
     /// `structure`, `smoothing`, `lines`, `painting`, `coherence`, `colour` or `styles`.
     pub group: *const c_char,
-    /// One paragraph.
+    /// Text for people. Its first paragraph is a sentence for lists, in artists' words and at most 160 bytes long; after an
+    /// empty line follows documentation with symbols and sources.
     pub doc: *const c_char,
     /// Sections of the thesis, such as "3.4".
     pub section: *const c_char,

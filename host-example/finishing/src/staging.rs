@@ -50,10 +50,10 @@ pub struct ReadingArgs {
 /// An axis that points up.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, ValueEnum)]
 pub enum Up {
-    /// Scenes of glTF, and of most programs for animation.
+    /// As in glTF and in most programs for animation.
     #[default]
     Y,
-    /// Scenes of CAD programs and scanners.
+    /// As in CAD programs and scanners.
     Z,
 }
 

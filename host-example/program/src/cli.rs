@@ -6,8 +6,8 @@ use crate::verbs::{apply, bench, documents, farm, info, nodes, preset, render, s
 use isophote_files::error::Result;
 
 const ABOUT: &str = "Turns pictures, sequences, videos and 3D scenes into cartoons, drawings and paintings.";
-const AFTER_HELP: &str = "No file is replaced unless --force is given, and no result replaces a file that is read; \
-    --in-place replaces a picture by its own result.";
+const AFTER_HELP: &str =
+    "Nothing is overwritten unless --force is given. --in-place overwrites a picture with its own result.";
 
 /// Four commands to begin with, under their heading.
 const EXAMPLES: &str = "Examples:\n\
@@ -54,7 +54,7 @@ enum Command {
     Preset(preset::PresetArgs),
     /// Makes jobs for render farms.
     Farm(farm::FarmArgs),
-    /// Prints what is understood of a file: a picture, a video, a scene, a preset.
+    /// Tells all about a file: a picture, a video, a scene or a preset.
     Info(info::InfoArgs),
     /// Lists the styles and the filters that they are made of, or the parameters of one.
     Nodes(nodes::NodesArgs),

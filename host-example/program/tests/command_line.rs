@@ -252,3 +252,17 @@ fn help_opens_with_examples() {
         assert_eq!(help[..usage].lines().filter(|line| line.starts_with("  isophote ")).count(), 4, "{help}");
     }
 }
+
+#[test]
+fn help_spells_colour_in_one_way() {
+    for verb in ["render", "apply", "view", "sheet", "preset", "farm", "info", "nodes", "bench", "documents"]
+    {
+        let (text, _) = succeeds(isophote().args([verb, "--help"]));
+        let words = text.split(|c: char| !c.is_alphanumeric() && c != '_');
+        // Ids of styles, and of a chunk of PNG files, are names.
+        let is_id = |word: &&str| ["watercolor", "colorInteropID"].contains(word);
+        let bad: Vec<&str> =
+            words.filter(|word| word.to_lowercase().contains("color") && !is_id(word)).collect();
+        assert!(bad.is_empty(), "{verb}: write 'colour', not {bad:?}");
+    }
+}

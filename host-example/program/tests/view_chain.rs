@@ -2,11 +2,15 @@
 
 mod support;
 
+use std::path::PathBuf;
+use std::sync::Arc;
+
 use egui_kittest::Harness;
 use egui_kittest::kittest::Queryable;
 use isophote_finishing::stylize::value::Value;
 use isophote_loader::Library;
 use isophote_scene::Scene;
+use isophote_window::jobs::listing::{self, ListingRequest};
 use isophote_window::state::chain::{self, Chain, Watched};
 use isophote_window::state::command;
 use isophote_window::state::look::EditedLook;
@@ -280,4 +284,27 @@ fn a_graph_file_that_changes_beside_its_preset_is_another_look() {
     let parameter =
         session.looks.parameters().iter().find(|parameter| parameter.name == "tensor.rho").unwrap();
     assert_eq!(session.look().value(parameter).text(), "4.5");
+}
+
+#[test]
+fn what_a_style_draws_with_is_chosen_like_a_style() {
+    let library = Library::from_file(support::library()).unwrap();
+    let listing = listing::read(ListingRequest { library: library.clone(), folders: Vec::new() });
+    let node = library.find_node("ink").unwrap();
+    let media: Vec<&str> = node.media().map(|(_, medium)| medium.id).collect();
+    assert_eq!(media, ["pencil", "charcoal", "woodcut", "pastel"]);
+    for (param, medium) in node.media() {
+        let source = PathBuf::from(format!("ink:{}", medium.id));
+        let found = listing.found.iter().find(|found| found.source == source).unwrap();
+        assert_eq!((found.name().as_str(), found.style.as_str()), (medium.label, node.label));
+        let mut session = session("cartoon");
+        let look = EditedLook::open(&session.library, &source).unwrap();
+        assert!(!look.is_changed());
+        session.take(Arc::new(look));
+        let value = session.look().preset.params.get(param.id).unwrap();
+        assert_eq!(value.first(&param.kind), Some(Value::Choice(medium.id.to_owned())));
+        let line = command::line(&session);
+        assert!(line.contains(" ink ") || line.contains("--style ink"), "{line}");
+        assert!(line.contains(&format!("--set style={}", medium.id)), "{line}");
+    }
 }

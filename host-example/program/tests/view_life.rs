@@ -146,7 +146,7 @@ fn a_picture_in_8k_opens_and_its_sliders_answer_within_a_bound_of_memory() {
     window.shows("large.png", "mine");
     let before = window.settled(CANVAS);
     picture(96, 64).save(at("small.png")).unwrap();
-    let slider = places(session(&at("mine.json"), &at("small.png")), SIZE)("Sigma", Role::Slider);
+    let slider = places(session(&at("mine.json"), &at("small.png")), SIZE)("Blur", Role::Slider);
     let x = |share: f32| (slider.left() + slider.width() * share) as i32;
     let y = slider.center().y as i32;
     window.drag([x(0.2), y], [x(0.95), y]);

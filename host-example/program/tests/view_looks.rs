@@ -210,6 +210,19 @@ fn a_click_shows_a_look_and_undo_brings_back_what_it_replaced() {
 }
 
 #[test]
+fn a_medium_is_a_card_beside_the_styles() {
+    let folder = presets();
+    let mut harness = harness(session(folder.path()));
+    type_into(&mut harness, "Search looks", "charcoal");
+    click(&mut harness, Role::Button, "Charcoal");
+    let look = harness.state().look();
+    assert_eq!((look.name.as_str(), look.preset.style.as_str()), ("Charcoal", "ink"));
+    assert!(!look.is_changed() && look.source == Path::new("ink:charcoal"));
+    let entry = harness.state().browser.find(Path::new("ink:charcoal")).expect("a card");
+    assert!(entry.group == Group::Styles && entry.title.about.is_some());
+}
+
+#[test]
 fn keys_go_from_card_to_card() {
     let folder = presets();
     let mut session = session(folder.path());

@@ -23,7 +23,9 @@ pub struct Node {
     pub label: &'static str,
     /// Group that it belongs to, such as `smoothing`.
     pub group: &'static str,
-    /// One paragraph.
+    /// One sentence in artists' words.
+    pub hint: &'static str,
+    /// All that is written about it: the hint, and documentation after an empty line.
     pub doc: &'static str,
     /// Sections of the thesis.
     pub section: &'static str,
@@ -119,7 +121,9 @@ pub struct Param {
     pub id: &'static str,
     /// For people.
     pub label: &'static str,
-    /// One sentence.
+    /// One sentence or two in artists' words, for panels.
+    pub hint: &'static str,
+    /// All that is written about it: the hint, and after an empty line documentation, where there is any.
     pub doc: &'static str,
     /// Heading under which panels show it; empty for the node's own.
     pub group: &'static str,
@@ -187,6 +191,21 @@ pub struct Choice {
     pub label: &'static str,
 }
 
+/// Id of the parameter by which a style chooses between media.
+const MEDIUM: &str = "style";
+
+impl Node {
+    /// Media that a style draws with beside the one that it has by itself, each with the parameter that chooses it. They are
+    /// known as styles are.
+    pub fn media(&self) -> impl Iterator<Item = (&Param, Choice)> {
+        let is_medium = |param: &&Param| self.group == "styles" && param.id == MEDIUM;
+        self.params.iter().filter(is_medium).flat_map(|param| {
+            let ParamKind::Choice { default, options } = &param.kind else { return Vec::new() };
+            options.iter().filter(|o| o.id != *default).map(|option| (param, *option)).collect()
+        })
+    }
+}
+
 impl Library {
     /// All nodes.
     ///
@@ -231,6 +250,7 @@ pub(super) unsafe fn node(node: &IsophoteNode) -> Node {
             id: text::constant(node.id),
             label: text::constant(node.label),
             group: text::constant(node.group),
+            hint: hint(text::constant(node.doc)),
             doc: text::constant(node.doc),
             section: text::constant(node.section),
             inputs: inputs.iter().map(|p| port(p)).collect(),
@@ -238,6 +258,11 @@ pub(super) unsafe fn node(node: &IsophoteNode) -> Node {
             params: params.iter().map(|p| param(p)).collect(),
         }
     }
+}
+
+/// The first paragraph of a text.
+fn hint(text: &str) -> &str {
+    text.split_once("\n\n").map_or(text, |(hint, _)| hint)
 }
 
 /// # Safety
@@ -262,6 +287,7 @@ unsafe fn param(param: &IsophoteParam) -> Param {
         Param {
             id: text::constant(param.id),
             label: text::constant(param.label),
+            hint: hint(text::constant(param.doc)),
             doc: text::constant(param.doc),
             group: text::constant(param.group),
             unit: match param.unit {

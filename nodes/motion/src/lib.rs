@@ -82,7 +82,7 @@ impl Convention {
     /// As compositors have it, and as `isophote render` writes it: layers `backward` and `forward`, pixels, y up.
     pub const OWN: Self = Self {
         name: "isophote",
-        label: "Compositor (pixels, y up)",
+        label: "Compositor",
         backward: field(&["backward"], 1.0),
         forward: field(&["forward"], 1.0),
         units: Units::Pixels,

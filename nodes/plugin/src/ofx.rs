@@ -20,6 +20,8 @@ mod known;
 mod motion;
 mod needed;
 mod prepared;
+#[cfg(test)]
+mod promised;
 mod quirks;
 mod render;
 mod settings;

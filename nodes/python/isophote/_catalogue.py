@@ -26,7 +26,10 @@ class Param:
 
     id: str
     label: str
+    hint: str
+    """A sentence or two in artists' words, for panels."""
     doc: str
+    """The hint, and after an empty line documentation, where there is any."""
     group: str
     """Heading under which panels show it; empty for the node's own."""
     unit: str
@@ -61,7 +64,10 @@ class Node:
     id: str
     label: str
     group: str
+    hint: str
+    """A sentence in artists' words."""
     doc: str
+    """The hint, and documentation after an empty line."""
     section: str
     """Sections of the thesis."""
     inputs: tuple[Port, ...]

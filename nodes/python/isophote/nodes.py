@@ -76,7 +76,7 @@ def _range(param: Param) -> str:
 
 
 def _wrapped(text: str, indent: str) -> list[str]:
-    return textwrap.wrap(text, 96, initial_indent=indent, subsequent_indent=indent and indent + "    ")
+    return textwrap.wrap(" ".join(text.split()), 96, initial_indent=indent, subsequent_indent=indent and indent + "    ")
 
 
 def _signature(node: Node) -> inspect.Signature:

@@ -53,8 +53,9 @@ def blueprint(
     frame: int = 0,
     **picture: Unpack[Picture],
 ) -> Array:
-    """Blueprint. Light lines on blue paper with a grid: the flow-based difference of Gaussians of
-    lightness and, where given, of the breaks of normals, depth and object ids. (thesis § 1.2, 4.5)
+    """Blueprint. Light lines on blue paper with a grid. Light lines on blue paper with a grid: the
+    flow-based difference of Gaussians of lightness and, where given, of the breaks of normals,
+    depth and object ids. (thesis § 1.2, 4.5)
 
     Inputs:
         image: The picture.
@@ -71,54 +72,66 @@ def blueprint(
             it the frames that follow count for nothing.
 
     Parameters:
-        line_width: Width of lines: scales `sigma_e` by width / 2 and, above 2, `sigma_m` by its
-            root, so that wide lines do not break. None is narrower than a pixel of the picture: it
-            is lighter instead. 0.2 to 40 px.
-        line_amount: How many lines: 0 draws none, 1 draws them at faint edges too; scales 1 -
+        line_width: How thick lines are. Wide lines also run longer, so that they do not break.
+            Scales `sigma_e` by width / 2 and, above 2, `sigma_m` by its root. None is narrower than
+            a pixel of the picture: it is lighter instead. 0.2 to 40 px.
+        line_amount: How many lines there are: 0 draws none, 1 draws faint edges too. Scales 1 -
             `tau`. 0 to 1.
-        suppress_small: Drops short and weak lines: lengthens `sigma_m` by up to 0.8 of it and
+        suppress_small: Leaves out short and weak lines. Lengthens `sigma_m` by up to 0.8 of it and
             lowers `epsilon` by up to 0.75. 0 to 1.
-        outline_width: Width of lines around objects against that of the others, where depth, object
-            ids or normals are given; 0 draws none. 0 to 8.
-        crease_width: Width of lines where a surface folds against that of the others, where normals
-            are given; 0 draws none. 0 to 8.
-        texture_lines: How many of the lines that the picture's own edges draw: 0 leaves outlines
-            and creases alone. 0 to 1.
-        line_color: Colour of lines and grid; its alpha is their opacity.
+        outline_width: Width of outlines of objects against other lines; 0 draws none. Needs depth,
+            object ids or normals. 0 to 8.
+        crease_width: Width of lines where a surface folds against other lines; 0 draws none. Needs
+            normals. 0 to 8.
+        texture_lines: How many lines come from the picture itself: 0 leaves outlines and creases
+            alone. 0 to 1.
+        line_color: Colour and opacity of the lines and the grid.
         paper_color: Colour of the paper.
-        grid: Spacing of the grid, every fifth line stronger; 0 for none. 0 to 4096 px.
-        paper_texture: Strength of the paper's texture. 0 to 1.
+        grid: Spacing of the grid, whose every fifth line is stronger; 0 for none. 0 to 4096 px.
+        paper_texture: How rough the paper looks. 0 to 1.
         fill: How much of the picture's tones shows on the paper. 0 to 1.
-        detail: How much survives the abstraction: scales `sigma_r` from 3 to 1/3 times and
-            `sigma_d` from 2 to 1/2. 0 to 1.
-        cover: Paper also where the picture is transparent; the result is then opaque.
-        abstraction: Bilateral filter: across and along the local orientation (3.4), or along stream
-            lines (3.5), whose own scales then grow with `sigma_d` / 3 and `sigma_r` / 4.25; or
-            without regard to it, by the full window (3.2) or along rows and then columns (3.3).
-        n_e: Bilateral iterations before lines are extracted (n_e), which keeps noise out of them. 0
-            to 16.
-        sigma_d: Spatial standard deviation of the bilateral filter. 0.1 to 20 px.
-        sigma_r: Standard deviation of the bilateral filter in range, CIELAB units. 0.1 to 200.
-        sigma_e: Standard deviation of the narrower Gaussian; sets the width of lines (4.5). Half a
-            pixel of the picture at least: lines that are to be narrower are lighter instead. 0.1 to
-            20 px.
-        k: Ratio of the two standard deviations (4.5); 1.6 after Marr and Hildreth. 1.01 to 4.
-        sigma_m: Standard deviation of the smoothing along the edges; longer lines and less noise. 0
-            to 60 px.
-        tau: Weight of the wider Gaussian (4.7); the nearer to 1, the weaker the edges that draw a
-            line. 0 to 1.
-        epsilon: Response, in units of L, from which on there is no line (4.8). -100 to 100.
-        phi: Steepness of the ramp from paper to line, per unit of L (4.8). 0 to 1000.
-        line_iterations: Times the line filter runs, each on the lightness times the lines found so
+        detail: How much of the picture's detail stays: low values give flat areas, high ones keep
+            small things. Scales `sigma_r` from 3 to 1/3 times and `sigma_d` from 2 to 1/2. 0 to 1.
+        cover: Puts paper also where the picture is transparent. The result is then opaque.
+        abstraction: How colours are flattened: along the edges, along flowing lines, or in all
+            directions alike. Bilateral filter: across and along the local orientation (3.4), or
+            along stream lines (3.5), whose own scales then grow with `sigma_d` / 3 and `sigma_r` /
+            4.25; or without regard to it, by the full window (3.2) or along rows and then columns
+            (3.3).
+        n_e: How often the picture is smoothed before lines are looked for, which keeps noise out of
+            them. Bilateral iterations (n_e). 0 to 16.
+        sigma_d: How far colours are smoothed over what is around them. Spatial standard deviation
+            of the bilateral filter. 0.1 to 20 px.
+        sigma_r: How different colours may be and still be smoothed into one. Standard deviation of
+            the bilateral filter in range, CIELAB units. 0.1 to 200.
+        sigma_e: Size of the edges that become lines, which sets how wide the lines are. Standard
+            deviation of the narrower Gaussian; sets the width of lines (4.5). Half a pixel of the
+            picture at least: lines that are to be narrower are lighter instead. 0.1 to 20 px.
+        k: How much wider the second blur is than the first: higher values give broader lines. Ratio
+            of the two standard deviations (4.5); 1.6 after Marr and Hildreth. 1.01 to 4.
+        sigma_m: How far lines are smoothed along themselves: more gives longer lines and less
+            noise. Standard deviation of the smoothing along the edges. 0 to 60 px.
+        tau: How faint an edge may be and still draw a line; small changes near 1 do much. Weight of
+            the wider Gaussian (4.7); the nearer to 1, the weaker the edges that draw a line. 0 to
+            1.
+        epsilon: Where lines begin: higher values draw more and darker lines. Response, in units of
+            L, from which on there is no line (4.8). -100 to 100.
+        phi: How suddenly paper turns to line: low values are soft, high ones crisp. Steepness of
+            the ramp from paper to line, per unit of L (4.8). 0 to 1000.
+        line_iterations: How often lines are looked for, each time on top of those found, which
+            closes gaps. Times the line filter runs, each on the lightness times the lines found so
             far. 1 to 16.
-        guide_weight: Strength of lines where normal, depth or object id break; 0 leaves the guides
+        guide_weight: Strength of the lines that normals, depth and object ids draw; 0 leaves these
+            out. Strength of lines where normal, depth or object id break; 0 leaves the guides
             unread. 0 to 16.
-        steadiness: How much neighbouring frames count, carried here along the motion of things: 0
-            leaves each frame alone, 0.5 is for sequences, 1 lets all frames of the window count
-            alike. 0 to 1.
-        window: Neighbouring frames that count, to each side as far as they and the motion from them
-            are known. 0 to 8.
-        mix: Blend with the input: 0 leaves the picture as it was, 1 shows the filter alone. 0 to 1.
+        steadiness: How calm moving pictures are: neighbouring frames are averaged along the motion.
+            0 is off, 0.5 suits most shots. How much neighbouring frames count, carried here along
+            the motion of things: 0 leaves each frame alone, 0.5 is for sequences, 1 lets all frames
+            of the window count alike. 0 to 1.
+        window: Neighbouring frames that count, to each side. They count as far as they and the
+            motion from them are known. 0 to 8.
+        mix: Blends the result with the picture: 0 leaves the picture as it was, 1 shows the result
+            alone. 0 to 1.
 
     The other arguments are those of `isophote.apply`.
     """
@@ -176,11 +189,11 @@ def cartoon(
     frame: int = 0,
     **picture: Unpack[Picture],
 ) -> Array:
-    """Cartoon. Flattened colours and coherent black lines: bilateral filtering in CIELAB along the
-    local structure, lines by the flow-based difference of Gaussians, soft quantization of
-    lightness. Defaults are those of Fig. 4.8, but for `tau`, and for steps of lightness, which are
-    crisp and lie only where tones change. Normals, depth and object ids, where given, draw lines of
-    their own. (thesis § 4.6)
+    """Cartoon. Flat colours, a few tones and flowing black lines. Flattened colours and coherent black
+    lines: bilateral filtering in CIELAB along the local structure, lines by the flow-based
+    difference of Gaussians, soft quantization of lightness. Defaults are those of Fig. 4.8, but for
+    `tau`, and for steps of lightness, which are crisp and lie only where tones change. Normals,
+    depth and object ids, where given, draw lines of their own. (thesis § 4.6)
 
     Inputs:
         image: The picture.
@@ -197,71 +210,94 @@ def cartoon(
             it the frames that follow count for nothing.
 
     Parameters:
-        line_width: Width of lines: scales `sigma_e` by width / 2 and, above 2, `sigma_m` by its
-            root, so that wide lines do not break. None is narrower than a pixel of the picture: it
-            is lighter instead. 0.2 to 40 px.
-        line_amount: How many lines: 0 draws none, 1 draws them at faint edges too; scales 1 -
+        line_width: How thick lines are. Wide lines also run longer, so that they do not break.
+            Scales `sigma_e` by width / 2 and, above 2, `sigma_m` by its root. None is narrower than
+            a pixel of the picture: it is lighter instead. 0.2 to 40 px.
+        line_amount: How many lines there are: 0 draws none, 1 draws faint edges too. Scales 1 -
             `tau`. 0 to 1.
-        suppress_small: Drops short and weak lines: lengthens `sigma_m` by up to 0.8 of it and
+        suppress_small: Leaves out short and weak lines. Lengthens `sigma_m` by up to 0.8 of it and
             lowers `epsilon` by up to 0.75. 0 to 1.
-        outline_width: Width of lines around objects against that of the others, where depth, object
-            ids or normals are given; 0 draws none. 0 to 8.
-        crease_width: Width of lines where a surface folds against that of the others, where normals
-            are given; 0 draws none. 0 to 8.
-        texture_lines: How many of the lines that the picture's own edges draw: 0 leaves outlines
-            and creases alone. 0 to 1.
-        line_color: Colour of the lines; its alpha is their opacity.
-        detail: How much survives the abstraction: scales `sigma_r` from 3 to 1/3 times and
-            `sigma_d` from 2 to 1/2. 0 to 1.
-        posterize: Levels of lightness between black and white; 0 leaves tones continuous. 0 to 64.
-        posterize_smooth: Softness of the steps between levels, relative to their height: divides
-            `phi_q` by 1 to 20. 0 to 1.
-        saturation: Factor on the colour axes of CIELAB; 0 is grey. 0 to 4.
-        lights: Raises (above 0) or lowers the light tones. -1 to 1.
-        darks: Raises (above 0) or lowers the dark tones. -1 to 1.
-        abstraction: Bilateral filter: across and along the local orientation (3.4), or along stream
-            lines (3.5), whose own scales then grow with `sigma_d` / 3 and `sigma_r` / 4.25; or
-            without regard to it, by the full window (3.2) or along rows and then columns (3.3).
-        line_filter: How lines are found: across and along the local orientation (4.5), or in all
-            directions alike (4.2), where `sigma_m` has no part and guides draw no lines.
-        n_e: Bilateral iterations before lines are extracted (n_e), which keeps noise out of them. 0
-            to 16.
-        n_a: Bilateral iterations behind the colours (n_a). 0 to 16.
-        sigma_d: Spatial standard deviation of the bilateral filter. 0.1 to 20 px.
-        sigma_r: Standard deviation of the bilateral filter in range, CIELAB units. 0.1 to 200.
-        sigma_e: Standard deviation of the narrower Gaussian; sets the width of lines (4.5). Half a
-            pixel of the picture at least: lines that are to be narrower are lighter instead. 0.1 to
-            20 px.
-        k: Ratio of the two standard deviations (4.5); 1.6 after Marr and Hildreth. 1.01 to 4.
-        sigma_m: Standard deviation of the smoothing along the edges; longer lines and less noise. 0
-            to 60 px.
-        tau: Weight of the wider Gaussian (4.7); the nearer to 1, the weaker the edges that draw a
-            line. 0 to 1.
-        epsilon: Response, in units of L, from which on there is no line (4.8). -100 to 100.
-        phi: Steepness of the ramp from paper to line, per unit of L (4.8). 0 to 1000.
-        line_iterations: Times the line filter runs, each on the lightness times the lines found so
+        outline_width: Width of outlines of objects against other lines; 0 draws none. Needs depth,
+            object ids or normals. 0 to 8.
+        crease_width: Width of lines where a surface folds against other lines; 0 draws none. Needs
+            normals. 0 to 8.
+        texture_lines: How many lines come from the picture itself: 0 leaves outlines and creases
+            alone. 0 to 1.
+        line_color: Colour and opacity of the lines.
+        detail: How much of the picture's detail stays: low values give flat areas, high ones keep
+            small things. Scales `sigma_r` from 3 to 1/3 times and `sigma_d` from 2 to 1/2. 0 to 1.
+        posterize: Number of tones from black to white; 0 leaves tones smooth. 0 to 64.
+        posterize_smooth: How softly one tone goes over into the next. Relative to the height of the
+            steps: divides `phi_q` by 1 to 20. 0 to 1.
+        saturation: Strength of the colours: 0 is grey, 1 leaves them as they are. Factor on the
+            colour axes of CIELAB. 0 to 4.
+        lights: Brightens the light tones above 0, and darkens them below. -1 to 1.
+        darks: Brightens the dark tones above 0, and darkens them below. -1 to 1.
+        abstraction: How colours are flattened: along the edges, along flowing lines, or in all
+            directions alike. Bilateral filter: across and along the local orientation (3.4), or
+            along stream lines (3.5), whose own scales then grow with `sigma_d` / 3 and `sigma_r` /
+            4.25; or without regard to it, by the full window (3.2) or along rows and then columns
+            (3.3).
+        line_filter: Lines that flow along the forms, or plain ones, for which normals, depth and
+            object ids do not count. How lines are found: across and along the local orientation
+            (4.5), or in all directions alike (4.2), where `sigma_m` has no part and guides draw no
+            lines.
+        n_e: How often the picture is smoothed before lines are looked for, which keeps noise out of
+            them. Bilateral iterations (n_e). 0 to 16.
+        n_a: How often the colours are smoothed: more rounds give flatter areas. Bilateral
+            iterations behind the colours (n_a). 0 to 16.
+        sigma_d: How far colours are smoothed over what is around them. Spatial standard deviation
+            of the bilateral filter. 0.1 to 20 px.
+        sigma_r: How different colours may be and still be smoothed into one. Standard deviation of
+            the bilateral filter in range, CIELAB units. 0.1 to 200.
+        sigma_e: Size of the edges that become lines, which sets how wide the lines are. Standard
+            deviation of the narrower Gaussian; sets the width of lines (4.5). Half a pixel of the
+            picture at least: lines that are to be narrower are lighter instead. 0.1 to 20 px.
+        k: How much wider the second blur is than the first: higher values give broader lines. Ratio
+            of the two standard deviations (4.5); 1.6 after Marr and Hildreth. 1.01 to 4.
+        sigma_m: How far lines are smoothed along themselves: more gives longer lines and less
+            noise. Standard deviation of the smoothing along the edges. 0 to 60 px.
+        tau: How faint an edge may be and still draw a line; small changes near 1 do much. Weight of
+            the wider Gaussian (4.7); the nearer to 1, the weaker the edges that draw a line. 0 to
+            1.
+        epsilon: Where lines begin: higher values draw more and darker lines. Response, in units of
+            L, from which on there is no line (4.8). -100 to 100.
+        phi: How suddenly paper turns to line: low values are soft, high ones crisp. Steepness of
+            the ramp from paper to line, per unit of L (4.8). 0 to 1000.
+        line_iterations: How often lines are looked for, each time on top of those found, which
+            closes gaps. Times the line filter runs, each on the lightness times the lines found so
             far. 1 to 16.
-        guide_weight: Strength of lines where normal, depth or object id break; 0 leaves the guides
+        guide_weight: Strength of the lines that normals, depth and object ids draw; 0 leaves these
+            out. Strength of lines where normal, depth or object id break; 0 leaves the guides
             unread. 0 to 16.
-        phi_q: Steepness of the steps, per unit of L; counts when not adaptive. 0 to 1000.
-        adaptive: Steepness from the gradient of L instead of `phi_q`, for steady sequences.
-        lambda_delta: Gradient of L, per pixel, from which on steps grow steeper. 0 to 100.
-        omega_delta: Gradient of L, per pixel, at which steps are steepest. 0 to 100.
-        lambda_phi: Steepness in flat parts, per unit of L. 0 to 1000.
-        omega_phi: Steepness at edges, per unit of L. 0 to 1000.
-        least_gradient: Gradient of L, per pixel, that the surroundings have where levels step;
+        phi_q: How suddenly one tone changes to the next. Does not count with adaptive steps.
+            Steepness of the steps, per unit of L. 0 to 1000.
+        adaptive: Softer steps in flat areas and steeper ones at edges, so that moving pictures
+            flicker less. Steepness from the gradient of L instead of `phi_q`.
+        lambda_delta: Contrast below which adaptive steps are softest. Gradient of L, per pixel,
+            from which on steps grow steeper. 0 to 100.
+        omega_delta: Contrast above which adaptive steps are steepest. Gradient of L, per pixel, at
+            which steps are steepest. 0 to 100.
+        lambda_phi: How sudden adaptive steps are in flat areas. Steepness in flat parts, per unit
+            of L. 0 to 1000.
+        omega_phi: How sudden adaptive steps are at edges. Steepness at edges, per unit of L. 0 to
+            1000.
+        least_gradient: Tones stay smooth where the picture changes less than this; 0 makes steps
+            everywhere. Gradient of L, per pixel, that the surroundings have where levels step;
             where they have less, tones are continuous, since borders of levels would follow nothing
             there. 0 steps everywhere. 0 to 1.
-        warp: How far the colours beside sharp edges are pulled towards them before lines are drawn,
-            which narrows blurred edges (phi_w of `warp_sharpen`); 0 for not at all. 0 to 20 px.
-        sigma_a: Standard deviation of the final smoothing along the edges, against jagged steps and
-            lines; 0 for none. 0 to 20 px.
-        steadiness: How much neighbouring frames count, carried here along the motion of things: 0
-            leaves each frame alone, 0.5 is for sequences, 1 lets all frames of the window count
-            alike. 0 to 1.
-        window: Neighbouring frames that count, to each side as far as they and the motion from them
-            are known. 0 to 8.
-        mix: Blend with the input: 0 leaves the picture as it was, 1 shows the filter alone. 0 to 1.
+        warp: How far colours are pulled towards sharp edges, which narrows blurred ones; 0 for not
+            at all. The pull comes before lines are drawn (phi_w of `warp_sharpen`). 0 to 20 px.
+        sigma_a: Last smoothing along the edges, against jagged steps and lines; 0 for none.
+            Standard deviation of the final smoothing along the edges. 0 to 20 px.
+        steadiness: How calm moving pictures are: neighbouring frames are averaged along the motion.
+            0 is off, 0.5 suits most shots. How much neighbouring frames count, carried here along
+            the motion of things: 0 leaves each frame alone, 0.5 is for sequences, 1 lets all frames
+            of the window count alike. 0 to 1.
+        window: Neighbouring frames that count, to each side. They count as far as they and the
+            motion from them are known. 0 to 8.
+        mix: Blends the result with the picture: 0 leaves the picture as it was, 1 shows the result
+            alone. 0 to 1.
 
     The other arguments are those of `isophote.apply`.
     """
@@ -304,8 +340,10 @@ def coherent(
     **picture: Unpack[Picture],
 ) -> Array:
     """Coherent. The picture as if drawn with one confident hand: hair, branches and folds flow
-    together, outlines become clear, and small round features keep their shape. Smoothing along the
-    local structure and sharpening across it, in turn; defaults are the thesis'. (thesis § 6)
+    together, and outlines become clear. The picture as if drawn with one confident hand: hair,
+    branches and folds flow together, outlines become clear, and small round features keep their
+    shape. Smoothing along the local structure and sharpening across it, in turn; defaults are the
+    thesis'. (thesis § 6)
 
     Inputs:
         image: The picture.
@@ -322,47 +360,60 @@ def coherent(
         object_id: Object numbers: neighbouring frames count where they agree.
 
     Parameters:
-        iterations: Rounds of smoothing and sharpening (N): the strength of the abstraction. 1 to
-            50.
-        detail: How much survives the abstraction: scales `sigma_t` and `sigma_g` from 2 to 1/2
+        iterations: Rounds of smoothing and sharpening: more of them draw the picture into simpler,
+            clearer shapes. Iterations N: the strength of the abstraction. 1 to 50.
+        detail: How much of the picture's detail stays: low values give flat areas, high ones keep
+            small things. Scales `sigma_t` and `sigma_g` from 2 to 1/2 times. 0 to 1.
+        sharpness: How wide a soft edge may be to become a sharp one. Scales `radius` from 0 to 2
             times. 0 to 1.
-        sharpness: How wide a soft edge may be to become a sharp one: scales `radius` from 0 to 2
-            times. 0 to 1.
-        posterize: Levels of lightness between black and white; 0 leaves tones continuous. 0 to 64.
-        posterize_smooth: Softness of the steps between levels, relative to their height: divides
-            `phi_q` by 1 to 20. 0 to 1.
-        saturation: Factor on the colour axes of CIELAB; 0 is grey. 0 to 4.
-        lights: Raises (above 0) or lowers the light tones. -1 to 1.
-        darks: Raises (above 0) or lowers the dark tones. -1 to 1.
-        stepping: Steps along stream lines: of one pixel, as the published filter's, or up to 2.5
-            times as long where lines are, which takes less time and smooths less.
-        rho: Standard deviation of the Gaussian that smooths the structure tensor. 0 to 20 px.
-        relax_threshold: Where sqrt(lambda1) is not above this, the orientation is filled in from
-            around it at first, and from the step before later on (2.7.3); 0 trusts every gradient.
-            0 to 10.
-        sigma_t: Standard deviation of the smoothing along stream lines (sigma_s of 6.3.1). 0 to 40
-            px.
-        max_angle: A stream line ends where it turns by more in one step; 0 for never. 0 to 90 deg.
-        adapt: Shortens stream lines where the orientation is uncertain (6.3.1), or as they turn
+        posterize: Number of tones from black to white; 0 leaves tones smooth. 0 to 64.
+        posterize_smooth: How softly one tone goes over into the next. Relative to the height of the
+            steps: divides `phi_q` by 1 to 20. 0 to 1.
+        saturation: Strength of the colours: 0 is grey, 1 leaves them as they are. Factor on the
+            colour axes of CIELAB. 0 to 4.
+        lights: Brightens the light tones above 0, and darkens them below. -1 to 1.
+        darks: Brightens the dark tones above 0, and darkens them below. -1 to 1.
+        stepping: Whether lines are followed evenly, or in longer steps where they are long: faster,
+            and less smooth. Steps along stream lines: of one pixel, as the published filter's, or
+            up to 2.5 times as long where lines are, which takes less time and smooths less.
+        rho: Size of the forms that are followed: larger values turn more gently. Standard deviation
+            of the Gaussian that smooths the structure tensor. 0 to 20 px.
+        relax_threshold: Where the picture is flatter than this, its direction is taken from around
+            it; 0 trusts every edge. Where sqrt(lambda1) is not above this, the orientation is
+            filled in from around it at first, and from the step before later on (2.7.3); 0 trusts
+            every gradient. 0 to 10.
+        sigma_t: How far colours are smoothed along lines and edges. Standard deviation of the
+            smoothing along stream lines (sigma_s of 6.3.1). 0 to 40 px.
+        max_angle: Smoothing stops where a line turns by more than this from pixel to pixel; 0 for
+            never. A stream line ends where it turns by more in one step; 0 for never. 0 to 90 deg.
+        adapt: Where smoothing stops early: where directions are uncertain, or where lines turn.
+            Shortens stream lines where the orientation is uncertain (6.3.1), or as they turn
             (6.3.2).
-        shock: What sharpens: the local filter (6.4.3), or three steps of Weickert's equation
+        shock: Sharpening after each smoothing: at once, or in small steps that let lines grow
+            together. What sharpens: the local filter (6.4.3), or three steps of Weickert's equation
             (6.4.2), which only `sigma_i` controls.
-        sigma_g: Standard deviation of the second derivative along the gradient: larger ones pass
-            over small features. 0.2 to 20 px.
-        sigma_i: Standard deviation of the Gaussian before the second derivative, for stronger
-            abstraction; 0 for none. 0 to 20 px.
-        radius: How far along the gradient the least or greatest pixel is looked for. 0 to 20 px.
-        threshold: Second derivative, in units of luma, up to which a pixel stays as it is (tau_s):
-            keeps shocks out of smooth parts. 0 to 1.
-        phi_q: Steepness of the steps, per unit of L; counts when not adaptive. 0 to 1000.
-        sigma_a: Standard deviation of the last smoothing along the edges, against the jagged steps
-            of the shocks; 0 for none. 0 to 20 px.
-        steadiness: How much neighbouring frames count, carried here along the motion of things: 0
-            leaves each frame alone, 0.5 is for sequences, 1 lets all frames of the window count
-            alike. 0 to 1.
-        window: Neighbouring frames that count, to each side as far as they and the motion from them
-            are known. 0 to 8.
-        mix: Blend with the input: 0 leaves the picture as it was, 1 shows the filter alone. 0 to 1.
+        sigma_g: Features smaller than this are passed over when edges are sharpened. Standard
+            deviation of the second derivative along the gradient. 0.2 to 20 px.
+        sigma_i: Smoothing before edges are sharpened, for simpler shapes; 0 for none. Standard
+            deviation of the Gaussian before the second derivative. 0 to 20 px.
+        radius: How wide a soft edge may be to become a sharp one. How far along the gradient the
+            least or greatest pixel is looked for. 0 to 20 px.
+        threshold: Changes of lightness that are gentler than this stay soft. Second derivative, in
+            units of luma, up to which a pixel stays as it is (tau_s): keeps shocks out of smooth
+            parts. 0 to 1.
+        phi_q: How suddenly one tone changes to the next. Does not count with adaptive steps.
+            Steepness of the steps, per unit of L. 0 to 1000.
+        sigma_a: Last smoothing along the edges, against jagged steps; 0 for none. Standard
+            deviation of the last smoothing along the edges, against the jagged steps of the shocks;
+            0 for none. 0 to 20 px.
+        steadiness: How calm moving pictures are: neighbouring frames are averaged along the motion.
+            0 is off, 0.5 suits most shots. How much neighbouring frames count, carried here along
+            the motion of things: 0 leaves each frame alone, 0.5 is for sequences, 1 lets all frames
+            of the window count alike. 0 to 1.
+        window: Neighbouring frames that count, to each side. They count as far as they and the
+            motion from them are known. 0 to 8.
+        mix: Blends the result with the picture: 0 leaves the picture as it was, 1 shows the result
+            alone. 0 to 1.
 
     The other arguments are those of `isophote.apply`.
     """
@@ -406,9 +457,10 @@ def oil_paint(
     frame: int = 0,
     **picture: Unpack[Picture],
 ) -> Array:
-    """Oil Paint. Brush strokes that follow the shapes: regions are flattened, painted in strokes of
-    one colour along the local orientation and smoothed along it; noise smoothed the same way gives
-    the marks of bristles, and the light on them. (thesis § 1.2)
+    """Oil paint. Brush strokes of thick paint that follow the shapes, with marks of bristles and light
+    on them. Brush strokes that follow the shapes: regions are flattened, painted in strokes of one
+    colour along the local orientation and smoothed along it; noise smoothed the same way gives the
+    marks of bristles, and the light on them. (thesis § 1.2)
 
     Inputs:
         image: The picture.
@@ -425,49 +477,60 @@ def oil_paint(
         object_id: Object numbers: neighbouring frames count where they agree.
 
     Parameters:
-        stroke_length: Length of strokes: scales `dilation_length`, `sigma_t` and `sigma_b` by
-            length / 20. 0 to 80 px.
-        stroke_width: Width of strokes: scales `sigma_n` and `rho` by width / 4. 0.5 to 20 px.
-        bristle: How dark and light the marks of the bristles are: up to 20 units of L on white. 0
-            to 1.
-        shine: How much light the ridges of the paint catch: up to 30 units of L on white. 0 to 1.
-        light_angle: Where the light comes from, counter-clockwise from the right; 90 is above. 0 to
-            360 deg.
-        detail: How much survives the abstraction: scales `sigma_r` from 3 to 1/3 times and
-            `sigma_d` from 2 to 1/2. 0 to 1.
-        saturation: Factor on the colour axes of CIELAB; 0 is grey. 0 to 4.
-        lights: Raises (above 0) or lowers the light tones. -1 to 1.
-        darks: Raises (above 0) or lowers the dark tones. -1 to 1.
-        abstraction: Bilateral filter: across and along the local orientation (3.4), or along stream
-            lines (3.5), whose own scales then grow with `sigma_d` / 3 and `sigma_r` / 4.25; or
-            without regard to it, by the full window (3.2) or along rows and then columns (3.3).
-        n_a: Bilateral iterations before the strokes. 0 to 16.
-        sigma_d: Spatial standard deviation of the bilateral filter. 0.1 to 20 px.
-        sigma_r: Standard deviation of the bilateral filter in range, CIELAB units. 0.1 to 200.
-        rho: Standard deviation of the smoothing of the structure tensor: strokes turn no faster. 0
-            to 20 px.
-        levels: Scales at which the orientation is found (2.8): strokes in flat parts follow what is
-            around them. 1 to 8.
-        dilation_length: Arc length on each side over which strokes take one colour (5.1). 0 to 60
+        stroke_length: How long brush strokes are. Scales `dilation_length`, `sigma_t` and `sigma_b`
+            by length / 20. 0 to 80 px.
+        stroke_width: How wide brush strokes are. Scales `sigma_n` and `rho` by width / 4. 0.5 to 20
             px.
-        sigma_t: Standard deviation of the smoothing of colours along the flow. 0 to 40 px.
-        sigma_n: Standard deviation of the smoothing of the noise: how wide strokes and marks are. 0
-            to 10 px.
-        sigma_b: Standard deviation of the smoothing of the noise along the flow: how long marks
-            are. 0 to 40 px.
-        seed: Another number, other strokes. 0 to 9999.
-        steadiness: How much neighbouring frames count, carried here along the motion of things: 0
-            leaves each frame alone, 0.5 is for sequences, 1 lets all frames of the window count
-            alike. 0 to 1.
-        window: Neighbouring frames that count, to each side as far as they and the motion from them
-            are known. 0 to 8.
-        hold: Frames that hand-drawn noise lasts: 1 draws it anew in each frame, 0 keeps it for
+        bristle: How clearly the marks of the bristles show. How dark and light the marks are: up to
+            20 units of L on white. 0 to 1.
+        shine: How much light the ridges of the paint catch. Up to 30 units of L on white. 0 to 1.
+        light_angle: Where the light comes from: 0 is the right, 90 above, 180 the left. 0 to 360
+            deg.
+        detail: How much of the picture's detail stays: low values give flat areas, high ones keep
+            small things. Scales `sigma_r` from 3 to 1/3 times and `sigma_d` from 2 to 1/2. 0 to 1.
+        saturation: Strength of the colours: 0 is grey, 1 leaves them as they are. Factor on the
+            colour axes of CIELAB. 0 to 4.
+        lights: Brightens the light tones above 0, and darkens them below. -1 to 1.
+        darks: Brightens the dark tones above 0, and darkens them below. -1 to 1.
+        abstraction: How colours are flattened: along the edges, along flowing lines, or in all
+            directions alike. Bilateral filter: across and along the local orientation (3.4), or
+            along stream lines (3.5), whose own scales then grow with `sigma_d` / 3 and `sigma_r` /
+            4.25; or without regard to it, by the full window (3.2) or along rows and then columns
+            (3.3).
+        n_a: How often the colours are smoothed: more rounds give flatter areas. Bilateral
+            iterations before the strokes. 0 to 16.
+        sigma_d: How far colours are smoothed over what is around them. Spatial standard deviation
+            of the bilateral filter. 0.1 to 20 px.
+        sigma_r: How different colours may be and still be smoothed into one. Standard deviation of
+            the bilateral filter in range, CIELAB units. 0.1 to 200.
+        rho: How gently strokes turn. Standard deviation of the smoothing of the structure tensor:
+            strokes turn no faster. 0 to 20 px.
+        levels: Sizes at which directions are looked for: more let strokes in flat areas follow what
+            is around. Scales at which the orientation is found (2.8). 1 to 8.
+        dilation_length: How far a stroke keeps one colour, to each side. Arc length on each side
+            over which strokes take one colour (5.1). 0 to 60 px.
+        sigma_t: How far colours are smoothed along the strokes. Standard deviation of the smoothing
+            of colours along the flow. 0 to 40 px.
+        sigma_n: How wide strokes and the marks of bristles are. Standard deviation of the smoothing
+            of the noise. 0 to 10 px.
+        sigma_b: How long the marks of bristles are. Standard deviation of the smoothing of the
+            noise along the flow. 0 to 40 px.
+        seed: Another number gives other strokes. 0 to 9999.
+        steadiness: How calm moving pictures are: neighbouring frames are averaged along the motion.
+            0 is off, 0.5 suits most shots. How much neighbouring frames count, carried here along
+            the motion of things: 0 leaves each frame alone, 0.5 is for sequences, 1 lets all frames
+            of the window count alike. 0 to 1.
+        window: Neighbouring frames that count, to each side. They count as far as they and the
+            motion from them are known. 0 to 8.
+        hold: Frames that grain and strokes last: 1 draws them anew in each frame, 0 keeps them for
             ever. 0 to 1000.
-        renewal: Frames for which motion carries marks where `steadiness` is above 0 and no rest
-            positions are known, before they begin anew; two layers take turns. A frame depends on
-            the motion of as many frames before it, less two. 0 or 1 leaves marks on the screen. 0
-            to 16.
-        mix: Blend with the input: 0 leaves the picture as it was, 1 shows the filter alone. 0 to 1.
+        renewal: Frames for which marks travel with the motion before they are drawn anew; 0 leaves
+            them on the screen. Frames for which motion carries marks where `steadiness` is above 0
+            and no rest positions are known, before they begin anew; two layers take turns. A frame
+            depends on the motion of as many frames before it, less two. 0 or 1 leaves marks on the
+            screen. 0 to 16.
+        mix: Blends the result with the picture: 0 leaves the picture as it was, 1 shows the result
+            alone. 0 to 1.
 
     The other arguments are those of `isophote.apply`.
     """
@@ -508,7 +571,8 @@ def watercolor(
     frame: int = 0,
     **picture: Unpack[Picture],
 ) -> Array:
-    """Watercolor. Washes of thin paint: the bilateral filter along the local structure and a closing
+    """Watercolour. Washes of thin paint with wavering outlines, pigment at their borders and the grain
+    of the paper. Washes of thin paint: the bilateral filter along the local structure and a closing
     followed by an opening simplify the picture, outlines waver, pigment gathers at the borders, in
     clouds and in the grain of the paper. (thesis § 1.2, 5.1)
 
@@ -527,41 +591,51 @@ def watercolor(
         object_id: Object numbers: neighbouring frames count where they agree.
 
     Parameters:
-        wash_size: Radius of the smallest patches of colour that are painted. 0 to 30 px.
-        detail: How much survives the abstraction: scales `sigma_r` from 3 to 1/3 times and
-            `sigma_d` from 2 to 1/2. 0 to 1.
-        pigment: How much pigment is in the water: 1 keeps the colours, less shows the paper, 0
-            leaves it white. 0 to 1.
-        edge_darkening: How much pigment gathers at the borders of dark regions. 0 to 1.
-        clouds: How unevenly the water carries the pigment. 0 to 1.
-        granulation: How much pigment settles in the grain of the paper. 0 to 1.
-        wobble: How far outlines waver; far ones in waves that are longer than `wavelength`, so that
-            none folds. 0 to 20 px.
-        saturation: Factor on the colour axes of CIELAB; 0 is grey. 0 to 4.
-        lights: Raises (above 0) or lowers the light tones. -1 to 1.
-        darks: Raises (above 0) or lowers the dark tones. -1 to 1.
-        abstraction: Bilateral filter: across and along the local orientation (3.4), or along stream
-            lines (3.5), whose own scales then grow with `sigma_d` / 3 and `sigma_r` / 4.25; or
-            without regard to it, by the full window (3.2) or along rows and then columns (3.3).
-        n_a: Bilateral iterations. 0 to 16.
-        sigma_d: Spatial standard deviation of the bilateral filter. 0.1 to 20 px.
-        sigma_r: Standard deviation of the bilateral filter in range, CIELAB units. 0.1 to 200.
-        sigma_a: Standard deviation of the smoothing of the patches along their outlines. 0 to 20
-            px.
-        edge_width: Width of the dark borders, the standard deviation of a Gaussian. 0 to 30 px.
-        wavelength: Length of the waves of the outlines, in pixels of the full-size picture. 2 to
+        wash_size: Size of the smallest patches of colour that are painted. Radius of these patches.
+            0 to 30 px.
+        detail: How much of the picture's detail stays: low values give flat areas, high ones keep
+            small things. Scales `sigma_r` from 3 to 1/3 times and `sigma_d` from 2 to 1/2. 0 to 1.
+        pigment: How much paint is in the water: 1 keeps the colours, less lets the paper shine
+            through, 0 leaves it white. 0 to 1.
+        edge_darkening: How much paint gathers at the borders of dark areas. 0 to 1.
+        clouds: How unevenly the water carries the paint. 0 to 1.
+        granulation: How much paint settles in the grain of the paper. 0 to 1.
+        wobble: How far outlines waver. Far ones waver in waves that are longer than `wavelength`,
+            so that none folds. 0 to 20 px.
+        saturation: Strength of the colours: 0 is grey, 1 leaves them as they are. Factor on the
+            colour axes of CIELAB. 0 to 4.
+        lights: Brightens the light tones above 0, and darkens them below. -1 to 1.
+        darks: Brightens the dark tones above 0, and darkens them below. -1 to 1.
+        abstraction: How colours are flattened: along the edges, along flowing lines, or in all
+            directions alike. Bilateral filter: across and along the local orientation (3.4), or
+            along stream lines (3.5), whose own scales then grow with `sigma_d` / 3 and `sigma_r` /
+            4.25; or without regard to it, by the full window (3.2) or along rows and then columns
+            (3.3).
+        n_a: How often the colours are smoothed: more rounds give flatter areas. Bilateral
+            iterations (n_a). 0 to 16.
+        sigma_d: How far colours are smoothed over what is around them. Spatial standard deviation
+            of the bilateral filter. 0.1 to 20 px.
+        sigma_r: How different colours may be and still be smoothed into one. Standard deviation of
+            the bilateral filter in range, CIELAB units. 0.1 to 200.
+        sigma_a: How far patches are smoothed along their outlines. Standard deviation of the
+            smoothing of the patches along their outlines. 0 to 20 px.
+        edge_width: Width of the dark borders. Standard deviation of a Gaussian. 0 to 30 px.
+        wavelength: Length of the waves in the outlines, in pixels of the full-size picture. 2 to
             400.
-        grain_size: Size of the paper's grain, in pixels of the full-size picture. 0.5 to 40.
-        steadiness: How much neighbouring frames count, carried here along the motion of things: 0
-            leaves each frame alone, 0.5 is for sequences, 1 lets all frames of the window count
-            alike. 0 to 1.
-        window: Neighbouring frames that count, to each side as far as they and the motion from them
-            are known. 0 to 8.
-        renewal: Frames for which motion carries marks where `steadiness` is above 0 and no rest
-            positions are known, before they begin anew; two layers take turns. A frame depends on
-            the motion of as many frames before it, less two. 0 or 1 leaves marks on the screen. 0
-            to 16.
-        mix: Blend with the input: 0 leaves the picture as it was, 1 shows the filter alone. 0 to 1.
+        grain_size: Size of the grain of the paper, in pixels of the full-size picture. 0.5 to 40.
+        steadiness: How calm moving pictures are: neighbouring frames are averaged along the motion.
+            0 is off, 0.5 suits most shots. How much neighbouring frames count, carried here along
+            the motion of things: 0 leaves each frame alone, 0.5 is for sequences, 1 lets all frames
+            of the window count alike. 0 to 1.
+        window: Neighbouring frames that count, to each side. They count as far as they and the
+            motion from them are known. 0 to 8.
+        renewal: Frames for which marks travel with the motion before they are drawn anew; 0 leaves
+            them on the screen. Frames for which motion carries marks where `steadiness` is above 0
+            and no rest positions are known, before they begin anew; two layers take turns. A frame
+            depends on the motion of as many frames before it, less two. 0 or 1 leaves marks on the
+            screen. 0 to 16.
+        mix: Blends the result with the picture: 0 leaves the picture as it was, 1 shows the result
+            alone. 0 to 1.
 
     The other arguments are those of `isophote.apply`.
     """
@@ -617,11 +691,12 @@ def ink(
     frame: int = 0,
     **picture: Unpack[Picture],
 ) -> Array:
-    """Ink. Drawings on paper: pencil, ink, charcoal, woodcut or pastel. All are one filter, the flow-
-    based difference of Gaussians in its sharpening form (4.10), thresholded more or less softly
-    (4.8), with hatching, strokes along the form and the paper's grain, at five sets of values;
-    `advanced` trims them. What is light and empty stays bare paper. Normals, depth and object ids,
-    where given, draw lines of their own. (thesis § 4.3-4.5)
+    """Ink. Drawings on paper, in pencil, ink, charcoal, woodcut or pastel. Drawings on paper: pencil,
+    ink, charcoal, woodcut or pastel. All are one filter, the flow-based difference of Gaussians in
+    its sharpening form (4.10), thresholded more or less softly (4.8), with hatching, strokes along
+    the form and the paper's grain, at five sets of values; `advanced` trims them. What is light and
+    empty stays bare paper. Normals, depth and object ids, where given, draw lines of their own.
+    (thesis § 4.3-4.5)
 
     Inputs:
         image: The picture.
@@ -640,63 +715,80 @@ def ink(
             it the frames that follow count for nothing.
 
     Parameters:
-        style: What is drawn with; sets every technical value.
-        line_width: Width of lines; 2 is the style's own. None is narrower than a pixel of the
+        style: What is drawn with: pencil, ink, charcoal, woodcut or pastel. Sets every technical
+            value.
+        line_width: How thick lines are: 2 is the medium's own. None is narrower than a pixel of the
             picture: it is lighter instead. 0.2 to 40 px.
-        line_amount: How many lines: 0 leaves masses and shading alone, 1 draws faint edges too;
-            scales p (4.10). 0 to 1.
-        suppress_small: Drops short and weak lines: lengthens the smoothing along lines by up to 0.8
-            of it and halves p. 0 to 1.
-        outline_width: Width of lines around objects against that of the others, where depth, object
-            ids or normals are given; 0 draws none. 0 to 8.
-        crease_width: Width of lines where a surface folds against that of the others, where normals
-            are given; 0 draws none. 0 to 8.
-        texture_lines: How many of the lines that the picture's own edges draw: 0 leaves outlines
-            and creases alone. 0 to 1.
-        tone: How much is dark: 0 leaves lines alone, 1 fills what is not bright; shifts epsilon and
-            scales the shading from 0 to 4 times. 0 to 1.
-        grain: How much the paper shows in lines and tones, from not at all to twice the style's
-            own. 0 to 1.
-        detail: How much survives the abstraction: scales `sigma_r` from 3 to 1/3 times and
-            `sigma_d` from 2 to 1/2. 0 to 1.
-        line_color: Colour of what is drawn with; its alpha is its opacity.
+        line_amount: How many lines there are: 0 leaves areas and shading alone, 1 draws faint edges
+            too. Scales p (4.10). 0 to 1.
+        suppress_small: Leaves out short and weak lines. Lengthens the smoothing along lines by up
+            to 0.8 of it and halves p. 0 to 1.
+        outline_width: Width of outlines of objects against other lines; 0 draws none. Needs depth,
+            object ids or normals. 0 to 8.
+        crease_width: Width of lines where a surface folds against other lines; 0 draws none. Needs
+            normals. 0 to 8.
+        texture_lines: How many lines come from the picture itself: 0 leaves outlines and creases
+            alone. 0 to 1.
+        tone: How much of the drawing is dark: 0 leaves lines alone, 1 fills all that is not bright.
+            Shifts epsilon and scales the shading from 0 to 4 times. 0 to 1.
+        grain: How much the paper shows in lines and tones: 0.5 is the medium's own, 0 none. Scales
+            the medium's own grain from 0 to 2 times. 0 to 1.
+        detail: How much of the picture's detail stays: low values give flat areas, high ones keep
+            small things. Scales `sigma_r` from 3 to 1/3 times and `sigma_d` from 2 to 1/2. 0 to 1.
+        line_color: Colour and opacity of what is drawn with.
         paper_color: Colour of the paper.
-        saturation: Factor on the picture's own colours, in as far as the style shows them. 0 to 4.
-        cover: Paper also where the picture is transparent; the result is then opaque.
-        edge_scale: Factor on sigma_e, the scale of edges (4.7). 0 to 4.
-        flow_length: Factor on sigma_m, the smoothing along lines (4.5). 0 to 4.
-        sharpening: Factor on p, the weight of edges (4.10). 0 to 4.
-        threshold_shift: Added to epsilon, the lightness from which on there is no ink (4.8). -100
-            to 100.
-        steepness: Factor on phi, the steepness of the ramp from paper to ink (4.8). 0 to 4.
-        carving: Factor on how much of the hatching follows the form; the rest is regular. 0 to 4.
-        shading: Factor on how fast tones grow dark, which are hatched or rubbed in. 0 to 4.
-        hatch_spacing: Factor on the distance of hatches. 0 to 4.
-        grain_size: Factor on the size of the paper's grains. 0 to 4.
-        own_color: Added to how much of the picture's own colours shows. -1 to 1.
-        edge_smoothing: Factor on the final smoothing along the edges. 0 to 4.
-        k: Ratio of the two standard deviations (4.5); 1.6 after Marr and Hildreth. 1.01 to 4.
-        abstraction: Bilateral filter: across and along the local orientation (3.4), or along stream
-            lines (3.5), whose own scales then grow with `sigma_d` / 3 and `sigma_r` / 4.25; or
-            without regard to it, by the full window (3.2) or along rows and then columns (3.3).
-        n_e: Bilateral iterations before lines are extracted (n_e), which keeps noise out of them. 0
-            to 16.
-        sigma_d: Spatial standard deviation of the bilateral filter. 0.1 to 20 px.
-        sigma_r: Standard deviation of the bilateral filter in range, CIELAB units. 0.1 to 200.
-        guide_weight: Strength of lines where normal, depth or object id break; 0 leaves the guides
+        saturation: Strength of the picture's own colours, as far as the medium shows them: 0 is
+            grey. Factor on the colour axes of CIELAB. 0 to 4.
+        cover: Puts paper also where the picture is transparent. The result is then opaque.
+        edge_scale: Size of the edges that draw lines: 1 is the medium's own. Factor on sigma_e
+            (4.7). 0 to 4.
+        flow_length: How far lines are smoothed along themselves: 1 is the medium's own. Factor on
+            sigma_m (4.5). 0 to 4.
+        sharpening: How strongly edges are brought out: 1 is the medium's own. Factor on p (4.10). 0
+            to 4.
+        threshold_shift: Puts ink on lighter tones above 0, and on fewer below. Added to epsilon,
+            the lightness from which on there is no ink (4.8). -100 to 100.
+        steepness: How suddenly paper turns to ink: 1 is the medium's own. Factor on phi (4.8). 0 to
+            4.
+        carving: How much of the hatching follows the form: 1 is the medium's own, 0 is regular.
+            Factor on the share of the hatching that follows the form. 0 to 4.
+        shading: How fast tones grow dark that are hatched or rubbed in: 1 is the medium's own. 0 to
+            4.
+        hatch_spacing: Distance between the lines of the hatching: 1 is the medium's own. 0 to 4.
+        grain_size: Size of the grain of the paper: 1 is the medium's own. 0 to 4.
+        own_color: Shows more of the picture's own colours above 0, and less below. -1 to 1.
+        edge_smoothing: Last smoothing along the edges: 1 is the medium's own. 0 to 4.
+        k: How much wider the second blur is than the first: higher values give broader lines. Ratio
+            of the two standard deviations (4.5); 1.6 after Marr and Hildreth. 1.01 to 4.
+        abstraction: How colours are flattened: along the edges, along flowing lines, or in all
+            directions alike. Bilateral filter: across and along the local orientation (3.4), or
+            along stream lines (3.5), whose own scales then grow with `sigma_d` / 3 and `sigma_r` /
+            4.25; or without regard to it, by the full window (3.2) or along rows and then columns
+            (3.3).
+        n_e: How often the picture is smoothed before lines are looked for, which keeps noise out of
+            them. Bilateral iterations (n_e). 0 to 16.
+        sigma_d: How far colours are smoothed over what is around them. Spatial standard deviation
+            of the bilateral filter. 0.1 to 20 px.
+        sigma_r: How different colours may be and still be smoothed into one. Standard deviation of
+            the bilateral filter in range, CIELAB units. 0.1 to 200.
+        guide_weight: Strength of the lines that normals, depth and object ids draw; 0 leaves these
+            out. Strength of lines where normal, depth or object id break; 0 leaves the guides
             unread. 0 to 16.
-        steadiness: How much neighbouring frames count, carried here along the motion of things: 0
-            leaves each frame alone, 0.5 is for sequences, 1 lets all frames of the window count
-            alike. 0 to 1.
-        window: Neighbouring frames that count, to each side as far as they and the motion from them
-            are known. 0 to 8.
-        hold: Frames that hand-drawn noise lasts: 1 draws it anew in each frame, 0 keeps it for
+        steadiness: How calm moving pictures are: neighbouring frames are averaged along the motion.
+            0 is off, 0.5 suits most shots. How much neighbouring frames count, carried here along
+            the motion of things: 0 leaves each frame alone, 0.5 is for sequences, 1 lets all frames
+            of the window count alike. 0 to 1.
+        window: Neighbouring frames that count, to each side. They count as far as they and the
+            motion from them are known. 0 to 8.
+        hold: Frames that grain and strokes last: 1 draws them anew in each frame, 0 keeps them for
             ever. 0 to 1000.
-        renewal: Frames for which motion carries marks where `steadiness` is above 0 and no rest
-            positions are known, before they begin anew; two layers take turns. A frame depends on
-            the motion of as many frames before it, less two. 0 or 1 leaves marks on the screen. 0
-            to 16.
-        mix: Blend with the input: 0 leaves the picture as it was, 1 shows the filter alone. 0 to 1.
+        renewal: Frames for which marks travel with the motion before they are drawn anew; 0 leaves
+            them on the screen. Frames for which motion carries marks where `steadiness` is above 0
+            and no rest positions are known, before they begin anew; two layers take turns. A frame
+            depends on the motion of as many frames before it, less two. 0 or 1 leaves marks on the
+            screen. 0 to 16.
+        mix: Blends the result with the picture: 0 leaves the picture as it was, 1 shows the result
+            alone. 0 to 1.
 
     The other arguments are those of `isophote.apply`.
     """
@@ -736,10 +828,11 @@ def painting(
     frame: int = 0,
     **picture: Unpack[Picture],
 ) -> Array:
-    """Painting. Flat strokes of paint that follow the forms of the picture, coarse where little
-    happens and fine where it varies: the anisotropic Kuwahara filter from coarse to fine scales. No
-    stroke is painted across strong contrast, nor across edges of normals, depth and object ids,
-    where given. (thesis § 5.5)
+    """Painting. Flat strokes of paint that follow the forms: coarse where little happens, fine where
+    the picture varies. Flat strokes of paint that follow the forms of the picture, coarse where
+    little happens and fine where it varies: the anisotropic Kuwahara filter from coarse to fine
+    scales. No stroke is painted across strong contrast, nor across edges of normals, depth and
+    object ids, where given. (thesis § 5.5)
 
     Inputs:
         image: The picture.
@@ -757,43 +850,57 @@ def painting(
             it the frames that follow count for nothing.
 
     Parameters:
-        brush_size: Width of round strokes where the picture varies: scales `radius` by size / 12. 0
-            to 64 px.
-        detail: How much fine detail survives: scales `p_s` from 1/4 times on and, above the middle,
-            the brush down to 0.6. 0 to 1.
-        stroke_length: How far strokes stretch along the forms: 0 is nearly round; scales `alpha`
+        brush_size: Width of the strokes where the picture varies. Width of round strokes: scales
+            `radius` by size / 12. 0 to 64 px.
+        detail: How much of the picture's detail stays: low values give flat areas, high ones keep
+            small things. Scales `p_s` from 1/4 times on and, above the middle, the brush down to
+            0.6. 0 to 1.
+        stroke_length: How far strokes stretch along the forms: 0 is nearly round. Scales `alpha`
             from 4 to 1/4 times. 0 to 1.
-        sharpness: How crisp the borders of strokes are: scales `q` from 1/4 to 4 times. 0 to 1.
-        saturation: Factor on the colour axes of CIELAB; 0 is grey. 0 to 4.
-        lights: Raises (above 0) or lowers the light tones. -1 to 1.
-        darks: Raises (above 0) or lowers the dark tones. -1 to 1.
-        radius: Radius of the disc that is stretched to an ellipse (r); at every level the same
-            number of its pixels. 0 to 40 px.
-        levels: Scales, each half as large as the one before (5.5); 1 for the filter at a single
-            scale. 1 to 8.
-        sectors: Sectors of the disc (N), 4 or 8, which follow corners and curves better; more than
-            4 are 8. 4 to 8.
-        q: Exponent by which flat sectors outweigh others (q of 5.15): higher is sharper. 1 to 64.
-        threshold: Standard deviation below which sectors count as flat (tau_s of 5.15), RGB in
-            0..1. 0.001 to 1.
-        alpha: Tunes the ellipse (alpha of 5.22): up to ((1 + alpha) / alpha)^2 times as long as
-            wide, 4 by default. 0.25 to 100.
-        p_s: With several levels: how much of each scale's own picture stays where it varies (p_s of
-            5.5.2). 0 to 10.
-        p_d: With several levels: factor on `p_s` from each scale to the coarser one (p_d of 5.5.2).
-            0.1 to 10.
-        tau_v: With several levels: how little variation is taken for none (tau_v of 5.5.2). 0 to 1.
-        tau_w: With several levels: least standard deviation of a sector in the measure of variation
-            (tau_w of 5.5.2). 0.001 to 1.
-        limit_range: With several levels: keeps each coarser scale within the range of the pixels
-            below it, where Lanczos resampling as published (5.5.1) draws dark rings around
-            highlights.
-        steadiness: How much neighbouring frames count, carried here along the motion of things: 0
-            leaves each frame alone, 0.5 is for sequences, 1 lets all frames of the window count
-            alike. 0 to 1.
-        window: Neighbouring frames that count, to each side as far as they and the motion from them
-            are known. 0 to 8.
-        mix: Blend with the input: 0 leaves the picture as it was, 1 shows the filter alone. 0 to 1.
+        sharpness: How crisp the borders of strokes are. Scales `q` from 1/4 to 4 times. 0 to 1.
+        saturation: Strength of the colours: 0 is grey, 1 leaves them as they are. Factor on the
+            colour axes of CIELAB. 0 to 4.
+        lights: Brightens the light tones above 0, and darkens them below. -1 to 1.
+        darks: Brightens the dark tones above 0, and darkens them below. -1 to 1.
+        radius: Size of the patches that colours are averaged over: larger ones paint more coarsely.
+            Radius of the disc that is stretched to an ellipse (r); at every level the same number
+            of its pixels. 0 to 40 px.
+        levels: Sizes at which the picture is painted: more give large strokes where little happens.
+            Scales, each half as large as the one before (5.5); 1 for the filter at a single scale.
+            1 to 8.
+        sectors: Directions in which patches are compared: 8 follow corners and curves better than
+            4. Sectors of the disc (N), 4 or 8; more than 4 are 8. 4 to 8.
+        q: How crisp the borders between patches are. Exponent by which flat sectors outweigh others
+            (q of 5.15): higher is sharper. 1 to 64.
+        threshold: Differences below this count as flat, so that faint noise is painted over.
+            Standard deviation below which sectors count as flat (tau_s of 5.15), RGB in 0..1. 0.001
+            to 1.
+        alpha: How round the patches stay: low values stretch them far along the forms. Tunes the
+            ellipse (alpha of 5.22): up to ((1 + alpha) / alpha)^2 times as long as wide, 4 by
+            default. 0.25 to 100.
+        p_s: How much of the finer scales shows where the picture varies. Counts with several
+            scales. With several levels: how much of each scale's own picture stays where it varies
+            (p_s of 5.5.2). 0 to 10.
+        p_d: How much more detail the coarser scales keep than the finer ones. Counts with several
+            scales. With several levels: factor on `p_s` from each scale to the coarser one (p_d of
+            5.5.2). 0.1 to 10.
+        tau_v: Differences below this are taken for noise and painted over. Counts with several
+            scales. With several levels: how little variation is taken for none (tau_v of 5.5.2). 0
+            to 1.
+        tau_w: Contrast that even flat patches are taken to have. Counts with several scales. With
+            several levels: least standard deviation of a sector in the measure of variation (tau_w
+            of 5.5.2). 0.001 to 1.
+        limit_range: Keeps dark rings away from highlights. Counts with several scales. Keeps each
+            coarser scale within the range of the pixels below it, where Lanczos resampling as
+            published (5.5.1) draws dark rings around highlights.
+        steadiness: How calm moving pictures are: neighbouring frames are averaged along the motion.
+            0 is off, 0.5 suits most shots. How much neighbouring frames count, carried here along
+            the motion of things: 0 leaves each frame alone, 0.5 is for sequences, 1 lets all frames
+            of the window count alike. 0 to 1.
+        window: Neighbouring frames that count, to each side. They count as far as they and the
+            motion from them are known. 0 to 8.
+        mix: Blends the result with the picture: 0 leaves the picture as it was, 1 shows the result
+            alone. 0 to 1.
 
     The other arguments are those of `isophote.apply`.
     """
@@ -818,12 +925,13 @@ def structure_tensor(
     frame: int = 0,
     **picture: Unpack[Picture],
 ) -> Array:
-    """Structure Tensor. Local orientation of the picture: the outer product of the colour gradient
-    with itself (2.34), smoothed by a Gaussian. The minor eigenvector runs along edges. Normals,
-    depth and object numbers, where given, count as further channels; flat parts can be filled from
-    what is around them. Several levels make it robust against strong noise: coarser ones, with the
-    same rho in their own pixels, take over where they are more anisotropic. Transparent pixels lend
-    no colour to the gradient. (thesis § 2.2-2.4, 2.7.3, 2.8)
+    """Structure tensor. Finds the directions of the picture's edges and how clear they are. Local
+    orientation of the picture: the outer product of the colour gradient with itself (2.34),
+    smoothed by a Gaussian. The minor eigenvector runs along edges. Normals, depth and object
+    numbers, where given, count as further channels; flat parts can be filled from what is around
+    them. Several levels make it robust against strong noise: coarser ones, with the same rho in
+    their own pixels, take over where they are more anisotropic. Transparent pixels lend no colour
+    to the gradient. (thesis § 2.2-2.4, 2.7.3, 2.8)
 
     Inputs:
         image: The picture.
@@ -832,24 +940,32 @@ def structure_tensor(
         object_id: Object numbers; a border between objects joins as a step of 1.
 
     Parameters:
-        derivative: Derivative operator: (2.18), (2.23), (2.27), (2.29) or (2.22).
-        sigma_g: Standard deviation of the Gaussian derivative (2.22); the other operators ignore it
-            unless oversampled. 0.2 to 6 px.
-        rho: Standard deviation of the Gaussian that smooths the tensor. 0 to 40 px.
-        space: What the gradient is taken of: gamma-encoded RGB, its Rec. 709 luma, or CIELAB
+        derivative: How changes of colour are measured. Derivative operator: (2.18), (2.23), (2.27),
+            (2.29) or (2.22).
+        sigma_g: Size of the Gaussian operator; the others do not use it. Standard deviation of the
+            Gaussian derivative (2.22); the other operators ignore it unless oversampled. 0.2 to 6
+            px.
+        rho: Size of the forms that are followed: larger values turn more gently. Standard deviation
+            of the Gaussian that smooths the tensor. 0 to 40 px.
+        space: How colours are compared: as they are stored, by lightness alone, or as the eye sees
+            them. What the gradient is taken of: gamma-encoded RGB, its Rec. 709 luma, or CIELAB
             divided by 100, so that from black to white is a step of 1.
-        normalize: Divides each channel's tensor by the magnitude of its gradient (2.133), so that
-            strong edges dominate less.
-        relax_threshold: Keeps tensors where sqrt(lambda1) is above this before smoothing (2.164)
-            and fills the others smoothly; 0 keeps all. 0 to 10.
-        relax_steps: Jacobi steps on each level of the pyramid (2.171). 1 to 3.
-        levels: Levels of the multi-scale estimation (2.172): each further one halves the picture,
-            and its tensor, upsampled, joins by its anisotropy (2.173). Guides join on the finest. 1
-            to 8.
-        oversample: Takes derivatives at twice the resolution (2.4.6), those of the Gaussian of
+        normalize: Lets weak edges count nearly as much as strong ones. Divides each channel's
+            tensor by the magnitude of its gradient (2.133), so that strong edges dominate less.
+        relax_threshold: Where the picture is flatter than this, its direction is taken from around
+            it; 0 keeps every edge. Keeps tensors where sqrt(lambda1) is above this before smoothing
+            (2.164) and fills the others smoothly; 0 keeps all. 0 to 10.
+        relax_steps: How carefully flat areas are filled with directions from around them. Jacobi
+            steps on each level of the pyramid (2.171). 1 to 3.
+        levels: Sizes at which directions are looked for: more are robust against noise. Levels of
+            the multi-scale estimation (2.172): each further one halves the picture, and its tensor,
+            upsampled, joins by its anisotropy (2.173). Guides join on the finest. 1 to 8.
+        oversample: Looks at twice the resolution: exact for the finest texture, and about ten times
+            as slow. Takes derivatives at twice the resolution (2.4.6), those of the Gaussian of
             sigma_g whatever the operator: exact also for the finest texture, at about ten times the
             cost.
-        guide_weight: Factor on the tensors of normals, depth and object numbers. 0 to 100.
+        guide_weight: How much normals, depth and object ids count. Factor on the tensors of
+            normals, depth and object numbers. 0 to 100.
 
     The other arguments are those of `isophote.apply`.
     """
@@ -865,9 +981,10 @@ def edge_tangent_flow(
     frame: int = 0,
     **picture: Unpack[Picture],
 ) -> Array:
-    """Edge Tangent Flow. Local orientation by Kang's edge tangent flow: the tangents of the colour
-    gradient (optimized 3x3 operator) are averaged several times over a neighbourhood (2.134), each
-    by the strength of its gradient against the centre's (2.135) and by how much it agrees with the
+    """Edge tangent flow. Finds the directions of the picture's edges by averaging them over their
+    surroundings. Local orientation by Kang's edge tangent flow: the tangents of the colour gradient
+    (optimized 3x3 operator) are averaged several times over a neighbourhood (2.134), each by the
+    strength of its gradient against the centre's (2.135) and by how much it agrees with the
     centre's direction (2.136). Strong edges take weak ones along. The structure tensor is more
     exact, faster, and knows how certain it is. (thesis § 2.5)
 
@@ -875,11 +992,11 @@ def edge_tangent_flow(
         image: The picture.
 
     Parameters:
-        radius: Neighbours lie nearer than this. 1 to 20 px.
-        kernel: Spatial weight: 1 for all neighbours, or a Gaussian of a third of the radius.
-        iterations: Times that the tangents are averaged. 1 to 10.
-        separable: Averages over the row and then over the column: faster for large radii, less
-            exact.
+        radius: How far around directions are averaged. Neighbours lie nearer than this. 1 to 20 px.
+        kernel: Whether all neighbours count alike, or near ones more. Spatial weight: 1 for all
+            neighbours, or a Gaussian of a third of the radius.
+        iterations: How often directions are averaged. 1 to 10.
+        separable: Averages rows and then columns: faster for large radii, and less exact.
 
     The other arguments are those of `isophote.apply`.
     """
@@ -894,20 +1011,21 @@ def flow_map(
     frame: int = 0,
     **picture: Unpack[Picture],
 ) -> Array:
-    """Flow Map. Bends a tensor field to what an artist painted: red and green are the x and y of a
-    direction, 0.5 for none, and alpha is its strength. Which way a direction points does not
-    matter. Where nothing is painted the field stays as it is. (thesis § 1.2)
+    """Flow map. Bends the directions that strokes and lines follow to what an artist painted. Bends a
+    tensor field to what an artist painted: red and green are the x and y of a direction, 0.5 for
+    none, and alpha is its strength. Which way a direction points does not matter. Where nothing is
+    painted the field stays as it is. (thesis § 1.2)
 
     Inputs:
         image: The flow map; the graph's input `flow` enters without any change of colour space.
         tensor: The field to bend; when open, nothing but the painted directions counts.
 
     Parameters:
-        strength: How far the field gives way where alpha is 1. 0 to 1.
-        softness: Standard deviation of the Gaussian that smooths what was painted, so that
-            directions turn gently. 0 to 64 px.
-        invert_y: For maps whose green grows upwards, as OpenGL has it; off where it grows
-            downwards.
+        strength: How far directions give way to those that are painted. How far the field gives way
+            where alpha is 1. 0 to 1.
+        softness: How gently the painted directions turn. Standard deviation of the Gaussian that
+            smooths what was painted, so that directions turn gently. 0 to 64 px.
+        invert_y: For maps whose green points upwards, as in OpenGL; off where it points downwards.
 
     The other arguments are those of `isophote.apply`.
     """
@@ -924,29 +1042,32 @@ def tensor_view(
     frame: int = 0,
     **picture: Unpack[Picture],
 ) -> Array:
-    """Tensor View. Shows a tensor field: noise smeared along its stream lines by line integral
-    convolution; the tangent's orientation as a hue that is the more saturated the more anisotropic
-    the place is (horizontal edges are red); or, as grey, an anisotropy, the gradient's magnitude, a
-    cornerness, or where the orientation is no chance result of noise. Measures without an upper end
-    are shown as v / (v + half): a gradient of 0.1 a pixel, or for corners a measure of 0.05^2, is
-    middle grey. The measures of Harris and Rohr, fourth powers of gradients, are shown by their
-    roots; that of Harris is signed: edges are darker than middle grey, corners lighter. (thesis §
-    2.6, 2.9.3)
+    """Tensor view. Shows the directions of a picture as flowing lines, as colours or as grey. Shows a
+    tensor field: noise smeared along its stream lines by line integral convolution; the tangent's
+    orientation as a hue that is the more saturated the more anisotropic the place is (horizontal
+    edges are red); or, as grey, an anisotropy, the gradient's magnitude, a cornerness, or where the
+    orientation is no chance result of noise. Measures without an upper end are shown as v / (v +
+    half): a gradient of 0.1 a pixel, or for corners a measure of 0.05^2, is middle grey. The
+    measures of Harris and Rohr, fourth powers of gradients, are shown by their roots; that of
+    Harris is signed: edges are darker than middle grey, corners lighter. (thesis § 2.6, 2.9.3)
 
     Inputs:
         tensor: The tensor field to show.
 
     Parameters:
-        show: What to show: stream lines (2.186), the angle of the tangent, the anisotropy (2.137),
-            (2.138) or (2.139), sqrt(lambda1), the condition number c (2.140) as c / (1 + c), the
-            corner measure (2.159), (2.160), (2.161) or det, or the anisotropy where it is
-            significant (2.154) and else black.
-        sigma: Standard deviation of the convolution along the stream lines. 0.5 to 40 px.
-        k: k of the Harris measure det - k tr^2 (2.159); usual are 0.04 to 0.06, from 0.25 on
-            nothing is a corner. 0 to 0.25.
-        alpha: Share of pure noise that passes for structure, alpha of (2.154). 0.0001 to 0.5.
-        rho: Standard deviation that the tensor was smoothed by: significance counts 4 pi rho^2
-            samples (2.158). 0 to 40 px.
+        show: What is shown of the directions in the picture. What to show: stream lines (2.186),
+            the angle of the tangent, the anisotropy (2.137), (2.138) or (2.139), sqrt(lambda1), the
+            condition number c (2.140) as c / (1 + c), the corner measure (2.159), (2.160), (2.161)
+            or det, or the anisotropy where it is significant (2.154) and else black.
+        sigma: Length of the flow lines. Standard deviation of the convolution along the stream
+            lines. 0.5 to 40 px.
+        k: How clear a corner must be with Harris corners. k of the Harris measure det - k tr^2
+            (2.159); usual are 0.04 to 0.06, from 0.25 on nothing is a corner. 0 to 0.25.
+        alpha: Share of pure noise that may pass for structure. Share of pure noise that passes for
+            structure, alpha of (2.154). 0.0001 to 0.5.
+        rho: Flow scale at which the directions were found. Counts with significance. Standard
+            deviation that the tensor was smoothed by: significance counts 4 pi rho^2 samples
+            (2.158). 0 to 40 px.
 
     The other arguments are those of `isophote.apply`.
     """
@@ -980,11 +1101,12 @@ def anisotropic_kuwahara(
     frame: int = 0,
     **picture: Unpack[Picture],
 ) -> Array:
-    """Anisotropic Kuwahara. A painterly flattening along the local structure: every pixel takes the
-    mean of the sectors of an ellipse that lies along it, those that vary least counting most (5.14,
-    5.33). Directional features survive and become strokes, borders stay sharp, and no clusters
-    form. Several levels abstract more than a larger radius could. Transparent pixels lend no
-    colour, and coverage stays as it is. (thesis § 5.4, 5.5)
+    """Flowing Kuwahara. Paints the picture in flat strokes that lie along its forms, with sharp
+    borders. A painterly flattening along the local structure: every pixel takes the mean of the
+    sectors of an ellipse that lies along it, those that vary least counting most (5.14, 5.33).
+    Directional features survive and become strokes, borders stay sharp, and no clusters form.
+    Several levels abstract more than a larger radius could. Transparent pixels lend no colour, and
+    coverage stays as it is. (thesis § 5.4, 5.5)
 
     Inputs:
         image: The picture.
@@ -1001,37 +1123,50 @@ def anisotropic_kuwahara(
         object_id: Object numbers: neighbouring frames count where they agree.
 
     Parameters:
-        radius: Radius of the disc that is stretched to an ellipse (r); at every level the same
-            number of its pixels. 0 to 40 px.
-        sectors: Sectors of the disc (N), 4 or 8, which follow corners and curves better; more than
-            4 are 8. 4 to 8.
-        q: Exponent by which flat sectors outweigh others (q of 5.15): higher is sharper. 1 to 64.
-        threshold: Standard deviation below which sectors count as flat (tau_s of 5.15), RGB in
-            0..1. 0.001 to 1.
-        alpha: Tunes the ellipse (alpha of 5.22): up to ((1 + alpha) / alpha)^2 times as long as
-            wide, 4 by default. 0.25 to 100.
-        weights: Weighting functions of the sectors: sampled from their definition (5.33), or
+        radius: Size of the patches that colours are averaged over: larger ones paint more coarsely.
+            Radius of the disc that is stretched to an ellipse (r); at every level the same number
+            of its pixels. 0 to 40 px.
+        sectors: Directions in which patches are compared: 8 follow corners and curves better than
+            4. Sectors of the disc (N), 4 or 8; more than 4 are 8. 4 to 8.
+        q: How crisp the borders between patches are. Exponent by which flat sectors outweigh others
+            (q of 5.15): higher is sharper. 1 to 64.
+        threshold: Differences below this count as flat, so that faint noise is painted over.
+            Standard deviation below which sectors count as flat (tau_s of 5.15), RGB in 0..1. 0.001
+            to 1.
+        alpha: How round the patches stay: low values stretch them far along the forms. Tunes the
+            ellipse (alpha of 5.22): up to ((1 + alpha) / alpha)^2 times as long as wide, 4 by
+            default. 0.25 to 100.
+        weights: How patches are weighted: exactly, or nearly so and faster; the eye hardly sees a
+            difference. Weighting functions of the sectors: sampled from their definition (5.33), or
             polynomials (5.38), which hardly differ and are faster on CPUs.
-        iterations: How often the filter runs, each time on its own result and that one's
-            orientation. 1 to 10.
-        levels: Scales, each half as large as the one before (5.5); 1 for the filter at a single
-            scale. 1 to 8.
-        p_s: With several levels: how much of each scale's own picture stays where it varies (p_s of
-            5.5.2). 0 to 10.
-        p_d: With several levels: factor on `p_s` from each scale to the coarser one (p_d of 5.5.2).
-            0.1 to 10.
-        tau_v: With several levels: how little variation is taken for none (tau_v of 5.5.2). 0 to 1.
-        tau_w: With several levels: least standard deviation of a sector in the measure of variation
-            (tau_w of 5.5.2). 0.001 to 1.
-        limit_range: With several levels: keeps each coarser scale within the range of the pixels
-            below it, where Lanczos resampling as published (5.5.1) draws dark rings around
-            highlights.
-        steadiness: How much neighbouring frames count, carried here along the motion of things: 0
-            leaves each frame alone, 0.5 is for sequences, 1 lets all frames of the window count
-            alike. 0 to 1.
-        window: Neighbouring frames that count, to each side as far as they and the motion from them
-            are known. 0 to 8.
-        mix: Blend with the input: 0 leaves the picture as it was, 1 shows the filter alone. 0 to 1.
+        iterations: How often the picture is painted over. Times that the filter runs, each time on
+            its own result and that one's orientation. 1 to 10.
+        levels: Sizes at which the picture is painted: more give large strokes where little happens.
+            Scales, each half as large as the one before (5.5); 1 for the filter at a single scale.
+            1 to 8.
+        p_s: How much of the finer scales shows where the picture varies. Counts with several
+            scales. With several levels: how much of each scale's own picture stays where it varies
+            (p_s of 5.5.2). 0 to 10.
+        p_d: How much more detail the coarser scales keep than the finer ones. Counts with several
+            scales. With several levels: factor on `p_s` from each scale to the coarser one (p_d of
+            5.5.2). 0.1 to 10.
+        tau_v: Differences below this are taken for noise and painted over. Counts with several
+            scales. With several levels: how little variation is taken for none (tau_v of 5.5.2). 0
+            to 1.
+        tau_w: Contrast that even flat patches are taken to have. Counts with several scales. With
+            several levels: least standard deviation of a sector in the measure of variation (tau_w
+            of 5.5.2). 0.001 to 1.
+        limit_range: Keeps dark rings away from highlights. Counts with several scales. Keeps each
+            coarser scale within the range of the pixels below it, where Lanczos resampling as
+            published (5.5.1) draws dark rings around highlights.
+        steadiness: How calm moving pictures are: neighbouring frames are averaged along the motion.
+            0 is off, 0.5 suits most shots. How much neighbouring frames count, carried here along
+            the motion of things: 0 leaves each frame alone, 0.5 is for sequences, 1 lets all frames
+            of the window count alike. 0 to 1.
+        window: Neighbouring frames that count, to each side. They count as far as they and the
+            motion from them are known. 0 to 8.
+        mix: Blends the result with the picture: 0 leaves the picture as it was, 1 shows the result
+            alone. 0 to 1.
 
     The other arguments are those of `isophote.apply`.
     """
@@ -1051,9 +1186,10 @@ def generalized_kuwahara(
     frame: int = 0,
     **picture: Unpack[Picture],
 ) -> Array:
-    """Generalized Kuwahara. A painterly flattening that keeps edges sharp: every pixel takes the mean
-    of the smooth sectors of a disc, those that vary least counting most (5.14). Transparent pixels
-    lend no colour, and coverage stays as it is. (thesis § 5.3)
+    """Smooth Kuwahara. Flattens the picture to soft patches like paint and keeps its edges sharp. A
+    painterly flattening that keeps edges sharp: every pixel takes the mean of the smooth sectors of
+    a disc, those that vary least counting most (5.14). Transparent pixels lend no colour, and
+    coverage stays as it is. (thesis § 5.3)
 
     Inputs:
         image: The picture.
@@ -1062,15 +1198,20 @@ def generalized_kuwahara(
             follows any.
 
     Parameters:
-        radius: Radius of the disc, 2.5 standard deviations of its Gaussian (r). 0 to 40 px.
-        sectors: Sectors of the disc (N), 4 or 8, which follow corners and curves better; more than
-            4 are 8. 4 to 8.
-        q: Exponent by which flat sectors outweigh others (q of 5.15): higher is sharper. 1 to 64.
-        threshold: Standard deviation below which sectors count as flat (tau_s of 5.15), RGB in
-            0..1. 0.001 to 1.
-        method: How the CPU sums up the sectors: pixel by pixel, or by the fast Fourier transform
-            (5.16), whose cost hardly grows with the radius. The picture is the same.
-        mix: Blend with the input: 0 leaves the picture as it was, 1 shows the filter alone. 0 to 1.
+        radius: Size of the patches that colours are averaged over. Radius of the disc, 2.5 standard
+            deviations of its Gaussian (r). 0 to 40 px.
+        sectors: Directions in which patches are compared: 8 follow corners and curves better than
+            4. Sectors of the disc (N), 4 or 8; more than 4 are 8. 4 to 8.
+        q: How crisp the borders between patches are. Exponent by which flat sectors outweigh others
+            (q of 5.15): higher is sharper. 1 to 64.
+        threshold: Differences below this count as flat, so that faint noise is painted over.
+            Standard deviation below which sectors count as flat (tau_s of 5.15), RGB in 0..1. 0.001
+            to 1.
+        method: How the processor adds up; the picture is the same. How the CPU sums up the sectors:
+            pixel by pixel, or by the fast Fourier transform (5.16), whose cost hardly grows with
+            the radius. The picture is the same.
+        mix: Blends the result with the picture: 0 leaves the picture as it was, 1 shows the result
+            alone. 0 to 1.
 
     The other arguments are those of `isophote.apply`.
     """
@@ -1087,10 +1228,11 @@ def kuwahara(
     frame: int = 0,
     **picture: Unpack[Picture],
 ) -> Array:
-    """Kuwahara. Removes noise and fine detail and keeps edges: every pixel takes the mean of that one
-    of four neighbouring regions that varies least (5.4), where several vary alike their mean. Large
-    radii show the regions' shape; the generalized and the anisotropic filter do not. Transparent
-    pixels lend no colour, and coverage stays as it is. (thesis § 5.2)
+    """Kuwahara. Flattens noise and fine detail and keeps edges sharp; large sizes show square patches.
+    Removes noise and fine detail and keeps edges: every pixel takes the mean of that one of four
+    neighbouring regions that varies least (5.4), where several vary alike their mean. Large radii
+    show the regions' shape; the generalized and the anisotropic filter do not. Transparent pixels
+    lend no colour, and coverage stays as it is. (thesis § 5.2)
 
     Inputs:
         image: The picture.
@@ -1099,11 +1241,13 @@ def kuwahara(
             follows any.
 
     Parameters:
-        radius: Reach of the regions from the pixel (r); squares take the nearest whole number. 0 to
-            60 px.
-        regions: Squares that share the pixel as a corner (5.1), or Gaussians with the squares'
-            means and variances (5.6), which leave no ringing.
-        mix: Blend with the input: 0 leaves the picture as it was, 1 shows the filter alone. 0 to 1.
+        radius: Size of the patches that colours are averaged over. Reach of the regions from the
+            pixel (r); squares take the nearest whole number. 0 to 60 px.
+        regions: Shape of the patches: squares, or soft rounds, which leave no pattern. Squares that
+            share the pixel as a corner (5.1), or Gaussians with the squares' means and variances
+            (5.6), which leave no ringing.
+        mix: Blends the result with the picture: 0 leaves the picture as it was, 1 shows the result
+            alone. 0 to 1.
 
     The other arguments are those of `isophote.apply`.
     """
@@ -1121,8 +1265,8 @@ def composite_lines(
     frame: int = 0,
     **picture: Unpack[Picture],
 ) -> Array:
-    """Composite lines. Draws an edge image (1 = paper, 0 = line) over the picture, or over plain
-    paper. (thesis § 4.6)
+    """Composite lines. Draws lines over the picture, or over plain paper. Draws an edge image (1 =
+    paper, 0 = line) over the picture, or over plain paper. (thesis § 4.6)
 
     Inputs:
         image: The picture.
@@ -1133,9 +1277,10 @@ def composite_lines(
 
     Parameters:
         color: Colour of the lines.
-        opacity: Opacity of the lines. 0 to 1.
-        paper: Paper in place of the picture; its alpha says how much it covers, 0 leaves it unset.
-        mix: Blend with the input: 0 leaves the picture as it was, 1 shows the filter alone. 0 to 1.
+        opacity: How opaque the lines are. 0 to 1.
+        paper: Paper in place of the picture; its opacity says how much of the picture it covers.
+        mix: Blends the result with the picture: 0 leaves the picture as it was, 1 shows the result
+            alone. 0 to 1.
 
     The other arguments are those of `isophote.apply`.
     """
@@ -1158,9 +1303,9 @@ def quantize_luminance(
     frame: int = 0,
     **picture: Unpack[Picture],
 ) -> Array:
-    """Quantize luminance. Flattens CIELAB lightness to soft steps, q + d/2 tanh(phi_q (L - q)) with q
-    the middle of the bin of L and d = 100 / bins; colour stays. Bins continue below black and above
-    white. (thesis § 4.6)
+    """Posterize. Flattens lightness to a few soft steps and keeps the colours. Flattens CIELAB
+    lightness to soft steps, q + d/2 tanh(phi_q (L - q)) with q the middle of the bin of L and d =
+    100 / bins; colour stays. Bins continue below black and above white. (thesis § 4.6)
 
     Inputs:
         image: The picture.
@@ -1169,18 +1314,25 @@ def quantize_luminance(
             follows any.
 
     Parameters:
-        bins: Levels between black and white. 1 to 256.
-        phi_q: Steepness of the steps, per unit of L; counts when not adaptive. 0 to 1000.
-        adaptive: Steepness from the gradient of L instead of `phi_q`: flat parts step softly and
-            flicker less.
-        lambda_delta: Gradient of L, per pixel, from which on steps grow steeper. 0 to 100.
-        omega_delta: Gradient of L, per pixel, at which steps are steepest. 0 to 100.
-        lambda_phi: Steepness in flat parts, per unit of L. 0 to 1000.
-        omega_phi: Steepness at edges, per unit of L. 0 to 1000.
-        least_gradient: Gradient of L, per pixel, that the surroundings have where levels step;
+        bins: Number of tones from black to white. Bins between black and white. 1 to 256.
+        phi_q: How suddenly one tone changes to the next. Does not count with adaptive steps.
+            Steepness of the steps, per unit of L. 0 to 1000.
+        adaptive: Softer steps in flat areas and steeper ones at edges, so that moving pictures
+            flicker less. Steepness from the gradient of L instead of `phi_q`.
+        lambda_delta: Contrast below which adaptive steps are softest. Gradient of L, per pixel,
+            from which on steps grow steeper. 0 to 100.
+        omega_delta: Contrast above which adaptive steps are steepest. Gradient of L, per pixel, at
+            which steps are steepest. 0 to 100.
+        lambda_phi: How sudden adaptive steps are in flat areas. Steepness in flat parts, per unit
+            of L. 0 to 1000.
+        omega_phi: How sudden adaptive steps are at edges. Steepness at edges, per unit of L. 0 to
+            1000.
+        least_gradient: Tones stay smooth where the picture changes less than this; 0 makes steps
+            everywhere. Gradient of L, per pixel, that the surroundings have where levels step;
             where they have less, tones are continuous, since borders of levels would follow nothing
             there. 0 steps everywhere. 0 to 1.
-        mix: Blend with the input: 0 leaves the picture as it was, 1 shows the filter alone. 0 to 1.
+        mix: Blends the result with the picture: 0 leaves the picture as it was, 1 shows the result
+            alone. 0 to 1.
 
     The other arguments are those of `isophote.apply`.
     """
@@ -1197,9 +1349,10 @@ def warp_sharpen(
     frame: int = 0,
     **picture: Unpack[Picture],
 ) -> Array:
-    """Warp Sharpen. Sharpens edges by moving pixels towards them, as image-based warping does: samples
-    are taken away from the ridges of the smoothed gradient magnitude, found by the Sobel operator
-    (2.23). No value leaves the range of its neighbourhood. (thesis § 4.6)
+    """Warp sharpen. Sharpens edges by pulling pixels towards them, without halos. Sharpens edges by
+    moving pixels towards them, as image-based warping does: samples are taken away from the ridges
+    of the smoothed gradient magnitude, found by the Sobel operator (2.23). No value leaves the
+    range of its neighbourhood. (thesis § 4.6)
 
     Inputs:
         image: The picture.
@@ -1208,11 +1361,12 @@ def warp_sharpen(
             follows any.
 
     Parameters:
-        sigma_w: Standard deviation of the Gaussian on the gradient magnitude: the width of the
-            edges that are narrowed. 0.1 to 20 px.
-        phi_w: How far a sharp edge from black to white moves what is beside it, which is also the
-            farthest move. 0 to 20 px.
-        mix: Blend with the input: 0 leaves the picture as it was, 1 shows the filter alone. 0 to 1.
+        sigma_w: Width of the edges that are sharpened. Standard deviation of the Gaussian on the
+            gradient magnitude: the width of the edges that are narrowed. 0.1 to 20 px.
+        phi_w: How far pixels are pulled towards the edges. How far a sharp edge from black to white
+            moves what is beside it, which is also the farthest move. 0 to 20 px.
+        mix: Blends the result with the picture: 0 leaves the picture as it was, 1 shows the result
+            alone. 0 to 1.
 
     The other arguments are those of `isophote.apply`.
     """
@@ -1234,32 +1388,39 @@ def difference_of_gaussians(
     frame: int = 0,
     **picture: Unpack[Picture],
 ) -> Array:
-    """Difference of Gaussians. Lines by the extended difference of Gaussians on lightness (4.7, 4.8)
-    or its sharpening form (4.10): 1 is paper, 0 is line. Transparent pixels neither draw nor
-    receive lines. (thesis § 4.2-4.4)
+    """Plain lines. Draws lines at edges of any direction: white is paper, black is line. Lines by the
+    extended difference of Gaussians on lightness (4.7, 4.8) or its sharpening form (4.10): 1 is
+    paper, 0 is line. Transparent pixels neither draw nor receive lines. (thesis § 4.2-4.4)
 
     Inputs:
         image: The picture.
 
     Parameters:
-        sigma_e: Standard deviation of the narrower Gaussian; sets the width of lines (4.5). Half a
-            pixel of the picture at least: lines that are to be narrower are lighter instead. 0.1 to
-            20 px.
-        k: Ratio of the two standard deviations (4.5); 1.6 after Marr and Hildreth. 1.01 to 4.
-        form: Which parameters count: `tau`, `epsilon`, `phi` (4.7, 4.8), or `p`, `epsilon_p`,
+        sigma_e: Size of the edges that become lines, which sets how wide the lines are. Standard
+            deviation of the narrower Gaussian; sets the width of lines (4.5). Half a pixel of the
+            picture at least: lines that are to be narrower are lighter instead. 0.1 to 20 px.
+        k: How much wider the second blur is than the first: higher values give broader lines. Ratio
+            of the two standard deviations (4.5); 1.6 after Marr and Hildreth. 1.01 to 4.
+        form: Lines alone, or lines together with areas of ink; decides which of the controls below
+            count. Which parameters count: `tau`, `epsilon`, `phi` (4.7, 4.8), or `p`, `epsilon_p`,
             `phi_p` (4.10). In the latter, which has areas of ink, lines narrower than a pixel do
             not get lighter.
-        tau: Weight of the wider Gaussian (4.7); the nearer to 1, the weaker the edges that draw a
-            line. 0 to 1.
-        epsilon: Response, in units of L, from which on there is no line (4.8). -100 to 100.
-        phi: Steepness of the ramp from paper to line, per unit of L (4.8). 0 to 1000.
-        p: Strength of sharpening, tau / (1 - tau) (4.10). 0 to 1000.
-        epsilon_p: Lightness L of the sharpened picture from which on it is white (4.10). -1000 to
-            1000.
-        phi_p: Steepness of the ramp to black, per unit of L of the sharpened picture (4.10). 0 to
-            100.
-        threshold: Curve from response to edge image: none, binary (4.6), tanh (4.8) or a smooth
-            step of like slope.
+        tau: How faint an edge may be and still draw a line; small changes near 1 do much. Weight of
+            the wider Gaussian (4.7); the nearer to 1, the weaker the edges that draw a line. 0 to
+            1.
+        epsilon: Where lines begin: higher values draw more and darker lines. Response, in units of
+            L, from which on there is no line (4.8). -100 to 100.
+        phi: How suddenly paper turns to line: low values are soft, high ones crisp. Steepness of
+            the ramp from paper to line, per unit of L (4.8). 0 to 1000.
+        p: How strongly edges are brought out before the picture is divided into ink and paper.
+            Strength of sharpening, tau / (1 - tau) (4.10). 0 to 1000.
+        epsilon_p: Lightness from which on the paper stays bare. Lightness L of the sharpened
+            picture from which on it is white (4.10). -1000 to 1000.
+        phi_p: How suddenly paper turns to ink: low values leave greys between. Steepness of the
+            ramp to black, per unit of L of the sharpened picture (4.10). 0 to 100.
+        threshold: How lines end in the paper: not cut at all, hard, soft, or soft on both sides.
+            Curve from response to edge image: none, binary (4.6), tanh (4.8) or a smooth step of
+            like slope.
 
     The other arguments are those of `isophote.apply`.
     """
@@ -1276,26 +1437,31 @@ def edge_detector(
     frame: int = 0,
     **picture: Unpack[Picture],
 ) -> Array:
-    """Edge detector. Edges of the lightness by classical detectors: Canny's (maxima of the gradient,
-    joined by hysteresis), the thresholded Sobel operator, or zero crossings of the Laplacian of
-    Gaussian. 1 is paper, 0 is line. Lines are one pixel of the full-size picture wide; smaller
-    renderings show them lighter, three tenths dark at least. Thresholds are heights: a step between
-    two pixels counts by the L that it rises, whatever `sigma` makes of it. (thesis § 4.1, 4.2.1)
+    """Edge detector. Thin lines at the edges of the picture, found by classical detectors: white is
+    paper, black is line. Edges of the lightness by classical detectors: Canny's (maxima of the
+    gradient, joined by hysteresis), the thresholded Sobel operator, or zero crossings of the
+    Laplacian of Gaussian. 1 is paper, 0 is line. Lines are one pixel of the full-size picture wide;
+    smaller renderings show them lighter, three tenths dark at least. Thresholds are heights: a step
+    between two pixels counts by the L that it rises, whatever `sigma` makes of it. (thesis § 4.1,
+    4.2.1)
 
     Inputs:
         image: The picture.
 
     Parameters:
-        method: Canny: thin, joined lines at maxima of the gradient. Sobel: the magnitude of the
+        method: How edges are found: as thin joined lines, as soft bands, or as closed contours.
+            Canny: thin, joined lines at maxima of the gradient. Sobel: the magnitude of the
             gradient, from `low` (paper) to `high` (line). Zero crossings: where the Laplacian of
             Gaussian changes its sign (4.3), joined like Canny's.
-        sigma: Standard deviation of the smoothing before differentiation; 0 for none. 0 to 20 px.
-        low: Height, in L per pixel of an unsmoothed step, from which on an edge may continue a
-            stronger one. 0 to 200.
-        high: Height, in L per pixel of an unsmoothed step, from which on an edge is drawn by
-            itself. 0 to 200.
-        reach: Hysteresis: how far, along a chain of edges above `low`, the nearest one above `high`
-            may be. Twelve pixels take a pass; tiles read as far around them. 0 to 600 px.
+        sigma: How far the picture is smoothed before edges are looked for; 0 for not at all.
+            Standard deviation of the smoothing before differentiation; 0 for none. 0 to 20 px.
+        low: Contrast from which on an edge may continue a stronger one. Height, in L per pixel of
+            an unsmoothed step, from which on an edge may continue a stronger one. 0 to 200.
+        high: Contrast from which on an edge is drawn by itself. Height, in L per pixel of an
+            unsmoothed step, from which on an edge is drawn by itself. 0 to 200.
+        reach: How far weak edges are followed from a strong one. Hysteresis: how far, along a chain
+            of edges above `low`, the nearest one above `high` may be. Twelve pixels take a pass;
+            tiles read as far around them. 0 to 600 px.
 
     The other arguments are those of `isophote.apply`.
     """
@@ -1329,8 +1495,9 @@ def flow_dog(
     frame: int = 0,
     **picture: Unpack[Picture],
 ) -> Array:
-    """Flow-based difference of Gaussians. Coherent lines: a difference of Gaussians across the edges,
-    smoothed along them (Listing 4.1). Where normals, depth or object ids are given and
+    """Flowing lines. Long clean lines that flow along the forms, also at creases and outlines of
+    objects: white is paper, black is line. Coherent lines: a difference of Gaussians across the
+    edges, smoothed along them (Listing 4.1). Where normals, depth or object ids are given and
     `guide_weight` is above 0, lines are also drawn where these break, along the same flow. 1 is
     paper, 0 is line. (thesis § 4.5)
 
@@ -1348,42 +1515,53 @@ def flow_dog(
             it the frames that follow count for nothing.
 
     Parameters:
-        sigma_e: Standard deviation of the narrower Gaussian; sets the width of lines (4.5). Half a
-            pixel of the picture at least: lines that are to be narrower are lighter instead. 0.1 to
-            20 px.
-        k: Ratio of the two standard deviations (4.5); 1.6 after Marr and Hildreth. 1.01 to 4.
-        sigma_m: Standard deviation of the smoothing along the edges; longer lines and less noise. 0
-            to 60 px.
-        form: Which parameters count: `tau`, `epsilon`, `phi` (4.7, 4.8), or `p`, `epsilon_p`,
+        sigma_e: Size of the edges that become lines, which sets how wide the lines are. Standard
+            deviation of the narrower Gaussian; sets the width of lines (4.5). Half a pixel of the
+            picture at least: lines that are to be narrower are lighter instead. 0.1 to 20 px.
+        k: How much wider the second blur is than the first: higher values give broader lines. Ratio
+            of the two standard deviations (4.5); 1.6 after Marr and Hildreth. 1.01 to 4.
+        sigma_m: How far lines are smoothed along themselves: more gives longer lines and less
+            noise. Standard deviation of the smoothing along the edges. 0 to 60 px.
+        form: Lines alone, or lines together with areas of ink; decides which of the controls below
+            count. Which parameters count: `tau`, `epsilon`, `phi` (4.7, 4.8), or `p`, `epsilon_p`,
             `phi_p` (4.10). In the latter, which has areas of ink, lines narrower than a pixel do
             not get lighter.
-        tau: Weight of the wider Gaussian (4.7); the nearer to 1, the weaker the edges that draw a
-            line. 0 to 1.
-        epsilon: Response, in units of L, from which on there is no line (4.8). -100 to 100.
-        phi: Steepness of the ramp from paper to line, per unit of L (4.8). 0 to 1000.
-        p: Strength of sharpening, tau / (1 - tau) (4.10). 0 to 1000.
-        epsilon_p: Lightness L of the sharpened picture from which on it is white (4.10). -1000 to
-            1000.
-        phi_p: Steepness of the ramp to black, per unit of L of the sharpened picture (4.10). 0 to
-            100.
-        threshold: Curve from response to edge image: none, binary (4.6), tanh (4.8) or a smooth
-            step of like slope.
-        iterations: Times the filter runs, each on the lightness times the lines found so far, which
+        tau: How faint an edge may be and still draw a line; small changes near 1 do much. Weight of
+            the wider Gaussian (4.7); the nearer to 1, the weaker the edges that draw a line. 0 to
+            1.
+        epsilon: Where lines begin: higher values draw more and darker lines. Response, in units of
+            L, from which on there is no line (4.8). -100 to 100.
+        phi: How suddenly paper turns to line: low values are soft, high ones crisp. Steepness of
+            the ramp from paper to line, per unit of L (4.8). 0 to 1000.
+        p: How strongly edges are brought out before the picture is divided into ink and paper.
+            Strength of sharpening, tau / (1 - tau) (4.10). 0 to 1000.
+        epsilon_p: Lightness from which on the paper stays bare. Lightness L of the sharpened
+            picture from which on it is white (4.10). -1000 to 1000.
+        phi_p: How suddenly paper turns to ink: low values leave greys between. Steepness of the
+            ramp to black, per unit of L of the sharpened picture (4.10). 0 to 100.
+        threshold: How lines end in the paper: not cut at all, hard, soft, or soft on both sides.
+            Curve from response to edge image: none, binary (4.6), tanh (4.8) or a smooth step of
+            like slope.
+        iterations: How often lines are looked for, each time on top of those found, which closes
+            gaps. Times the filter runs, each on the lightness times the lines found so far, which
             closes gaps. 1 to 16.
-        kernel: Separable: across the tangent at each pixel, then along its stream line. Two-
-            dimensional: across the tangent at every point of the stream line, as first proposed;
-            costly, and hardly different to the eye.
-        integrator: How stream lines are stepped: Euler (2.176), second order (2.182), from pixel
-            boundary to pixel boundary with the Gaussian integrated exactly (Cabral and Leedom,
-            2.193), or second order with the tangent here extrapolated from the last steps, which
-            takes less time.
-        guide_weight: Strength of lines where normal, depth or object id break; 0 leaves the guides
+        kernel: Fast, or thorough, which takes long and hardly looks different. Separable: across
+            the tangent at each pixel, then along its stream line. Two-dimensional: across the
+            tangent at every point of the stream line, as first proposed; costly, and hardly
+            different to the eye.
+        integrator: How lines are followed: simply and fast, or more exactly. How stream lines are
+            stepped: Euler (2.176), second order (2.182), from pixel boundary to pixel boundary with
+            the Gaussian integrated exactly (Cabral and Leedom, 2.193), or second order with the
+            tangent here extrapolated from the last steps, which takes less time.
+        guide_weight: Strength of the lines that normals, depth and object ids draw; 0 leaves these
+            out. Strength of lines where normal, depth or object id break; 0 leaves the guides
             unread. 0 to 16.
-        steadiness: How much neighbouring frames count, carried here along the motion of things: 0
-            leaves each frame alone, 0.5 is for sequences, 1 lets all frames of the window count
-            alike. 0 to 1.
-        window: Neighbouring frames that count, to each side as far as they and the motion from them
-            are known. 0 to 8.
+        steadiness: How calm moving pictures are: neighbouring frames are averaged along the motion.
+            0 is off, 0.5 suits most shots. How much neighbouring frames count, carried here along
+            the motion of things: 0 leaves each frame alone, 0.5 is for sequences, 1 lets all frames
+            of the window count alike. 0 to 1.
+        window: Neighbouring frames that count, to each side. They count as far as they and the
+            motion from them are known. 0 to 8.
 
     The other arguments are those of `isophote.apply`.
     """
@@ -1406,10 +1584,11 @@ def shock(
     frame: int = 0,
     **picture: Unpack[Picture],
 ) -> Array:
-    """Shock Filter. Sharpens edges without ringing: erodes about minima and dilates about maxima, so
-    that no value leaves the range of its neighbours. The gradient-directed filter takes the least
-    or greatest pixel along the local gradient (6.4.3) at once; the others solve a differential
-    equation in small steps (6.3). (thesis § 6.4)
+    """Shock filter. Makes soft edges sharp without halos or ringing. Sharpens edges without ringing:
+    erodes about minima and dilates about maxima, so that no value leaves the range of its
+    neighbours. The gradient-directed filter takes the least or greatest pixel along the local
+    gradient (6.4.3) at once; the others solve a differential equation in small steps (6.3). (thesis
+    § 6.4)
 
     Inputs:
         image: The picture.
@@ -1420,21 +1599,27 @@ def shock(
             follows any.
 
     Parameters:
-        variant: The classical filter, by the Laplacian (6.4.1); Weickert's, by the second
-            derivative along the gradient (6.4.2); or the local filter along the gradient (6.4.3).
-        sigma_g: Standard deviation of the second derivative along the gradient: larger ones pass
-            over small features. 0.2 to 20 px.
-        sigma_i: Standard deviation of the Gaussian before the second derivative, for stronger
-            abstraction; 0 for none. 0 to 20 px.
-        radius: How far along the gradient the least or greatest pixel is looked for. 0 to 20 px.
-        threshold: Second derivative, in units of luma, up to which a pixel stays as it is (tau_s):
-            keeps shocks out of smooth parts. 0 to 1.
-        iterations: Steps of the two variants that solve an equation. 1 to 100.
-        time_step: Length of a step of these variants; beyond 1/2 they would not be stable. 0.01 to
-            0.5.
-        rho: Standard deviation of the Gaussian that smooths the tensor, where none is connected;
-            Weickert's filter finds it anew at each step. 0 to 40 px.
-        mix: Blend with the input: 0 leaves the picture as it was, 1 shows the filter alone. 0 to 1.
+        variant: How edges are sharpened: in small steps, in small steps along lines, or at once.
+            The classical filter, by the Laplacian (6.4.1); Weickert's, by the second derivative
+            along the gradient (6.4.2); or the local filter along the gradient (6.4.3).
+        sigma_g: Features smaller than this are passed over when edges are sharpened. Standard
+            deviation of the second derivative along the gradient. 0.2 to 20 px.
+        sigma_i: Smoothing before edges are sharpened, for simpler shapes; 0 for none. Standard
+            deviation of the Gaussian before the second derivative. 0 to 20 px.
+        radius: How wide a soft edge may be to become a sharp one. How far along the gradient the
+            least or greatest pixel is looked for. 0 to 20 px.
+        threshold: Changes of lightness that are gentler than this stay soft. Second derivative, in
+            units of luma, up to which a pixel stays as it is (tau_s): keeps shocks out of smooth
+            parts. 0 to 1.
+        iterations: Steps of the methods that sharpen little by little. Steps of the two variants
+            that solve an equation. 1 to 100.
+        time_step: Strength of each of these steps. Length of a step of these variants; beyond 1/2
+            they would not be stable. 0.01 to 0.5.
+        rho: Size of the forms that are followed: larger values turn more gently. Standard deviation
+            of the Gaussian that smooths the tensor, where none is connected; Weickert's filter
+            finds it anew at each step. 0 to 40 px.
+        mix: Blends the result with the picture: 0 leaves the picture as it was, 1 shows the result
+            alone. 0 to 1.
 
     The other arguments are those of `isophote.apply`.
     """
@@ -1468,10 +1653,11 @@ def coherence_enhancing(
     frame: int = 0,
     **picture: Unpack[Picture],
 ) -> Array:
-    """Coherence-enhancing Filter. Abstraction that makes directional features more coherent and keeps
-    shapes, however small and round: adaptive smoothing along the stream lines of the structure
-    tensor (6.3) and shock filtering across them (6.4), in turn; edges are smoothed along themselves
-    at the end (6.5). Defaults are the thesis'. (thesis § 6)
+    """Coherence filter. Lets hair, branches and folds flow together and keeps small round shapes:
+    smooths along edges and sharpens across them. Abstraction that makes directional features more
+    coherent and keeps shapes, however small and round: adaptive smoothing along the stream lines of
+    the structure tensor (6.3) and shock filtering across them (6.4), in turn; edges are smoothed
+    along themselves at the end (6.5). Defaults are the thesis'. (thesis § 6)
 
     Inputs:
         image: The picture.
@@ -1488,36 +1674,47 @@ def coherence_enhancing(
         object_id: Object numbers: neighbouring frames count where they agree.
 
     Parameters:
-        iterations: Rounds of smoothing and sharpening (N): the strength of the abstraction. 1 to
-            50.
-        stepping: Steps along stream lines: of one pixel, as the published filter's, or up to 2.5
-            times as long where lines are, which takes less time and smooths less.
-        rho: Standard deviation of the Gaussian that smooths the structure tensor. 0 to 20 px.
-        relax_threshold: Where sqrt(lambda1) is not above this, the orientation is filled in from
-            around it at first, and from the step before later on (2.7.3); 0 trusts every gradient.
-            0 to 10.
-        sigma_t: Standard deviation of the smoothing along stream lines (sigma_s of 6.3.1). 0 to 40
-            px.
-        max_angle: A stream line ends where it turns by more in one step; 0 for never. 0 to 90 deg.
-        adapt: Shortens stream lines where the orientation is uncertain (6.3.1), or as they turn
+        iterations: Rounds of smoothing and sharpening: more of them draw the picture into simpler,
+            clearer shapes. Iterations N: the strength of the abstraction. 1 to 50.
+        stepping: Whether lines are followed evenly, or in longer steps where they are long: faster,
+            and less smooth. Steps along stream lines: of one pixel, as the published filter's, or
+            up to 2.5 times as long where lines are, which takes less time and smooths less.
+        rho: Size of the forms that are followed: larger values turn more gently. Standard deviation
+            of the Gaussian that smooths the structure tensor. 0 to 20 px.
+        relax_threshold: Where the picture is flatter than this, its direction is taken from around
+            it; 0 trusts every edge. Where sqrt(lambda1) is not above this, the orientation is
+            filled in from around it at first, and from the step before later on (2.7.3); 0 trusts
+            every gradient. 0 to 10.
+        sigma_t: How far colours are smoothed along lines and edges. Standard deviation of the
+            smoothing along stream lines (sigma_s of 6.3.1). 0 to 40 px.
+        max_angle: Smoothing stops where a line turns by more than this from pixel to pixel; 0 for
+            never. A stream line ends where it turns by more in one step; 0 for never. 0 to 90 deg.
+        adapt: Where smoothing stops early: where directions are uncertain, or where lines turn.
+            Shortens stream lines where the orientation is uncertain (6.3.1), or as they turn
             (6.3.2).
-        shock: What sharpens: the local filter (6.4.3), or three steps of Weickert's equation
+        shock: Sharpening after each smoothing: at once, or in small steps that let lines grow
+            together. What sharpens: the local filter (6.4.3), or three steps of Weickert's equation
             (6.4.2), which only `sigma_i` controls.
-        sigma_g: Standard deviation of the second derivative along the gradient: larger ones pass
-            over small features. 0.2 to 20 px.
-        sigma_i: Standard deviation of the Gaussian before the second derivative, for stronger
-            abstraction; 0 for none. 0 to 20 px.
-        radius: How far along the gradient the least or greatest pixel is looked for. 0 to 20 px.
-        threshold: Second derivative, in units of luma, up to which a pixel stays as it is (tau_s):
-            keeps shocks out of smooth parts. 0 to 1.
-        sigma_a: Standard deviation of the last smoothing along the edges, against the jagged steps
-            of the shocks; 0 for none. 0 to 20 px.
-        steadiness: How much neighbouring frames count, carried here along the motion of things: 0
-            leaves each frame alone, 0.5 is for sequences, 1 lets all frames of the window count
-            alike. 0 to 1.
-        window: Neighbouring frames that count, to each side as far as they and the motion from them
-            are known. 0 to 8.
-        mix: Blend with the input: 0 leaves the picture as it was, 1 shows the filter alone. 0 to 1.
+        sigma_g: Features smaller than this are passed over when edges are sharpened. Standard
+            deviation of the second derivative along the gradient. 0.2 to 20 px.
+        sigma_i: Smoothing before edges are sharpened, for simpler shapes; 0 for none. Standard
+            deviation of the Gaussian before the second derivative. 0 to 20 px.
+        radius: How wide a soft edge may be to become a sharp one. How far along the gradient the
+            least or greatest pixel is looked for. 0 to 20 px.
+        threshold: Changes of lightness that are gentler than this stay soft. Second derivative, in
+            units of luma, up to which a pixel stays as it is (tau_s): keeps shocks out of smooth
+            parts. 0 to 1.
+        sigma_a: Last smoothing along the edges, against jagged steps; 0 for none. Standard
+            deviation of the last smoothing along the edges, against the jagged steps of the shocks;
+            0 for none. 0 to 20 px.
+        steadiness: How calm moving pictures are: neighbouring frames are averaged along the motion.
+            0 is off, 0.5 suits most shots. How much neighbouring frames count, carried here along
+            the motion of things: 0 leaves each frame alone, 0.5 is for sequences, 1 lets all frames
+            of the window count alike. 0 to 1.
+        window: Neighbouring frames that count, to each side. They count as far as they and the
+            motion from them are known. 0 to 8.
+        mix: Blends the result with the picture: 0 leaves the picture as it was, 1 shows the result
+            alone. 0 to 1.
 
     The other arguments are those of `isophote.apply`.
     """
@@ -1531,16 +1728,17 @@ def optical_flow(
     frame: int = 0,
     **picture: Unpack[Picture],
 ) -> Array:
-    """Optical flow. Where the points of a picture are in a neighbouring frame, estimated by dense
-    inverse search with variational refinement (Kroeger et al. 2016). Unknown where there is no such
-    frame.
+    """Optical flow. Finds how things move from one frame to the next. Where the points of a picture
+    are in a neighbouring frame, estimated by dense inverse search with variational refinement
+    (Kroeger et al. 2016). Unknown where there is no such frame.
 
     Inputs:
         image: The picture.
 
     Parameters:
-        direction: To the frame before, for `motion`, or to the one after, for `motion_forward`.
-        quality: How much is done for precision.
+        direction: Whether motion leads to the frame before, or to the one after. To the frame
+            before, for `motion`, or to the one after, for `motion_forward`.
+        quality: How much care is taken over the motion: more takes longer.
 
     The other arguments are those of `isophote.apply`.
     """
@@ -1562,9 +1760,10 @@ def steady(
     frame: int = 0,
     **picture: Unpack[Picture],
 ) -> Array:
-    """Steady. Flicker and noise, averaged away before they reach a filter: neighbouring frames are
-    carried here along the motion of things and count where they agree. For pictures that are not
-    stylized; the styles have a steadiness of their own, which averages what is not decided yet.
+    """Steady. Averages flicker and noise of moving pictures away before they reach a style. Flicker
+    and noise, averaged away before they reach a filter: neighbouring frames are carried here along
+    the motion of things and count where they agree. For pictures that are not stylized; the styles
+    have a steadiness of their own, which averages what is not decided yet.
 
     Inputs:
         image: The picture.
@@ -1579,14 +1778,17 @@ def steady(
         object_id: Object numbers: neighbouring frames count where they agree.
 
     Parameters:
-        steadiness: How much neighbouring frames count, carried here along the motion of things: 0
-            leaves each frame alone, 0.5 is for sequences, 1 lets all frames of the window count
-            alike. 0 to 1.
-        window: Neighbouring frames that count, to each side as far as they and the motion from them
-            are known. 0 to 8.
-        color_agreement: How far the colours of frames may differ to be averaged, CIELAB units: the
-            standard deviation of a Gaussian. 0.1 to 200.
-        mix: Blend with the input: 0 leaves the picture as it was, 1 shows the filter alone. 0 to 1.
+        steadiness: How calm moving pictures are: neighbouring frames are averaged along the motion.
+            0 is off, 0.5 suits most shots. How much neighbouring frames count, carried here along
+            the motion of things: 0 leaves each frame alone, 0.5 is for sequences, 1 lets all frames
+            of the window count alike. 0 to 1.
+        window: Neighbouring frames that count, to each side. They count as far as they and the
+            motion from them are known. 0 to 8.
+        color_agreement: How different colours of neighbouring frames may be and still be averaged.
+            How far the colours of frames may differ to be averaged, CIELAB units: the standard
+            deviation of a Gaussian. 0.1 to 200.
+        mix: Blends the result with the picture: 0 leaves the picture as it was, 1 shows the result
+            alone. 0 to 1.
 
     The other arguments are those of `isophote.apply`.
     """
@@ -1602,8 +1804,9 @@ def gaussian(
     frame: int = 0,
     **picture: Unpack[Picture],
 ) -> Array:
-    """Gaussian. Smooths the picture with a Gaussian (2.21), cut off at three standard deviations and
-    normalised. Transparent pixels lend no colour to their neighbours. (thesis § 2.2.2)
+    """Gaussian blur. Blurs the picture evenly. Smooths the picture with a Gaussian (2.21), cut off at
+    three standard deviations and normalised. Transparent pixels lend no colour to their neighbours.
+    (thesis § 2.2.2)
 
     Inputs:
         image: The picture.
@@ -1612,8 +1815,9 @@ def gaussian(
             follows any.
 
     Parameters:
-        sigma: Standard deviation of the Gaussian. 0 to 80 px.
-        mix: Blend with the input: 0 leaves the picture as it was, 1 shows the filter alone. 0 to 1.
+        sigma: How far the picture is blurred. Standard deviation of the Gaussian. 0 to 80 px.
+        mix: Blends the result with the picture: 0 leaves the picture as it was, 1 shows the result
+            alone. 0 to 1.
 
     The other arguments are those of `isophote.apply`.
     """
@@ -1634,10 +1838,10 @@ def bilateral(
     frame: int = 0,
     **picture: Unpack[Picture],
 ) -> Array:
-    """Bilateral. Flattens regions and keeps edges: a mean of the neighbours, weighted by their
-    distance and by the difference of their colour (3.4), repeated. The separable form is fast and
-    shows artefacts along rows and columns (3.3). Transparent pixels lend no colour, and coverage
-    stays as it is. (thesis § 3.2, 3.3)
+    """Bilateral. Flattens areas of like colour and keeps the edges between them. Flattens regions and
+    keeps edges: a mean of the neighbours, weighted by their distance and by the difference of their
+    colour (3.4), repeated. The separable form is fast and shows artefacts along rows and columns
+    (3.3). Transparent pixels lend no colour, and coverage stays as it is. (thesis § 3.2, 3.3)
 
     Inputs:
         image: The picture.
@@ -1646,16 +1850,22 @@ def bilateral(
             follows any.
 
     Parameters:
-        kernel: The full window (3.2), or rows and then columns (3.3).
-        sigma_d: Standard deviation of the domain weight. 0 to 20 px.
-        sigma_r: Standard deviation of the range weight, in CIELAB units or in per cent of RGB. 0.01
-            to 200.
-        iterations: How often the filter runs. 0 to 20.
-        space: Where differences are measured: CIELAB, L in 0..100; or gamma-encoded RGB times 100,
-            so that white lies 173 from black.
-        cutoff: Radius of the round window in standard deviations, rounded up to pixels. 3 keeps all
-            that counts; the 9x9 window that is usual for sigma 3 ends at 1.33. 1 to 4.
-        mix: Blend with the input: 0 leaves the picture as it was, 1 shows the filter alone. 0 to 1.
+        kernel: Whether all directions are smoothed at once, or rows and then columns, which is
+            faster and less clean. The full window (3.2), or rows and then columns (3.3).
+        sigma_d: How far colours are smoothed over what is around them. Standard deviation of the
+            domain weight. 0 to 20 px.
+        sigma_r: How different colours may be and still be smoothed into one. Standard deviation of
+            the range weight, in CIELAB units or in per cent of RGB. 0.01 to 200.
+        iterations: How often the picture is smoothed: more rounds give flatter areas. Times that
+            the filter runs. 0 to 20.
+        space: How colours are compared: as the eye sees them, or as they are stored. Where
+            differences are measured: CIELAB, L in 0..100; or gamma-encoded RGB times 100, so that
+            white lies 173 from black.
+        cutoff: Size of the neighbourhood that is looked at, in smoothing reaches: smaller is faster
+            and rougher. Radius of the round window in standard deviations, rounded up to pixels. 3
+            keeps all that counts; the 9x9 window that is usual for sigma 3 ends at 1.33. 1 to 4.
+        mix: Blends the result with the picture: 0 leaves the picture as it was, 1 shows the result
+            alone. 0 to 1.
 
     The other arguments are those of `isophote.apply`.
     """
@@ -1676,10 +1886,11 @@ def line_integral_convolution(
     frame: int = 0,
     **picture: Unpack[Picture],
 ) -> Array:
-    """Line Integral Convolution. Smooths the picture along the edges by following the stream lines of
-    the smoothed structure tensor (2.186): features become coherent, as if painted along, and do not
-    bleed across edges. Lines grow shorter where the orientation is uncertain (6.3.1) or turns
-    (6.3.2). (thesis § 2.9, 6.3)
+    """Flow blur. Blurs the picture along its edges, as if painted along them, and never across.
+    Smooths the picture along the edges by following the stream lines of the smoothed structure
+    tensor (2.186): features become coherent, as if painted along, and do not bleed across edges.
+    Lines grow shorter where the orientation is uncertain (6.3.1) or turns (6.3.2). (thesis § 2.9,
+    6.3)
 
     Inputs:
         image: The picture.
@@ -1690,22 +1901,28 @@ def line_integral_convolution(
             follows any.
 
     Parameters:
-        sigma: Standard deviation of the Gaussian along the line, sigma_s of 6.3.1; cut at 2 sigma.
-            0 to 40 px.
-        integrator: How lines are stepped: Euler's method (2.177), the second-order midpoint method
-            (2.182), from pixel boundary to pixel boundary with the Gaussian integrated exactly on
-            the pixels (Cabral and Leedom, 2.193), where `step` has no part, or the midpoint method
-            with the tangent here extrapolated from the last steps, of second order too, which takes
-            less time.
-        sampling: What a line follows between pixels: the tensor interpolated bilinearly, or that of
-            the nearest pixel, which takes less and gives rougher lines (2.9.2); Cabral and Leedom's
-            method always takes the pixel's own.
-        adapt: Shortens lines where the orientation is uncertain, sigma (1 + A)^2 / 4 (6.3.1), or as
-            they turn (6.3.2).
-        max_angle: A line ends where it turns by more in one step; 0 for never. 22.5 is the
+        sigma: How far the picture is smoothed along its lines and edges. Standard deviation of the
+            Gaussian along the line, sigma_s of 6.3.1; cut at 2 sigma. 0 to 40 px.
+        integrator: How lines are followed: simply, exactly, pixel by pixel, or exactly and faster.
+            How lines are stepped: Euler's method (2.177), the second-order midpoint method (2.182),
+            from pixel boundary to pixel boundary with the Gaussian integrated exactly on the pixels
+            (Cabral and Leedom, 2.193), where `step` has no part, or the midpoint method with the
+            tangent here extrapolated from the last steps, of second order too, which takes less
+            time.
+        sampling: Whether directions between pixels are blended, or taken from the nearest: faster,
+            and rougher. What a line follows between pixels: the tensor interpolated bilinearly, or
+            that of the nearest pixel, which takes less and gives rougher lines (2.9.2); Cabral and
+            Leedom's method always takes the pixel's own.
+        adapt: Where smoothing stops early: never, where directions are uncertain, or where lines
+            turn. Shortens lines where the orientation is uncertain, sigma (1 + A)^2 / 4 (6.3.1), or
+            as they turn (6.3.2).
+        max_angle: Smoothing stops where a line turns by more than this from pixel to pixel; 0 for
+            never. A line ends where it turns by more in one step; 0 for never. 22.5 is the
             published filter's. 0 to 90 deg.
-        step: Step size h of the integration. 0.25 to 4 px.
-        mix: Blend with the input: 0 leaves the picture as it was, 1 shows the filter alone. 0 to 1.
+        step: Distance between samples along a line: smaller is more exact and slower. Step size h
+            of the integration. 0.25 to 4 px.
+        mix: Blends the result with the picture: 0 leaves the picture as it was, 1 shows the result
+            alone. 0 to 1.
 
     The other arguments are those of `isophote.apply`.
     """
@@ -1733,10 +1950,11 @@ def oriented_bilateral(
     frame: int = 0,
     **picture: Unpack[Picture],
 ) -> Array:
-    """Oriented Bilateral. Flattens regions of like colour and keeps their borders: a bilateral filter
-    in two passes, along the gradient and then along the tangent of the local structure (Listing
-    3.1), repeated. Colours are compared in CIELAB. Transparent pixels lend no colour, and coverage
-    stays as it is. (thesis § 3.4)
+    """Oriented bilateral. Flattens areas of like colour along the edges and keeps their borders clean.
+    Flattens regions of like colour and keeps their borders: a bilateral filter in two passes, along
+    the gradient and then along the tangent of the local structure (Listing 3.1), repeated. Colours
+    are compared in CIELAB. Transparent pixels lend no colour, and coverage stays as it is. (thesis
+    § 3.4)
 
     Inputs:
         image: The picture.
@@ -1753,23 +1971,32 @@ def oriented_bilateral(
         object_id: Object numbers: neighbouring frames count where they agree.
 
     Parameters:
-        sigma_dg: Standard deviation of the domain weight across edges, cut at 3 sigma. 0 to 40 px.
-        sigma_dt: Standard deviation of the domain weight along edges, cut at 3 sigma. 0 to 40 px.
-        sigma_rg: Standard deviation of the range weight across edges, in CIELAB units. 0.01 to 200.
-        sigma_rt: Standard deviation of the range weight along edges, in CIELAB units. 0.01 to 200.
-        iterations: How often both passes run; the orientation is found once. 0 to 20.
-        sampling: Linear compares interpolated colours and gives smooth borders; manual compares
-            both pixels before it interpolates (3.9) and gives sharp ones; nearest takes the nearer
-            pixel and gives jagged ones.
-        anisotropy: Adapts the shape as the ellipse of 5.22 does, with 1/alpha: sigma along the
+        sigma_dg: How far colours are smoothed across the edges. Standard deviation of the domain
+            weight across edges, cut at 3 sigma. 0 to 40 px.
+        sigma_dt: How far colours are smoothed along the edges. Standard deviation of the domain
+            weight along edges, cut at 3 sigma. 0 to 40 px.
+        sigma_rg: How different colours may be across the edges and still be smoothed into one.
+            Standard deviation of the range weight across edges, in CIELAB units. 0.01 to 200.
+        sigma_rt: How different colours may be along the edges and still be smoothed into one.
+            Standard deviation of the range weight along edges, in CIELAB units. 0.01 to 200.
+        iterations: How often the picture is smoothed: more rounds give flatter areas. Times that
+            both passes run; the orientation is found once. 0 to 20.
+        sampling: Whether borders between colours come out smooth, sharp or jagged. Linear compares
+            interpolated colours and gives smooth borders; manual compares both pixels before it
+            interpolates (3.9) and gives sharp ones; nearest takes the nearer pixel and gives jagged
+            ones.
+        anisotropy: How much further it smooths along clear edges than across them; 0 for no
+            further. Adapts the shape as the ellipse of 5.22 does, with 1/alpha: sigma along the
             tangent times 1 + elongation A, across it divided by the same, A being the anisotropy. 0
             for off. 0 to 4.
-        steadiness: How much neighbouring frames count, carried here along the motion of things: 0
-            leaves each frame alone, 0.5 is for sequences, 1 lets all frames of the window count
-            alike. 0 to 1.
-        window: Neighbouring frames that count, to each side as far as they and the motion from them
-            are known. 0 to 8.
-        mix: Blend with the input: 0 leaves the picture as it was, 1 shows the filter alone. 0 to 1.
+        steadiness: How calm moving pictures are: neighbouring frames are averaged along the motion.
+            0 is off, 0.5 suits most shots. How much neighbouring frames count, carried here along
+            the motion of things: 0 leaves each frame alone, 0.5 is for sequences, 1 lets all frames
+            of the window count alike. 0 to 1.
+        window: Neighbouring frames that count, to each side. They count as far as they and the
+            motion from them are known. 0 to 8.
+        mix: Blends the result with the picture: 0 leaves the picture as it was, 1 shows the result
+            alone. 0 to 1.
 
     The other arguments are those of `isophote.apply`.
     """
@@ -1792,10 +2019,10 @@ def flow_bilateral(
     frame: int = 0,
     **picture: Unpack[Picture],
 ) -> Array:
-    """Flow Bilateral. Flattens regions and draws features out along their flow: a bilateral filter
-    across the edges and then along the stream lines of the structure tensor (3.10), repeated.
-    Colours are compared in CIELAB. Transparent pixels lend no colour, and coverage stays as it is.
-    (thesis § 3.5)
+    """Flow bilateral. Flattens areas of like colour and draws their features out along flowing lines.
+    Flattens regions and draws features out along their flow: a bilateral filter across the edges
+    and then along the stream lines of the structure tensor (3.10), repeated. Colours are compared
+    in CIELAB. Transparent pixels lend no colour, and coverage stays as it is. (thesis § 3.5)
 
     Inputs:
         image: The picture.
@@ -1806,21 +2033,27 @@ def flow_bilateral(
             follows any.
 
     Parameters:
-        sigma_dg: Standard deviation of the domain weight across edges, cut at 3 sigma. 0 to 40 px.
-        sigma_dt: Standard deviation of the domain weight along stream lines, cut at 2 sigma. 0 to
-            40 px.
-        sigma_rg: Standard deviation of the range weight across edges, in CIELAB units. 0.01 to 200.
-        sigma_rt: Standard deviation of the range weight along stream lines, in CIELAB units. 0.01
-            to 200.
-        iterations: How often both passes run; the orientation is found once. 0 to 20.
-        sampling: Linear compares interpolated colours and gives smooth borders; manual compares
-            both pixels before it interpolates (3.9) and gives sharp ones; nearest takes the nearer
-            pixel and gives jagged ones.
-        integrator: How lines are stepped: Euler's method (2.177) or the second-order midpoint
-            method (2.182).
-        placement: Where lines are sampled: every pixel of length, or where they cross the centre of
+        sigma_dg: How far colours are smoothed across the edges. Standard deviation of the domain
+            weight across edges, cut at 3 sigma. 0 to 40 px.
+        sigma_dt: How far colours are smoothed along the flow. Standard deviation of the domain
+            weight along stream lines, cut at 2 sigma. 0 to 40 px.
+        sigma_rg: How different colours may be across the edges and still be smoothed into one.
+            Standard deviation of the range weight across edges, in CIELAB units. 0.01 to 200.
+        sigma_rt: How different colours may be along the flow and still be smoothed into one.
+            Standard deviation of the range weight along stream lines, in CIELAB units. 0.01 to 200.
+        iterations: How often the picture is smoothed: more rounds give flatter areas. Times that
+            both passes run; the orientation is found once. 0 to 20.
+        sampling: Whether borders between colours come out smooth, sharp or jagged. Linear compares
+            interpolated colours and gives smooth borders; manual compares both pixels before it
+            interpolates (3.9) and gives sharp ones; nearest takes the nearer pixel and gives jagged
+            ones.
+        integrator: How lines are followed: simply, or more exactly. How lines are stepped: Euler's
+            method (2.177) or the second-order midpoint method (2.182).
+        placement: Where lines are sampled: at even distances, or at centres of pixels, which blurs
+            less. Where lines are sampled: every pixel of length, or where they cross the centre of
             a row or column, which blurs less (Listings 3.2 and 3.3).
-        mix: Blend with the input: 0 leaves the picture as it was, 1 shows the filter alone. 0 to 1.
+        mix: Blends the result with the picture: 0 leaves the picture as it was, 1 shows the result
+            alone. 0 to 1.
 
     The other arguments are those of `isophote.apply`.
     """
@@ -1842,11 +2075,11 @@ def anisotropic_diffusion(
     frame: int = 0,
     **picture: Unpack[Picture],
 ) -> Array:
-    """Anisotropic Diffusion. Diffuses colours and stops at edges: with Perona and Malik's diffusivity
-    (3.2, 3.3), or with a diffusion tensor that smooths along edges but not across them (edge-
-    enhancing), or along lines that it closes (coherence-enhancing). Every step is a weighted mean,
-    so no value leaves the range of its neighbourhood. Transparent pixels lend no colour, and
-    coverage stays as it is. (thesis § 3.1)
+    """Diffusion. Lets colours run into each other and stop at edges, or run along them. Diffuses
+    colours and stops at edges: with Perona and Malik's diffusivity (3.2, 3.3), or with a diffusion
+    tensor that smooths along edges but not across them (edge-enhancing), or along lines that it
+    closes (coherence-enhancing). Every step is a weighted mean, so no value leaves the range of its
+    neighbourhood. Transparent pixels lend no colour, and coverage stays as it is. (thesis § 3.1)
 
     Inputs:
         image: The picture.
@@ -1855,20 +2088,27 @@ def anisotropic_diffusion(
             follows any.
 
     Parameters:
-        scheme: What stops or guides the diffusion.
-        iterations: Steps. Without edges, their number times twice the time step is the variance of
-            the smoothing in px^2. 0 to 60.
-        time_step: Length of a step. Above 1/4 explicit steps would not be stable. 0.01 to 0.25.
-        contrast: Difference of colour that counts as an edge, K or lambda of 3.2, in per cent of
-            RGB: between neighbours (Perona-Malik), or per pixel. Of the coherence-enhancing scheme,
-            four times the gradient above which lines are drawn out. 0.01 to 100.
-        diffusivity: Perona-Malik only: 1 / (1 + s^2 / lambda^2), which favours wide regions, or
-            exp(-s^2 / K^2), which favours strong edges (3.2).
-        sigma: Smoothing before gradients are taken, against noise; not used by Perona-Malik. 0 to
-            10 px.
-        rho: Smoothing of the structure tensor, the scale of lines; of the coherence-enhancing
-            scheme only. 0 to 20 px.
-        mix: Blend with the input: 0 leaves the picture as it was, 1 shows the filter alone. 0 to 1.
+        scheme: Whether smoothing stops at edges, runs along edges, or runs along lines and closes
+            them.
+        iterations: How often the picture is smoothed. Steps. Without edges, their number times
+            twice the time step is the variance of the smoothing in px^2. 0 to 60.
+        time_step: How much is smoothed in each round. Length of a step. Above 1/4 explicit steps
+            would not be stable. 0.01 to 0.25.
+        contrast: Difference of colour that counts as an edge. Difference of colour that counts as
+            an edge, K or lambda of 3.2, in per cent of RGB: between neighbours (Perona-Malik), or
+            per pixel. Of the coherence-enhancing scheme, four times the gradient above which lines
+            are drawn out. 0.01 to 100.
+        diffusivity: Whether wide areas or strong edges are kept. Counts with the first method.
+            Perona-Malik only: 1 / (1 + s^2 / lambda^2), which favours wide regions, or exp(-s^2 /
+            K^2), which favours strong edges (3.2).
+        sigma: Smoothing before edges are looked for, against noise. Does not count with the first
+            method. Smoothing before gradients are taken, against noise; not used by Perona-Malik. 0
+            to 10 px.
+        rho: Size of the lines that are followed. Counts with the method along lines. Smoothing of
+            the structure tensor, the scale of lines; of the coherence-enhancing scheme only. 0 to
+            20 px.
+        mix: Blends the result with the picture: 0 leaves the picture as it was, 1 shows the result
+            alone. 0 to 1.
 
     The other arguments are those of `isophote.apply`.
     """
@@ -1888,10 +2128,11 @@ def mean_curvature_flow(
     frame: int = 0,
     **picture: Unpack[Picture],
 ) -> Array:
-    """Mean Curvature Flow. Simplifies shapes: every isophote moves with its curvature (6.1), so that
-    small features round off, shrink and vanish. The constraint (6.2) protects what follows the
-    local orientation, and shock filtering in between keeps edges sharp. Transparent pixels lend no
-    colour, and coverage stays as it is. (thesis § 6.1)
+    """Mean curvature flow. Simplifies shapes: small features round off, shrink and vanish. Simplifies
+    shapes: every isophote moves with its curvature (6.1), so that small features round off, shrink
+    and vanish. The constraint (6.2) protects what follows the local orientation, and shock
+    filtering in between keeps edges sharp. Transparent pixels lend no colour, and coverage stays as
+    it is. (thesis § 6.1)
 
     Inputs:
         image: The picture.
@@ -1902,17 +2143,20 @@ def mean_curvature_flow(
             follows any.
 
     Parameters:
-        iterations: Steps of the flow. 0 to 60.
-        constraint: How much the flow is slowed down where isophotes do not follow the smoothed
+        iterations: How often shapes are simplified. Steps of the flow. 0 to 60.
+        constraint: How far lines that follow the forms of the picture are spared; 1 spares them
+            most. How much the flow is slowed down where isophotes do not follow the smoothed
             structure tensor of the input, or one that is connected, r of 6.2: 0 for the free flow,
             1 for none across the orientation. 0 to 1.
-        time_step: Length of a step. Where one of this length would overshoot, pixels go to the mean
-            of their neighbours and no further. 0.01 to 0.25.
-        shock_every: Sharpens edges by a step of the classical shock filter (6.3) after every so
-            many steps; 0 for never. 0 to 60.
-        rho: Standard deviation of the Gaussian that smooths the tensor of the constraint, where
-            none is connected. 0 to 40 px.
-        mix: Blend with the input: 0 leaves the picture as it was, 1 shows the filter alone. 0 to 1.
+        time_step: How much is simplified in each round. Length of a step. Where one of this length
+            would overshoot, pixels go to the mean of their neighbours and no further. 0.01 to 0.25.
+        shock_every: Rounds after which edges are sharpened once; 0 for never. Sharpening is a step
+            of the classical shock filter (6.3). 0 to 60.
+        rho: Size of the forms that are followed: larger values turn more gently. Standard deviation
+            of the Gaussian that smooths the tensor of the constraint, where none is connected. 0 to
+            40 px.
+        mix: Blends the result with the picture: 0 leaves the picture as it was, 1 shows the result
+            alone. 0 to 1.
 
     The other arguments are those of `isophote.apply`.
     """
@@ -1929,10 +2173,11 @@ def morphology(
     frame: int = 0,
     **picture: Unpack[Picture],
 ) -> Array:
-    """Morphology. Greatest and least values within a disc, channel by channel. Opening removes light
-    features smaller than the disc, closing dark ones; one after the other they smooth the picture.
-    Closing first gives the lighter result that suits watercolour. Transparent pixels lend no
-    colour, and coverage stays as it is. (thesis § 5.1)
+    """Morphology. Removes small light or dark spots, or widens light or dark areas. Greatest and least
+    values within a disc, channel by channel. Opening removes light features smaller than the disc,
+    closing dark ones; one after the other they smooth the picture. Closing first gives the lighter
+    result that suits watercolour. Transparent pixels lend no colour, and coverage stays as it is.
+    (thesis § 5.1)
 
     Inputs:
         image: The picture.
@@ -1941,11 +2186,12 @@ def morphology(
             follows any.
 
     Parameters:
-        operator: Dilation and erosion, opening (erosion, then dilation), closing (the reverse), or
-            both.
-        radius: Radius of the disc; its pixels are those with x^2 + y^2 <= radius (radius + 1). 0 to
-            30 px.
-        mix: Blend with the input: 0 leaves the picture as it was, 1 shows the filter alone. 0 to 1.
+        operator: Widens light or dark areas, or removes small light or dark spots. Dilation and
+            erosion, opening (erosion, then dilation), closing (the reverse), or both.
+        radius: Size of the spots that go, or how far areas are widened. Radius of the disc; its
+            pixels are those with x^2 + y^2 <= radius (radius + 1). 0 to 30 px.
+        mix: Blends the result with the picture: 0 leaves the picture as it was, 1 shows the result
+            alone. 0 to 1.
 
     The other arguments are those of `isophote.apply`.
     """
@@ -1965,9 +2211,10 @@ def flow_dilation(
     frame: int = 0,
     **picture: Unpack[Picture],
 ) -> Array:
-    """Flow Dilation. Paints strokes of one colour along the edges: each pixel takes the colour from
-    where noise is greatest on the stream line through it, as continuous glass patterns do.
-    Transparent pixels lend no colour, and coverage stays as it is. (thesis § 5.1)
+    """Flow strokes. Paints strokes of one colour along the edges. Paints strokes of one colour along
+    the edges: each pixel takes the colour from where noise is greatest on the stream line through
+    it, as continuous glass patterns do. Transparent pixels lend no colour, and coverage stays as it
+    is. (thesis § 5.1)
 
     Inputs:
         image: The picture.
@@ -1978,16 +2225,18 @@ def flow_dilation(
             follows any.
 
     Parameters:
-        length: Arc length that is searched on each side; strokes are up to twice as long. 0 to 60
-            px.
-        adapt: Searches less far where the orientation is uncertain, (1 + A)^2 / 4 times the length
-            (6.3.1), which keeps strokes from crossing corners.
-        width: Standard deviation of the smoothing of the noise: strokes are about three times as
-            wide. 0 to 10 px.
-        seed: Another number, other strokes. 0 to 9999.
-        hold: Frames that hand-drawn noise lasts: 1 draws it anew in each frame, 0 keeps it for
+        length: How far strokes reach to each side; they are up to twice as long. Arc length that is
+            searched on each side. 0 to 60 px.
+        adapt: Makes strokes shorter where directions are uncertain, so that they do not cross
+            corners. Searches less far where the orientation is uncertain, (1 + A)^2 / 4 times the
+            length (6.3.1), which keeps strokes from crossing corners.
+        width: Strokes are about three times as wide as this. Standard deviation of the smoothing of
+            the noise. 0 to 10 px.
+        seed: Another number gives other strokes. 0 to 9999.
+        hold: Frames that grain and strokes last: 1 draws them anew in each frame, 0 keeps them for
             ever. 0 to 1000.
-        mix: Blend with the input: 0 leaves the picture as it was, 1 shows the filter alone. 0 to 1.
+        mix: Blends the result with the picture: 0 leaves the picture as it was, 1 shows the result
+            alone. 0 to 1.
 
     The other arguments are those of `isophote.apply`.
     """

@@ -114,13 +114,24 @@ test("presets are opened and saved; what is none is told", async () => {
   await page.close();
 });
 
+test("media stand beside the styles under the names of artists", async () => {
+  const page = await open();
+  const card = page.locator(".card", { hasText: /^Charcoal$/ });
+  assert.match(await card.getAttribute("title"), /^Charcoal: \S.*\.$/);
+  await card.click();
+  await page.waitForFunction(() => document.querySelector("#look-name").textContent === "Charcoal");
+  const look = await lookOf(page);
+  assert.deepEqual([look.style, look.parameters], ["ink", { style: "charcoal" }]);
+  await page.close();
+});
+
 test("broken links are told and leave the page usable", async () => {
   const page = await open("#look=%7B%22style%22:%22carto");
   assert.match(await message(page, "link"), /The link holds no look: .*Copy the whole link/);
   await page.evaluate(() => { location.hash = '#look={"style":"cartoonish"}'; });
   await page.getByText("The link's look cannot be shown").waitFor();
   await page.evaluate(() => { location.hash = '#look={"style":"watercolor","parameters":{"wobble":4}}'; });
-  await page.waitForFunction(() => document.querySelector("#look-name").textContent === "Watercolor");
+  await page.waitForFunction(() => document.querySelector("#look-name").textContent === "Watercolour");
   await settled(page);
   assert.equal(await page.locator(".note.error").count(), 0, "the message stays after a good link");
   await page.close();

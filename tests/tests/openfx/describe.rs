@@ -34,8 +34,11 @@ pub fn descriptors_say_what_the_standard_asks_for(binary: &Binary, effect: Expec
     let set = &described.descriptor.set;
     let label = if node.id == "tensor_view" { "Structure" } else { node.label };
     assert_eq!(set.text(kOfxPropLabel).unwrap(), label.replace('-', " "));
-    assert_eq!(set.text(kOfxImageEffectPluginPropGrouping).unwrap(), format!("Isophote/{}", node.group));
-    assert!(set.text(kOfxPropPluginDescription).unwrap().starts_with(node.doc));
+    assert_eq!(
+        set.text(kOfxImageEffectPluginPropGrouping).unwrap(),
+        format!("Isophote/{}{}", node.group[..1].to_uppercase(), &node.group[1..])
+    );
+    assert_eq!(set.text(kOfxPropPluginDescription).unwrap(), node.hint);
     let contexts = set.texts(kOfxImageEffectPropSupportedContexts);
     assert_eq!(contexts, ["OfxImageEffectContextFilter", "OfxImageEffectContextGeneral"]);
     let depths = set.texts(kOfxImageEffectPropSupportedPixelDepths);
@@ -90,7 +93,7 @@ fn check(effect: &Effect, name: &str, param: &Param) {
         }
         found += 1;
         let set = &control.set;
-        assert!(set.text(kOfxParamPropHint).unwrap().starts_with(param.doc), "{name}");
+        assert!(set.text(kOfxParamPropHint).unwrap().starts_with(param.hint), "{name}");
         assert_eq!(set.text(kOfxPropLabel).unwrap(), param.label);
         assert_eq!(set.text(kOfxParamPropScriptName).unwrap(), name);
         let ranges = [
@@ -159,6 +162,7 @@ pub fn controls_are_the_parameters_of_the_nodes(binary: &Binary, effect: Expecte
             }
         }
         let mut controls = BTreeSet::new();
+        let mut labels = BTreeSet::new();
         let mut groups = BTreeSet::new();
         let mut page = Vec::new();
         let mut parents = BTreeSet::new();
@@ -167,12 +171,24 @@ pub fn controls_are_the_parameters_of_the_nodes(binary: &Binary, effect: Expecte
             match param.kind.as_c_str() {
                 k if k == kOfxParamTypePage => page = param.set.texts(kOfxParamPropPageChild),
                 k if k == kOfxParamTypeGroup => assert!(groups.insert(name)),
-                _ => assert!(controls.insert(name)),
+                _ => {
+                    let [label, hint] =
+                        [kOfxPropLabel, kOfxParamPropHint].map(|p| param.set.text(p).unwrap());
+                    assert!(
+                        label.chars().count() < 20 && hint.chars().count() < 160,
+                        "{name}: {label}: {hint}"
+                    );
+                    assert!(labels.insert(label), "{name} has the label of another control");
+                    assert!(controls.insert(name));
+                }
             }
             parents.extend(param.set.text(kOfxParamPropParent));
         });
         assert_eq!(controls, names, "{}", effect.node.id);
         assert_eq!(page.iter().cloned().collect::<BTreeSet<_>>(), names);
+        // Where hosts have their own.
+        let last = page.last().unwrap();
+        assert!(last.ends_with("mix") || !names.iter().any(|name| name.ends_with("mix")), "{last}");
         assert!(parents.is_subset(&groups));
     }
     host.no_faults();

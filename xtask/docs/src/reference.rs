@@ -26,7 +26,7 @@ pub fn picture(node: &NodeSpec) -> String {
 /// A node that cannot be planned, or a kernel whose file cannot be read.
 pub fn page(node: &NodeSpec, root: &Path) -> Result<String> {
     let passes = passes(node, root)?;
-    let mut text = format!("# {} (`{}`)\n\n{}\n\n", node.label, node.id, node.doc);
+    let mut text = format!("# {} (`{}`)\n\n{}\n\n", node.label, node.id, node.text());
     let section = match node.section {
         "" => "The thesis has no section on it.".to_owned(),
         section => format!("Thesis: § {section}."),
@@ -77,7 +77,12 @@ fn ports(text: &mut String, node: &NodeSpec) {
 
 fn params(text: &mut String, node: &NodeSpec) {
     text.push_str("## Parameters\n\n| parameter | default | range | |\n|---|---|---|---|\n");
+    let mut group = "";
     for param in node.params() {
+        if param.group != group {
+            group = param.group;
+            let _ = writeln!(text, "| *{}* | | | |", capital(group));
+        }
         let _ = writeln!(
             text,
             "| `{}` | `{}` | {} | {} |",
@@ -105,7 +110,8 @@ fn range(param: &Param) -> String {
 
 fn explained(param: &Param) -> String {
     let options = param.options.iter().map(|option| format!(" `{}`: {}", option.id, option.doc));
-    format!("**{}.** {}{}", param.label, param.doc, options.collect::<String>())
+    let doc = [" ", param.doc].concat();
+    format!("**{}.** {}{}{}", param.label, param.hint, doc.trim_end(), options.collect::<String>())
 }
 
 /// Text within a table.
@@ -189,8 +195,7 @@ pub fn contents() -> String {
             group = node.group;
             let _ = write!(text, "\n## {}\n\n| node | |\n|---|---|\n", capital(group));
         }
-        let sentence = node.doc.split_inclusive(". ").next().unwrap_or(node.doc).trim();
-        let _ = writeln!(text, "| [`{0}`]({0}.md) | {1} |", node.id, cell(sentence));
+        let _ = writeln!(text, "| [`{0}`]({0}.md) | {1} |", node.id, cell(node.hint));
     }
     text
 }

@@ -98,7 +98,7 @@ pub fn shots(node: &NodeSpec) -> Vec<Shot> {
 /// The page.
 pub fn page(node: &NodeSpec) -> String {
     let id = node.id;
-    let mut text = format!("# {}\n\n{}\n\n", node.label, node.doc);
+    let mut text = format!("# {}\n\n{}\n\n", node.label, node.text());
     let _ = write!(
         text,
         "<div class=\"row\"><figure><img src=\"../pictures/before.jpg\" alt=\"The frame as it is rendered\" \
@@ -120,7 +120,13 @@ pub fn page(node: &NodeSpec) -> String {
 
 /// A control in words and pictures.
 fn control(text: &mut String, node: &NodeSpec, param: &Param) {
-    let _ = write!(text, "## {}\n\n{} `--set {}=…`, ", param.label, param.doc, param.id);
+    let _ = write!(
+        text,
+        "## {}\n\n{} `--set {}=…`, ",
+        param.label,
+        [param.hint, param.doc].join(" ").trim_end(),
+        param.id
+    );
     let _ = write!(text, "`{}` unless it is set.", shown(param));
     if let Some((other, value)) = together(node, param) {
         let _ = write!(text, " Shown with `{other}={value}`.");
@@ -138,7 +144,22 @@ fn control(text: &mut String, node: &NodeSpec, param: &Param) {
     text.push_str("</div>\n\n");
 }
 
-/// All styles as a grid.
+/// What a style draws with beside the medium that it has by itself, as styles of the grid.
+fn media(text: &mut String, node: &NodeSpec) {
+    let Some(param) = node.medium() else { return };
+    for (number, option) in param.options.iter().enumerate().filter(|(_, o)| o.id != shown(param)) {
+        let _ = write!(
+            text,
+            "<figure><a href=\"../styles/{id}.html\"><img src=\"../pictures/{name}.jpg\" alt=\"{label}\" \
+             loading=\"lazy\"></a><figcaption><a href=\"../styles/{id}.html\">{label}</a></figcaption></figure>",
+            id = node.id,
+            name = picture(node, param, number),
+            label = option.label
+        );
+    }
+}
+
+/// All styles and media as a grid.
 pub fn contents() -> String {
     let mut text = String::from("<div class=\"row\">");
     for node in registry::nodes().iter().filter(|node| is_style(node)) {
@@ -149,6 +170,7 @@ pub fn contents() -> String {
             id = node.id,
             label = node.label
         );
+        media(&mut text, node);
     }
     text.push_str("</div>\n");
     text
@@ -167,6 +189,8 @@ mod tests {
             assert_eq!(names.len(), shots.len(), "{}", node.id);
             let page = page(node);
             assert!(names.iter().all(|name| page.contains(&format!("pictures/{name}.jpg"))), "{}", node.id);
+            let media = node.medium().map_or(&[][..], |param| param.options);
+            assert!(media.iter().all(|medium| contents().contains(&format!(">{}</a>", medium.label))));
             for param in controls(node) {
                 let values: BTreeSet<String> = values(param).into_iter().map(|(value, _)| value).collect();
                 assert!(values.len() >= 2, "{}.{}", node.id, param.id);

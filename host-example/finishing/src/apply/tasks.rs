@@ -31,9 +31,9 @@ impl Task {
 /// Treatment of missing frames by a run.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
 pub enum OnMissing {
-    /// Nothing is started.
+    /// Stop before anything is made.
     Fail,
-    /// The other frames are done.
+    /// Leave them out, and make the others.
     Skip,
 }
 

@@ -11,12 +11,12 @@ use isophote_loader::abi::{
 /// Precision in which graphics devices compute a style; the CPU always computes exactly.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, ValueEnum)]
 pub enum Precision {
-    /// As the CPU does, in 32-bit floats.
+    /// The same as the CPU.
     #[default]
     Exact,
-    /// Colours in 16-bit floats: half the memory and traffic, differences that nobody sees.
+    /// Colours in 16 bits: half the memory, and no difference that the eye sees.
     Half,
-    /// As half, with colours interpolated by the device's samplers.
+    /// As half, and faster still: the card itself blends colours between pixels.
     Fast,
 }
 

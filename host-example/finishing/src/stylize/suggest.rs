@@ -3,7 +3,7 @@
 use std::fmt::{self, Display, Formatter};
 
 use isophote_loader::Library;
-use isophote_loader::catalogue::{Node, ParamKind};
+use isophote_loader::catalogue::Node;
 use isophote_loader::preset::LOOK;
 
 /// Words of artists and of other programs, with the style, the look or the medium that comes nearest.
@@ -72,9 +72,6 @@ pub const WORDS: [(&str, &str); 63] = [
     ("wood_engraving", "woodcut"),
     ("xdog", "difference_of_gaussians"),
 ];
-
-/// Parameter by which a style says which medium it draws with.
-const MEDIUM: &str = "style";
 
 /// A style that is there, as the command line names it.
 #[derive(Clone, Debug, PartialEq, Eq)]
@@ -149,20 +146,13 @@ impl<'a> Names<'a> {
     }
 
     fn medium(&self, wanted: &str) -> Option<Meant> {
-        let (node, id) = self.media().find(|(_, id)| *id == wanted)?;
-        Some(Meant { style: node.to_owned(), setting: Some(format!("{MEDIUM}={id}")) })
+        let (node, param, id) = self.media().find(|(.., id)| *id == wanted)?;
+        Some(Meant { style: node.to_owned(), setting: Some(format!("{param}={id}")) })
     }
 
-    /// Styles and what they draw with.
-    fn media(&self) -> impl Iterator<Item = (&'a str, &'a str)> {
-        self.nodes.iter().flat_map(|node| {
-            node.params.iter().filter(|param| param.id == MEDIUM).flat_map(|param| match &param.kind {
-                ParamKind::Choice { options, .. } => {
-                    options.iter().map(|option| (node.id, option.id)).collect()
-                }
-                _ => Vec::new(),
-            })
-        })
+    /// Styles, the parameter by which each chooses what it draws with, and what it may be.
+    fn media(&self) -> impl Iterator<Item = (&'a str, &'a str, &'a str)> + use<'a> {
+        self.nodes.iter().flat_map(|node| node.media().map(|(param, medium)| (node.id, param.id, medium.id)))
     }
 
     fn by_word(&self, wanted: &str) -> Option<Meant> {
@@ -177,7 +167,7 @@ impl<'a> Names<'a> {
 
     fn nearest(&self, wanted: &str) -> Option<Meant> {
         let ids = self.nodes.iter().map(|node| node.id).chain(self.looks.iter().copied());
-        let words = self.media().map(|(_, id)| id).chain(WORDS.iter().map(|(word, _)| *word));
+        let words = self.media().map(|(.., id)| id).chain(WORDS.iter().map(|(word, _)| *word));
         let near = near(&ids.chain(words).collect::<Vec<_>>(), wanted)?;
         self.named(near).or_else(|| self.by_word(near))
     }

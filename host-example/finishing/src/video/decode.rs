@@ -17,9 +17,9 @@ pub const EXACT: &str = "flags=bicubic+accurate_rnd+full_chroma_int+full_chroma_
 /// Treatment of a video that is damaged or cut short.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
 pub enum OnError {
-    /// Nothing is written.
+    /// Stop, and write nothing.
     Fail,
-    /// The part of it that can be read is written.
+    /// Write what can be read of it, and warn.
     Skip,
 }
 

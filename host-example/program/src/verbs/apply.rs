@@ -75,17 +75,17 @@ pub struct ApplyArgs {
     /// first is 1, all.
     #[arg(long, value_name = "LIST", allow_hyphen_values = true)]
     pub frames: Option<FrameList>,
-    /// Frames that are missing in the sequence: refuse to start, or leave them out.
+    /// Treatment of frames that are missing in the sequence.
     #[arg(long, value_enum, default_value_t = OnMissing::Fail)]
     pub on_missing: OnMissing,
     /// Limit of memory, such as 8GiB, which decides how many frames are worked on at once; frames that need more are
     /// refused [default: 4GiB, or what the machine or the container has].
     #[arg(long, value_name = "SIZE")]
     pub memory: Option<Bytes>,
-    /// Keeps complete results that are there already and makes the others, so that an interrupted run goes on.
+    /// Skips results that are already complete, so that an interrupted run goes on.
     #[arg(long, conflicts_with_all = ["force", "in_place"])]
     pub skip_existing: bool,
-    /// Replaces the pictures themselves by their results.
+    /// Overwrites the pictures with their results.
     #[arg(long)]
     pub in_place: bool,
     /// Treatment of results that are there.
@@ -109,7 +109,7 @@ pub struct ApplyArgs {
     /// Precision on graphics devices.
     #[command(flatten)]
     pub precision: PrecisionArgs,
-    /// Processor that the style is computed on.
+    /// Part of the computer that does the work.
     #[arg(long, value_enum, default_value_t = Backend::Auto)]
     pub backend: Backend,
     /// Colour space of the picture [default: what the file says by its ICC profile, chunks of PNG, chromaticities or
@@ -161,8 +161,7 @@ pub struct ApplyArgs {
     /// green say where it leads, 0.5 for nowhere, and alpha how much it counts.
     #[arg(long, value_name = "FILE", value_hint = ValueHint::FilePath)]
     pub flow: Option<PathBuf>,
-    /// Steadiness of a sequence, from 0 to 1: neighbouring frames are carried along motion and averaged before the style is
-    /// applied. Needs motion vectors in the EXR files, or --motion [default: what the style says].
+    /// Steadiness of a sequence against flicker, from 0 to 1: neighbouring frames are averaged along the motion. Needs motion vectors in the EXR files, or --motion [default: what the style says].
     #[arg(long, value_name = "S")]
     pub steadiness: Option<f32>,
     /// EXR files with motion vectors, one for each frame: mv.####.exr; or estimate, for optical flow of the pictures.
@@ -180,7 +179,7 @@ pub struct ApplyArgs {
     /// Frames per second of a video that is made of pictures [default: 24].
     #[arg(long, value_name = "N", value_parser = parse_rate)]
     pub fps: Option<f64>,
-    /// Treatment of a video that is damaged or cut short: fail, or write what can be read of it and warn.
+    /// Treatment of a video that is damaged or cut short.
     #[arg(long, value_enum, default_value_t = OnError::Fail)]
     pub on_error: OnError,
     /// Threads on the CPU; 0 for one per core.

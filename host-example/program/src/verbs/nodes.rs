@@ -71,14 +71,10 @@ fn list(library: &Library, catalogue: &Catalogue) -> String {
     for group in groups {
         text += &format!("\n{group}\n");
         for node in catalogue.nodes.iter().filter(|n| n.group == group) {
-            text += &format!("  {:column$}{}\n", node.id, first_sentence(node.doc));
+            text += &format!("  {:column$}{}\n", node.id, node.hint.trim_end_matches('.'));
         }
     }
     text + "\n`isophote nodes NODE` shows the parameters of a node.\n"
-}
-
-fn first_sentence(doc: &str) -> &str {
-    doc.split_once(". ").map_or(doc, |(first, _)| first).trim_end_matches('.')
 }
 
 fn describe(node: &Node) -> String {

@@ -19,7 +19,7 @@ use isophote_loader::catalogue::ParamKind;
 
 const AFTER_HELP: &str = "A parameter in the file may have keyframes instead of a value, such as \
     \"sigma_d\": {\"1001\": 2, \"1050\": 6}; with \"between\": \"step\" among them each value holds until the \
-    next key. \"name\", \"about\" and \"tags\" beside the style say what the preset is, to people.";
+    next key. \"name\", \"about\" and \"tags\" beside the style tell people what the preset is.";
 
 /// Options of `preset`.
 #[derive(Args, Debug)]
@@ -45,7 +45,7 @@ enum PresetCommand {
         #[arg(long, value_name = "N", allow_negative_numbers = true)]
         frame: Option<i64>,
     },
-    /// Checks whether presets can be used, and prints what is wrong with those that cannot.
+    /// Checks presets, and says what is wrong with those that do not work.
     Check {
         /// The presets.
         #[arg(required = true)]
@@ -56,7 +56,7 @@ enum PresetCommand {
 /// Options of `preset list`.
 #[derive(Args, Debug)]
 #[command(
-    after_help = "A look takes the place of a style or a preset anywhere: `isophote apply look:copperplate in.png out.png`."
+    after_help = "A look goes wherever a style goes: `isophote apply look:copperplate in.png out.png`."
 )]
 struct ListArgs {
     /// Lists those with this tag. May be repeated: all of them are wanted.
@@ -80,7 +80,7 @@ struct SaveArgs {
     /// Also writes the parameters that are not set, so that later changes of defaults do not matter.
     #[arg(long)]
     all: bool,
-    /// The name of the preset, for people.
+    /// Name of the preset, as lists show it.
     #[arg(long, value_name = "TEXT", value_parser = line)]
     name: Option<String>,
     /// A sentence on the look.

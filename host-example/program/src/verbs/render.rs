@@ -48,7 +48,7 @@ pub struct RenderArgs {
     /// with 24 frames per second, 49-72 is its third second.
     #[arg(long, value_name = "N|LIST", default_value = "1", value_parser = FrameList::or_count, allow_hyphen_values = true)]
     frames: FrameList,
-    /// Keeps complete pictures, or the video, that are there already, and makes the others.
+    /// Skips pictures, or the video, that are already complete.
     #[arg(long, conflicts_with = "force")]
     skip_existing: bool,
     #[command(flatten)]
@@ -69,10 +69,10 @@ pub struct RenderArgs {
     /// Frames per second of the animation, and of a video.
     #[arg(long, value_name = "N", default_value_t = 24.0)]
     fps: f32,
-    /// Applies exposure and tone mapping to EXR files too, as to PNG files and in the window.
+    /// Gives EXR files the exposure and tone mapping that the window shows, too.
     #[arg(long)]
     tone_mapped: bool,
-    /// Style of the frames: none, the id of a node, a look, or a graph file or preset (.json).
+    /// Style of the frames: none, a style, a look, or a preset or graph file (.json).
     #[arg(long, default_value = "none")]
     style: PathBuf,
     /// Sets a parameter of the style; node.id=value for one node of a graph. May be repeated.
@@ -85,8 +85,7 @@ pub struct RenderArgs {
     backend: Backend,
     #[command(flatten)]
     precision: PrecisionArgs,
-    /// Steadiness of the style over time, from 0 to 1: frames before are carried along the scene's motion and averaged
-    /// before the style is applied [default: what the style says].
+    /// Steadiness against flicker, from 0 to 1: frames are averaged with those before, along the scene's motion [default: what the style says].
     #[arg(long, value_name = "S")]
     steadiness: Option<f32>,
 }

@@ -38,8 +38,8 @@ impl SceneArgs {
 /// Meaning of a style's lengths.
 #[derive(Args, Clone, Copy, Debug)]
 pub struct LengthArgs {
-    /// What lengths of parameters are: pixels of a picture 1080 lines high, so that pictures of all sizes get the same look,
-    /// or pixels of the picture itself [default: what the preset says, else relative].
+    /// Picture that lengths, such as the width of lines, are meant for: one 1080 lines high, so that every size gets the same
+    /// look, or the picture itself [default: what the preset says, else relative].
     #[arg(long, value_parser = lengths())]
     pub lengths: Option<Lengths>,
 }
@@ -68,7 +68,7 @@ impl LengthArgs {
 /// Precision in which graphics devices compute a style.
 #[derive(Args, Clone, Copy, Debug)]
 pub struct PrecisionArgs {
-    /// Precision in which graphics devices compute; the CPU always computes exactly.
+    /// Accuracy of a graphics card; the CPU is always exact.
     #[arg(long, value_enum, default_value_t)]
     pub precision: Precision,
 }
@@ -76,7 +76,7 @@ pub struct PrecisionArgs {
 /// Treatment of files that are there already.
 #[derive(Args, Clone, Copy, Debug)]
 pub struct ForceArgs {
-    /// Replaces files that are there already; without it they stay, and the command is refused.
+    /// Overwrites files that exist; without it the command stops before it touches one.
     #[arg(long)]
     pub force: bool,
 }
@@ -96,7 +96,7 @@ impl ForceArgs {
 /// Silence on what goes well.
 #[derive(Args, Clone, Copy, Debug)]
 pub struct QuietArgs {
-    /// Says nothing where all goes well: no line with the result, its size and the time.
+    /// Prints nothing when all goes well.
     #[arg(long)]
     pub quiet: bool,
 }

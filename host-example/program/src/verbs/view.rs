@@ -31,7 +31,7 @@ pub struct ViewArgs {
     reading: ReadingArgs,
     #[command(flatten)]
     staging: StagingArgs,
-    /// A style for the keys 1, 2, ...: none, the id of a node, a look, or a graph file or preset (.json). May be repeated
+    /// A style for the keys 1, 2, ...: none, a style, a look, or a preset or graph file (.json). May be repeated
     /// [default: none and every node of the group styles].
     #[arg(long, value_name = "STYLE")]
     style: Vec<PathBuf>,

@@ -7,7 +7,7 @@ use std::sync::Arc;
 
 use crate::state::browser::entry::{Content, Group};
 use crate::state::browser::listing::{Found, Listing};
-use crate::state::look::{EditedLook, PLAIN};
+use crate::state::look::{EditedLook, PLAIN, medium_source};
 use isophote_files::error::Error;
 use isophote_loader::Library;
 
@@ -40,6 +40,10 @@ pub fn read(ListingRequest { library, folders }: ListingRequest) -> Listing {
     let nodes = library.catalogue().map(|catalogue| catalogue.nodes).unwrap_or_default();
     for node in nodes.iter().filter(|node| node.group == "styles") {
         listing.found.push(found(&library, Group::Styles, node.id.into()));
+        // What a style draws with is chosen like a style.
+        for (_, medium) in node.media() {
+            listing.found.push(found(&library, Group::Styles, medium_source(node, &medium)));
+        }
     }
     listing
 }

@@ -14,7 +14,7 @@ use isophote_scene::floor;
 /// The command line, quoted for a shell.
 pub fn line(session: &Session) -> String {
     let look = session.looks.seen();
-    let style = look.rebuilt().map_or_else(|| quoted_path(&look.source), quoted);
+    let style = quoted_path(&look.commanded());
     let mut words = vec!["isophote".to_owned()];
     let input = session.open.file().map_or_else(|| "SCENE.gltf".into(), quoted_path);
     match session.open.playback() {

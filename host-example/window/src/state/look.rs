@@ -14,7 +14,7 @@ use isophote_finishing::stylize::source;
 use isophote_finishing::stylize::style::{Setting, Style};
 use isophote_finishing::stylize::value::Value;
 use isophote_loader::Library;
-use isophote_loader::catalogue::Param;
+use isophote_loader::catalogue::{Choice, Node, Param};
 
 /// The style that leaves pictures as they are.
 pub const PLAIN: &str = "none";
@@ -32,6 +32,24 @@ pub struct EditedLook {
     opened: TypedPreset,
     /// Content of the graph file that it was opened with.
     graph: Option<Arc<str>>,
+}
+
+/// Mark between a style and one of its media in the name that a medium is opened by.
+const OF_STYLE: char = ':';
+
+/// Name that a medium of a style is opened by.
+pub fn medium_source(style: &Node, medium: &Choice) -> PathBuf {
+    format!("{}{OF_STYLE}{}", style.id, medium.id).into()
+}
+
+/// Name and preset of the medium that is opened by a name, if it is one.
+fn medium(library: &Library, name: &str) -> Option<(String, TypedPreset)> {
+    let (style, medium) = name.split_once(OF_STYLE)?;
+    let node = library.find_node(style).ok()?;
+    let (param, option) = node.media().find(|(_, option)| option.id == medium)?;
+    let mut preset = TypedPreset::bare(style.to_owned());
+    preset.params.set(param.id, &Value::Choice(option.id.to_owned()));
+    Some((option.label.to_owned(), preset))
 }
 
 /// One parameter of a look that can be changed.
@@ -65,10 +83,12 @@ impl EditedLook {
             return Ok(Self::plain());
         }
         let id = path.to_str().unwrap_or_default();
-        let (name, preset) = match library.find_node(id) {
-            Ok(node) => (node.label.to_owned(), TypedPreset::bare(node.id.to_owned())),
+        let node =
+            library.find_node(id).map(|node| (node.label.to_owned(), TypedPreset::bare(node.id.to_owned())));
+        let (name, preset) = match node.ok().or_else(|| medium(library, id)) {
+            Some(plain) => plain,
             // Whatever is no node may be a file; if it is not, this says so in the best words.
-            Err(_) => {
+            None => {
                 Style::load(library, path, &[])?;
                 let text = source::read(path)?;
                 let file = path.file_name().unwrap_or_default().to_string_lossy().into_owned();
@@ -298,10 +318,25 @@ impl EditedLook {
         Ok(Self { preset, ..look })
     }
 
-    /// Settings that turn what it was opened as into it.
+    /// True for a medium of a style, whose name no other program knows.
+    fn is_medium(&self) -> bool {
+        let source = self.source.to_str().and_then(|source| source.split_once(OF_STYLE));
+        source.is_some_and(|(style, _)| style == self.opened.style)
+    }
+
+    /// The style of a command line that makes it: what it was opened as, or another graph.
+    pub fn commanded(&self) -> PathBuf {
+        match self.rebuilt() {
+            Some(graph) => graph.into(),
+            None if self.is_medium() => self.opened.style.clone().into(),
+            None => self.source.clone(),
+        }
+    }
+
+    /// Settings that turn the style of a command line into it.
     pub fn settings(&self, parameters: &[Parameter]) -> Vec<String> {
         // Of another graph nothing is set yet.
-        let opened = Some(&self.opened.params).filter(|_| self.rebuilt().is_none());
+        let opened = Some(&self.opened.params).filter(|_| self.rebuilt().is_none() && !self.is_medium());
         let is_changed = |parameter: &&Parameter| {
             let before = opened.and_then(|opened| opened.get(&parameter.name));
             before != self.preset.params.get(&parameter.name)

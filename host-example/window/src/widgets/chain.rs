@@ -132,7 +132,7 @@ fn add(ui: &mut Ui, session: &mut Session) {
             for group in groups {
                 ui.menu_button(theme::capital(group), |ui| {
                     for node in session.looks.fitting().iter().filter(|node| node.group == group) {
-                        if ui.button(node.label).on_hover_text(node.doc).clicked() {
+                        if ui.button(node.label).on_hover_text(node.hint).clicked() {
                             chosen = Some(node.id);
                             ui.close();
                         }

@@ -81,12 +81,18 @@ fn label(ui: &mut Ui, session: &Session, parameter: &Parameter) -> Response {
     let width = (ui.available_width() * SHARE).clamp(LABEL[0], LABEL[1]);
     // It is no stop for the focus.
     let (rect, room) = ui.allocate_exact_size(vec2(width, ROW), Sense::CLICK);
-    let mut hint = parameter.param.doc.to_owned();
+    let mut hint = parameter.param.hint.to_owned();
+    hint += match parameter.param.unit {
+        "px" => " In pixels of a picture 1080 lines high.",
+        "%" => " In per cent.",
+        "deg" => " In degrees.",
+        _ => "",
+    };
     if is_idle {
-        hint += "\n\nIt has no effect with the other values as they are.";
+        hint += "\n\nIt does nothing while the other settings are as they are.";
     }
     if look.is_animated(parameter) {
-        hint += "\n\nIt changes from frame to frame; this is its value at the first. To change it here gives it one value.";
+        hint += "\n\nIt is animated; this is its value in the first frame. Changing it here makes it the same in all frames.";
     }
     match look.way_back_of(parameter) {
         Some(Goal::Look) => {

@@ -30,6 +30,11 @@ impl Unit {
     }
 }
 
+/// A hint and the documentation that follows it, after an empty line.
+pub(crate) fn paragraphs(hint: &str, doc: &str) -> String {
+    if doc.is_empty() { hint.to_owned() } else { format!("{hint}\n\n{doc}") }
+}
+
 /// One parameter of a node.
 #[derive(Clone, Copy, Debug)]
 pub struct Param {
@@ -37,7 +42,9 @@ pub struct Param {
     pub id: &'static str,
     /// For people.
     pub label: &'static str,
-    /// One sentence, with the symbol and source in the thesis.
+    /// One sentence or two in artists' words, which panels show beside the control.
+    pub hint: &'static str,
+    /// Documentation that follows the hint: symbols, equations and sources in the thesis; empty where the hint says all.
     pub doc: &'static str,
     /// Default; its type is the parameter's.
     pub default: Value,
@@ -63,6 +70,7 @@ impl Param {
         Self {
             id,
             label,
+            hint: "",
             doc: "",
             default,
             range,
@@ -113,10 +121,21 @@ impl Param {
         self
     }
 
-    /// The sentence of documentation.
+    /// The hint of panels.
+    pub const fn hint(mut self, hint: &'static str) -> Self {
+        self.hint = hint;
+        self
+    }
+
+    /// The documentation that follows the hint.
     pub const fn doc(mut self, doc: &'static str) -> Self {
         self.doc = doc;
         self
+    }
+
+    /// All that is written about it: the hint, an empty line, and the documentation where there is any.
+    pub fn text(&self) -> String {
+        paragraphs(self.hint, self.doc)
     }
 
     /// Another default of the same type.

@@ -2,6 +2,7 @@
 //! this declaration.
 
 use crate::declare::choice::Selectable;
+use crate::declare::param::paragraphs;
 pub use crate::declare::param::{Param, Unit};
 use crate::declare::value::Value;
 use crate::frames::Frames;
@@ -85,7 +86,9 @@ pub struct NodeSpec {
     pub label: &'static str,
     /// `structure`, `smoothing`, `lines`, `painting`, `coherence`, `colour`, `time` or `styles`.
     pub group: &'static str,
-    /// One paragraph.
+    /// One sentence in artists' words, which lists and panels show.
+    pub hint: &'static str,
+    /// One paragraph of documentation, with symbols and equations.
     pub doc: &'static str,
     /// Sections of the thesis, such as "3.4".
     pub section: &'static str,
@@ -101,7 +104,7 @@ pub struct NodeSpec {
 
 /// `mix`, which every node from colour to colour has.
 pub const MIX: Param = Param::float("mix", "Mix", 1.0, [0.0, 1.0])
-    .doc("Blend with the input: 0 leaves the picture as it was, 1 shows the filter alone.")
+    .hint("Blends the result with the picture: 0 leaves the picture as it was, 1 shows the result alone.")
     .group("output")
     .structural()
     .neutral_at_zero();
@@ -110,28 +113,29 @@ pub const MIX: Param = Param::float("mix", "Mix", 1.0, [0.0, 1.0])
 pub(crate) const HOLD: Param = Param::int("hold", "Hold", 0, [0, 1000])
     .slider(0.0, 24.0)
     .group("time")
-    .doc("Frames that hand-drawn noise lasts: 1 draws it anew in each frame, 0 keeps it for ever.");
+    .hint("Frames that grain and strokes last: 1 draws them anew in each frame, 0 keeps them for ever.");
 
 /// `steadiness` of nodes that carry what they have found from frame to frame.
 pub(crate) const STEADINESS: Param = Param::float("steadiness", "Steadiness", 0.0, [0.0, 1.0])
     .structural()
     .group("time")
-    .doc(
+    .hint("How calm moving pictures are: neighbouring frames are averaged along the motion. 0 is off, 0.5 suits most shots.").doc(
         "How much neighbouring frames count, carried here along the motion of things: 0 leaves each frame alone, 0.5 is \
          for sequences, 1 lets all frames of the window count alike.",
     );
 
 /// `window` of the same nodes.
-pub(crate) const WINDOW: Param = Param::int("window", "Window", 2, [0, 8])
+pub(crate) const WINDOW: Param = Param::int("window", "Frames around", 2, [0, 8])
     .structural()
     .group("time")
-    .doc("Neighbouring frames that count, to each side as far as they and the motion from them are known.");
+    .hint("Neighbouring frames that count, to each side.")
+    .doc("They count as far as they and the motion from them are known.");
 
 /// `renewal` of nodes whose marks motion carries.
-pub(crate) const RENEWAL: Param = Param::int("renewal", "Renewal", 8, [0, 16])
+pub(crate) const RENEWAL: Param = Param::int("renewal", "Mark lifetime", 8, [0, 16])
     .structural()
     .group("time")
-    .doc(
+    .hint("Frames for which marks travel with the motion before they are drawn anew; 0 leaves them on the screen.").doc(
         "Frames for which motion carries marks where `steadiness` is above 0 and no rest positions are known, before they \
          begin anew; two layers take turns. A frame depends on the motion of as many frames before it, less two. 0 or 1 \
          leaves marks on the screen.",
@@ -183,7 +187,20 @@ const TIME_PORTS: [Port; 4] = [
     },
 ];
 
+/// Id of the parameter by which a style chooses between media.
+const MEDIUM: &str = "style";
+
 impl NodeSpec {
+    /// All that is written about it: the hint, an empty line, and the documentation.
+    pub fn text(&self) -> String {
+        paragraphs(self.hint, self.doc)
+    }
+
+    /// The parameter by which a style chooses what is drawn with, where it has one: its options are known as styles are.
+    pub fn medium(&self) -> Option<&'static Param> {
+        self.own_params.iter().find(|param| self.group == "styles" && param.id == MEDIUM)
+    }
+
     /// All parameters in the order of panels: the node's own, then `mix` where it applies.
     pub fn params(&self) -> impl Iterator<Item = &'static Param> + use<> {
         static COMMON: [Param; 1] = [MIX];

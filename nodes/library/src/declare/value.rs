@@ -27,7 +27,7 @@ pub struct Choice {
     pub id: &'static str,
     /// For people.
     pub label: &'static str,
-    /// Purpose.
+    /// One sentence, which panels show beside the option.
     pub doc: &'static str,
 }
 

@@ -11,41 +11,51 @@ use crate::stages::tensor_options::TensorOptions;
 use crate::stages::{ADVANCED, LOOK, flow_bilateral, flow_map, oriented_bilateral, structure_tensor};
 use isophote_engine::{ImageId, PlanBuilder};
 
-pub(crate) const DETAIL: Param = Param::float("detail", "Detail", 0.5, [0.0, 1.0]).group(LOOK).doc(
-    "How much survives the abstraction: scales `sigma_r` from 3 to 1/3 times and `sigma_d` from 2 to 1/2.",
-);
-pub(crate) const ABSTRACTION: Param =
-    Param::choice("abstraction", "Abstraction", Filter::Oriented.selected()).group(ADVANCED).doc(
-        "Bilateral filter: across and along the local orientation (3.4), or along stream lines (3.5), whose \
+pub(crate) const DETAIL: Param = Param::float("detail", "Detail", 0.5, [0.0, 1.0])
+    .group(LOOK)
+    .hint("How much of the picture's detail stays: low values give flat areas, high ones keep small things.")
+    .doc("Scales `sigma_r` from 3 to 1/3 times and `sigma_d` from 2 to 1/2.");
+pub(crate) const ABSTRACTION: Param = Param::choice(
+    "abstraction",
+    "Smoothing method",
+    Filter::Oriented.selected(),
+)
+.group(ADVANCED)
+.hint("How colours are flattened: along the edges, along flowing lines, or in all directions alike.")
+.doc(
+    "Bilateral filter: across and along the local orientation (3.4), or along stream lines (3.5), whose \
          own scales then grow with `sigma_d` / 3 and `sigma_r` / 4.25; or without regard to it, by the full \
          window (3.2) or along rows and then columns (3.3).",
-    );
+);
 /// Iterations of styles whose regions are all that they abstract.
-pub(crate) const N_A: Param = Param::int("n_a", "Iterations", 4, [0, 16])
+pub(crate) const N_A: Param = Param::int("n_a", "Smoothing rounds", 4, [0, 16])
     .slider(0.0, 8.0)
     .structural()
     .group(ADVANCED)
-    .doc("Bilateral iterations.");
-pub(crate) const SIGMA_D: Param = Param::length("sigma_d", "Sigma d", 3.0, [0.1, 20.0])
+    .hint("How often the colours are smoothed: more rounds give flatter areas.")
+    .doc("Bilateral iterations (n_a).");
+pub(crate) const SIGMA_D: Param = Param::length("sigma_d", "Smoothing reach", 3.0, [0.1, 20.0])
     .slider(0.5, 10.0)
     .group(ADVANCED)
+    .hint("How far colours are smoothed over what is around them.")
     .doc("Spatial standard deviation of the bilateral filter.");
-pub(crate) const SIGMA_R: Param = Param::float("sigma_r", "Sigma r", 4.25, [0.1, 200.0])
+pub(crate) const SIGMA_R: Param = Param::float("sigma_r", "Colour tolerance", 4.25, [0.1, 200.0])
     .slider(0.5, 30.0)
     .group(ADVANCED)
+    .hint("How different colours may be and still be smoothed into one.")
     .doc("Standard deviation of the bilateral filter in range, CIELAB units.");
 
 choice! {
     /// The bilateral filter.
     enum Filter {
-        /// Across and along the local orientation (3.4).
-        Oriented ("oriented", "Oriented bilateral"),
-        /// Along stream lines (3.5).
-        Flow ("flow", "Flow bilateral"),
-        /// By the full window (3.2).
-        Full ("full", "Full bilateral"),
-        /// Along rows and then columns (3.3).
-        Separable ("xy", "Separable bilateral"),
+        /// Across and along the edges.
+        Oriented ("oriented", "Along edges"),
+        /// Across the edges and along flowing lines.
+        Flow ("flow", "Along flowing lines"),
+        /// In all directions alike.
+        Full ("full", "All directions"),
+        /// Along rows and then columns.
+        Separable ("xy", "Rows, then columns"),
     }
 }
 

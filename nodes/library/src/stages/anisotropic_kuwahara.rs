@@ -11,40 +11,41 @@ use crate::stages::structure_tensor::{self, of_color_and_guides};
 use crate::stages::tensor_options::{Guides, TensorOptions};
 use isophote_engine::{ImageId, PlanBuilder};
 
-pub(crate) const RADIUS: Param = Param::length("radius", "Radius", 6.0, [0.0, 40.0]).slider(1.0, 16.0).doc(
+pub(crate) const RADIUS: Param = Param::length("radius", "Radius", 6.0, [0.0, 40.0]).slider(1.0, 16.0).hint("Size of the patches that colours are averaged over: larger ones paint more coarsely.").doc(
     "Radius of the disc that is stretched to an ellipse (r); at every level the same number of its pixels.",
 );
-pub(crate) const ALPHA: Param = Param::float("alpha", "Roundness", 1.0, [0.25, 100.0]).slider(0.25, 4.0).doc(
+pub(crate) const ALPHA: Param = Param::float("alpha", "Roundness", 1.0, [0.25, 100.0]).slider(0.25, 4.0).hint("How round the patches stay: low values stretch them far along the forms.").doc(
     "Tunes the ellipse (alpha of 5.22): up to ((1 + alpha) / alpha)^2 times as long as wide, 4 by default.",
 );
-pub(crate) const LEVELS: Param = Param::int("levels", "Levels", 1, [1, MAX_LEVELS as i32])
+pub(crate) const LEVELS: Param = Param::int("levels", "Scales", 1, [1, MAX_LEVELS as i32])
     .slider(1.0, 6.0)
     .structural()
+    .hint("Sizes at which the picture is painted: more give large strokes where little happens.")
     .doc("Scales, each half as large as the one before (5.5); 1 for the filter at a single scale.");
-pub(crate) const P_S: Param = Param::float("p_s", "Detail", 0.5, [0.0, 10.0])
+pub(crate) const P_S: Param = Param::float("p_s", "Fine detail", 0.5, [0.0, 10.0])
     .slider(0.0, 2.0)
+    .hint("How much of the finer scales shows where the picture varies. Counts with several scales.")
     .doc("With several levels: how much of each scale's own picture stays where it varies (p_s of 5.5.2).");
-pub(crate) const P_D: Param = Param::float("p_d", "Detail by scale", 1.25, [0.1, 10.0])
+pub(crate) const P_D: Param = Param::float("p_d", "Coarse detail", 1.25, [0.1, 10.0])
     .slider(0.5, 2.0)
+    .hint("How much more detail the coarser scales keep than the finer ones. Counts with several scales.")
     .doc("With several levels: factor on `p_s` from each scale to the coarser one (p_d of 5.5.2).");
 pub(crate) const TAU_V: Param = Param::float("tau_v", "Noise threshold", 0.1, [0.0, 1.0])
     .slider(0.0, 0.5)
+    .hint("Differences below this are taken for noise and painted over. Counts with several scales.")
     .doc("With several levels: how little variation is taken for none (tau_v of 5.5.2).");
-pub(crate) const TAU_W: Param = Param::float("tau_w", "Least deviation", 0.02, [0.001, 1.0])
+pub(crate) const TAU_W: Param = Param::float("tau_w", "Least contrast", 0.02, [0.001, 1.0])
     .slider(0.001, 0.1)
-    .doc("With several levels: least standard deviation of a sector in the measure of variation (tau_w of 5.5.2).");
-pub(crate) const LIMIT_RANGE: Param = Param::bool("limit_range", "Limit range", false).doc(
-    "With several levels: keeps each coarser scale within the range of the pixels below it, where Lanczos resampling \
-     as published (5.5.1) draws dark rings around highlights.",
-);
+    .hint("Contrast that even flat patches are taken to have. Counts with several scales.").doc("With several levels: least standard deviation of a sector in the measure of variation (tau_w of 5.5.2).");
+pub(crate) const LIMIT_RANGE: Param = Param::bool("limit_range", "No dark rings", false).hint("Keeps dark rings away from highlights. Counts with several scales.").doc("Keeps each coarser scale within the range of the pixels below it, where Lanczos resampling as published (5.5.1) draws dark rings around highlights.");
 
 choice! {
     /// The weighting functions of the sectors.
     pub(crate) enum Weights {
-        /// Sampled from their definition (5.33).
-        Texture ("texture", "Texture"),
-        /// Polynomials (5.38).
-        Polynomial ("polynomial", "Polynomial"),
+        /// Sampled from their definition.
+        Texture ("texture", "Exact"),
+        /// Polynomials, which are faster.
+        Polynomial ("polynomial", "Fast"),
     }
 }
 

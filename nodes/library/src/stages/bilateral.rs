@@ -5,7 +5,7 @@ use crate::declare::spec::Param;
 use crate::kernels::smoothing::bilateral::{self, Options, Window};
 use isophote_engine::{ImageId, PlanBuilder};
 
-pub(crate) const CUTOFF: Param = Param::float("cutoff", "Cut-off", 3.0, [1.0, 4.0]).slider(1.0, 3.0).doc(
+pub(crate) const CUTOFF: Param = Param::float("cutoff", "Window size", 3.0, [1.0, 4.0]).slider(1.0, 3.0).hint("Size of the neighbourhood that is looked at, in smoothing reaches: smaller is faster and rougher.").doc(
     "Radius of the round window in standard deviations, rounded up to pixels. 3 keeps all that counts; the \
      9x9 window that is usual for sigma 3 ends at 1.33.",
 );
@@ -13,10 +13,10 @@ pub(crate) const CUTOFF: Param = Param::float("cutoff", "Cut-off", 3.0, [1.0, 4.
 choice! {
     /// The window.
     pub(crate) enum Kernel {
-        /// A disc (3.2).
-        Full ("full", "Full"),
-        /// A row and then a column (3.3).
-        Separable ("xy", "Separable along x and y"),
+        /// A disc.
+        Full ("full", "All directions"),
+        /// A row and then a column.
+        Separable ("xy", "Rows, then columns"),
     }
 }
 

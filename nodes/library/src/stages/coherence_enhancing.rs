@@ -12,50 +12,56 @@ use crate::stages::tensor_options::TensorOptions;
 use crate::stages::{line_integral_convolution as lic, structure_tensor};
 use isophote_engine::{ImageId, PlanBuilder};
 
-pub(crate) const ITERATIONS: Param = Param::int("iterations", "Iterations", 5, [1, 50])
+pub(crate) const ITERATIONS: Param = Param::int("iterations", "Rounds", 5, [1, 50])
     .slider(1.0, 15.0)
     .structural()
-    .doc("Rounds of smoothing and sharpening (N): the strength of the abstraction.");
-pub(crate) const STEPPING: Param = Param::choice("stepping", "Stepping", Stepping::Even.selected()).doc(
+    .hint("Rounds of smoothing and sharpening: more of them draw the picture into simpler, clearer shapes.")
+    .doc("Iterations N: the strength of the abstraction.");
+pub(crate) const STEPPING: Param = Param::choice("stepping", "Line steps", Stepping::Even.selected()).hint("Whether lines are followed evenly, or in longer steps where they are long: faster, and less smooth.").doc(
     "Steps along stream lines: of one pixel, as the published filter's, or up to 2.5 times as long where lines are, \
      which takes less time and smooths less.",
 );
-pub(crate) const RHO: Param = Param::length("rho", "Rho", 1.0, [0.0, 20.0])
+pub(crate) const RHO: Param = Param::length("rho", "Flow scale", 1.0, [0.0, 20.0])
     .slider(0.0, 6.0)
     .structural()
+    .hint("Size of the forms that are followed: larger values turn more gently.")
     .doc("Standard deviation of the Gaussian that smooths the structure tensor.");
 pub(crate) const RELAX_THRESHOLD: Param = Param::float(
     "relax_threshold",
-    "Relaxation threshold",
+    "Flow threshold",
     0.0447,
     [0.0, 10.0],
 )
 .slider(0.0, 0.2)
 .structural()
+.hint("Where the picture is flatter than this, its direction is taken from around it; 0 trusts every edge.")
 .doc(
     "Where sqrt(lambda1) is not above this, the orientation is filled in from around it at first, and \
              from the step before later on (2.7.3); 0 trusts every gradient.",
 );
-pub(crate) const SIGMA_T: Param = Param::length("sigma_t", "Sigma t", 6.0, [0.0, 40.0])
+pub(crate) const SIGMA_T: Param = Param::length("sigma_t", "Smoothing length", 6.0, [0.0, 40.0])
     .slider(0.0, 15.0)
+    .hint("How far colours are smoothed along lines and edges.")
     .doc("Standard deviation of the smoothing along stream lines (sigma_s of 6.3.1).");
 pub(crate) const MAX_ANGLE: Param = Param::float("max_angle", "Largest turn", 22.5, [0.0, 90.0])
     .degrees()
+    .hint("Smoothing stops where a line turns by more than this from pixel to pixel; 0 for never.")
     .doc("A stream line ends where it turns by more in one step; 0 for never.");
-pub(crate) const ADAPT: Param = Param::choice("adapt", "Adapt length", Adaption::Anisotropy.selected())
+pub(crate) const ADAPT: Param = Param::choice("adapt", "Shorten lines", Adaption::Anisotropy.selected())
     .uniform()
+    .hint("Where smoothing stops early: where directions are uncertain, or where lines turn.")
     .doc("Shortens stream lines where the orientation is uncertain (6.3.1), or as they turn (6.3.2).");
-pub(crate) const SHOCK: Param = Param::choice("shock", "Shock filter", Shock::GradientDirected.selected())
-.doc("What sharpens: the local filter (6.4.3), or three steps of Weickert's equation (6.4.2), which only `sigma_i` controls.");
+pub(crate) const SHOCK: Param = Param::choice("shock", "Sharpening", Shock::GradientDirected.selected())
+.hint("Sharpening after each smoothing: at once, or in small steps that let lines grow together.").doc("What sharpens: the local filter (6.4.3), or three steps of Weickert's equation (6.4.2), which only `sigma_i` controls.");
 pub(crate) const SIGMA_A: Param = Param::length("sigma_a", "Edge smoothing", 1.5, [0.0, 20.0])
     .slider(0.0, 5.0)
     .structural()
-    .doc("Standard deviation of the last smoothing along the edges, against the jagged steps of the shocks; 0 for none.");
+    .hint("Last smoothing along the edges, against jagged steps; 0 for none.").doc("Standard deviation of the last smoothing along the edges, against the jagged steps of the shocks; 0 for none.");
 
 choice! {
     /// Method by which stream lines are stepped.
     enum Stepping {
-        /// In steps of one pixel (§ 6.3).
+        /// In steps of one pixel.
         Even ("even", "Even"),
         /// In fewer and longer ones where lines are long.
         Stretched ("stretched", "Stretched"),
@@ -65,20 +71,20 @@ choice! {
 choice! {
     /// Measure that shortens the stream lines.
     enum Adaption {
-        /// An uncertain orientation (6.3.1).
-        Anisotropy ("anisotropy", "By anisotropy"),
-        /// Turns (6.3.2).
-        Angle ("angle", "By turning angle"),
+        /// An uncertain direction.
+        Anisotropy ("anisotropy", "Where uncertain"),
+        /// Turns of the line.
+        Angle ("angle", "Where they turn"),
     }
 }
 
 choice! {
     /// Filter that sharpens.
     pub(crate) enum Shock {
-        /// The local filter (6.4.3).
-        GradientDirected ("gradient_directed", "Gradient-directed"),
-        /// Steps of Weickert's equation (6.4.2).
-        CoherenceEnhancing ("coherence_enhancing", "Coherence-enhancing"),
+        /// A filter that sharpens at once.
+        GradientDirected ("gradient_directed", "At once"),
+        /// Small steps that let lines grow together.
+        CoherenceEnhancing ("coherence_enhancing", "Small steps"),
     }
 }
 

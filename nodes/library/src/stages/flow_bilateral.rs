@@ -9,29 +9,39 @@ use crate::kernels::smoothing::oriented_bilateral::{self, Direction};
 use crate::stages::oriented_bilateral::{self as across, SAMPLING, SIGMA_DG};
 use isophote_engine::{ImageId, PlanBuilder};
 
-pub(crate) const SIGMA_DT: Param = Param::length("sigma_dt", "Sigma along flow", 8.0, [0.0, 40.0])
+pub(crate) const SIGMA_DT: Param = Param::length("sigma_dt", "Reach along", 8.0, [0.0, 40.0])
     .slider(0.0, 20.0)
+    .hint("How far colours are smoothed along the flow.")
     .doc("Standard deviation of the domain weight along stream lines, cut at 2 sigma.");
 pub(crate) const SIGMA_RG: Param = across::SIGMA_RG.with_default(Value::Float(2.0));
-pub(crate) const SIGMA_RT: Param = Param::float("sigma_rt", "Range along", 14.0, [0.01, 200.0])
+pub(crate) const SIGMA_RT: Param = Param::float("sigma_rt", "Tolerance along", 14.0, [0.01, 200.0])
     .slider(0.5, 60.0)
+    .hint("How different colours may be along the flow and still be smoothed into one.")
     .doc("Standard deviation of the range weight along stream lines, in CIELAB units.");
-pub(crate) const INTEGRATOR: Param = Param::choice("integrator", "Integrator", Stepping::Midpoint.selected())
-    .uniform()
-    .doc("How lines are stepped: Euler's method (2.177) or the second-order midpoint method (2.182).");
-pub(crate) const PLACEMENT: Param =
-    Param::choice("placement", "Placement", Placement::PixelCentres.selected()).uniform().doc(
-        "Where lines are sampled: every pixel of length, or where they cross the centre of a row or column, \
+pub(crate) const INTEGRATOR: Param =
+    Param::choice("integrator", "Line tracing", Stepping::Midpoint.selected())
+        .uniform()
+        .hint("How lines are followed: simply, or more exactly.")
+        .doc("How lines are stepped: Euler's method (2.177) or the second-order midpoint method (2.182).");
+pub(crate) const PLACEMENT: Param = Param::choice(
+    "placement",
+    "Sampling",
+    Placement::PixelCentres.selected(),
+)
+.uniform()
+.hint("Where lines are sampled: at even distances, or at centres of pixels, which blurs less.")
+.doc(
+    "Where lines are sampled: every pixel of length, or where they cross the centre of a row or column, \
          which blurs less (Listings 3.2 and 3.3).",
-    );
+);
 
 choice! {
     /// Method by which stream lines are stepped.
     pub(crate) enum Stepping {
-        /// Euler's method (2.177).
-        Euler ("euler", "Euler"),
-        /// The midpoint method, a second-order Runge-Kutta method (2.182).
-        Midpoint ("rk2", "Runge-Kutta 2"),
+        /// Euler's method.
+        Euler ("euler", "Simple"),
+        /// The midpoint method, a second-order Runge-Kutta method.
+        Midpoint ("rk2", "Exact"),
     }
 }
 

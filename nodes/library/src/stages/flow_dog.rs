@@ -32,17 +32,18 @@ pub(crate) const OBJECT_ID: Port = Port {
     optional: true,
     doc: "Object numbers; borders between objects draw lines.",
 };
-pub(crate) const SIGMA_M: Param = Param::length("sigma_m", "Sigma m", 3.0, [0.0, 60.0])
+pub(crate) const SIGMA_M: Param = Param::length("sigma_m", "Line smoothing", 3.0, [0.0, 60.0])
     .slider(0.0, 15.0)
-    .doc("Standard deviation of the smoothing along the edges; longer lines and less noise.");
+    .hint("How far lines are smoothed along themselves: more gives longer lines and less noise.")
+    .doc("Standard deviation of the smoothing along the edges.");
 
 choice! {
     /// The window of the filter.
     pub(crate) enum Kernel {
-        /// Across the tangent at each pixel, then along its stream line.
-        Separable ("separable", "Separable"),
-        /// Across the tangent at every point of the stream line.
-        TwoDimensional ("two_dimensional", "Two-dimensional"),
+        /// Across the edge at each pixel, then along the line.
+        Separable ("separable", "Fast"),
+        /// Across the edge at every point of the line.
+        TwoDimensional ("two_dimensional", "Thorough"),
     }
 }
 

@@ -6,13 +6,15 @@ use crate::kernels::structure::{flow_bend, flow_field};
 use isophote_engine::{Class, ImageId, PlanBuilder};
 
 pub(crate) const STRENGTH: Param = Param::float("strength", "Strength", 1.0, [0.0, 1.0])
+    .hint("How far directions give way to those that are painted.")
     .doc("How far the field gives way where alpha is 1.");
 pub(crate) const SOFTNESS: Param = Param::length("softness", "Softness", 8.0, [0.0, 64.0])
     .slider(0.0, 32.0)
     .structural()
+    .hint("How gently the painted directions turn.")
     .doc("Standard deviation of the Gaussian that smooths what was painted, so that directions turn gently.");
-pub(crate) const INVERT_Y: Param = Param::bool("invert_y", "Invert y", false)
-    .doc("For maps whose green grows upwards, as OpenGL has it; off where it grows downwards.");
+pub(crate) const INVERT_Y: Param = Param::bool("invert_y", "Flip green", false)
+    .hint("For maps whose green points upwards, as in OpenGL; off where it points downwards.");
 
 /// A painted flow map, smoothed: what other nodes bend the tensors of their own by.
 #[derive(Clone, Copy, Debug)]

@@ -10,39 +10,43 @@ use crate::stages::{ADVANCED, LOOK};
 pub(crate) const LINE_WIDTH: Param = Param::length("line_width", "Line width", 2.0, [0.2, 40.0])
     .slider(0.8, 10.0)
     .group(LOOK)
-    .doc("Width of lines: scales `sigma_e` by width / 2 and, above 2, `sigma_m` by its root, so that wide lines do not break. None is narrower than a pixel of the picture: it is lighter instead.");
+    .hint("How thick lines are. Wide lines also run longer, so that they do not break.").doc("Scales `sigma_e` by width / 2 and, above 2, `sigma_m` by its root. None is narrower than a pixel of the picture: it is lighter instead.");
 pub(crate) const LINE_AMOUNT: Param = Param::float("line_amount", "Line amount", 0.5, [0.0, 1.0])
     .group(LOOK)
-    .doc("How many lines: 0 draws none, 1 draws them at faint edges too; scales 1 - `tau`.");
-pub(crate) const OUTLINE_WIDTH: Param = Param::float("outline_width", "Outline width", 1.0, [0.0, 8.0])
-    .slider(0.0, 3.0)
-    .group(LOOK)
-    .doc("Width of lines around objects against that of the others, where depth, object ids or normals are given; 0 draws none.");
+    .hint("How many lines there are: 0 draws none, 1 draws faint edges too.")
+    .doc("Scales 1 - `tau`.");
+pub(crate) const OUTLINE_WIDTH: Param =
+    Param::float("outline_width", "Outline width", 1.0, [0.0, 8.0]).slider(0.0, 3.0).group(LOOK).hint(
+        "Width of outlines of objects against other lines; 0 draws none. Needs depth, object ids or normals.",
+    );
 pub(crate) const CREASE_WIDTH: Param = Param::float("crease_width", "Crease width", 1.0, [0.0, 8.0])
     .slider(0.0, 3.0)
     .group(LOOK)
-    .doc("Width of lines where a surface folds against that of the others, where normals are given; 0 draws none.");
+    .hint("Width of lines where a surface folds against other lines; 0 draws none. Needs normals.");
 pub(crate) const TEXTURE_LINES: Param = Param::float("texture_lines", "Texture lines", 1.0, [0.0, 1.0])
     .group(LOOK)
-    .doc("How many of the lines that the picture's own edges draw: 0 leaves outlines and creases alone.");
-pub(crate) const SUPPRESS_SMALL: Param =
-    Param::float("suppress_small", "Suppress small", 0.0, [0.0, 1.0]).group(LOOK).doc(
-        "Drops short and weak lines: lengthens `sigma_m` by up to 0.8 of it and lowers `epsilon` by up to 0.75.",
-    );
-pub(crate) const N_E: Param = Param::int("n_e", "Iterations for lines", 1, [0, 16])
+    .hint("How many lines come from the picture itself: 0 leaves outlines and creases alone.");
+pub(crate) const SUPPRESS_SMALL: Param = Param::float("suppress_small", "Hide small lines", 0.0, [0.0, 1.0])
+    .group(LOOK)
+    .hint("Leaves out short and weak lines.")
+    .doc("Lengthens `sigma_m` by up to 0.8 of it and lowers `epsilon` by up to 0.75.");
+pub(crate) const N_E: Param = Param::int("n_e", "Smoothing for lines", 1, [0, 16])
     .slider(0.0, 8.0)
     .structural()
     .group(ADVANCED)
-    .doc("Bilateral iterations before lines are extracted (n_e), which keeps noise out of them.");
-pub(crate) const LINE_ITERATIONS: Param = Param::int("line_iterations", "Line iterations", 1, [1, 16])
+    .hint("How often the picture is smoothed before lines are looked for, which keeps noise out of them.")
+    .doc("Bilateral iterations (n_e).");
+pub(crate) const LINE_ITERATIONS: Param = Param::int("line_iterations", "Line rounds", 1, [1, 16])
     .slider(1.0, 5.0)
     .structural()
     .group(ADVANCED)
+    .hint("How often lines are looked for, each time on top of those found, which closes gaps.")
     .doc("Times the line filter runs, each on the lightness times the lines found so far.");
-pub(crate) const GUIDE_WEIGHT: Param = Param::float("guide_weight", "Guide weight", 1.0, [0.0, 16.0])
+pub(crate) const GUIDE_WEIGHT: Param = Param::float("guide_weight", "Guide strength", 1.0, [0.0, 16.0])
     .slider(0.0, 2.0)
     .structural()
     .group(ADVANCED)
+    .hint("Strength of the lines that normals, depth and object ids draw; 0 leaves these out.")
     .doc("Strength of lines where normal, depth or object id break; 0 leaves the guides unread.");
 
 /// The technical parameters of lines.

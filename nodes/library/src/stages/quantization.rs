@@ -8,11 +8,11 @@ pub(crate) const POSTERIZE: Param = Param::int("posterize", "Posterize", BINS.de
     .slider(2.0, 16.0)
     .structural()
     .group(LOOK)
-    .doc("Levels of lightness between black and white; 0 leaves tones continuous.");
-pub(crate) const POSTERIZE_SMOOTH: Param =
-    Param::float("posterize_smooth", "Posterize smooth", 0.0, [0.0, 1.0])
-        .group(LOOK)
-        .doc("Softness of the steps between levels, relative to their height: divides `phi_q` by 1 to 20.");
+    .hint("Number of tones from black to white; 0 leaves tones smooth.");
+pub(crate) const POSTERIZE_SMOOTH: Param = Param::float("posterize_smooth", "Step softness", 0.0, [0.0, 1.0])
+    .group(LOOK)
+    .hint("How softly one tone goes over into the next.")
+    .doc("Relative to the height of the steps: divides `phi_q` by 1 to 20.");
 
 /// Steepness of the steps between `levels` as the parameters of a style say.
 pub(crate) fn steepness(scope: &Scope<'_>, levels: i32) -> f32 {

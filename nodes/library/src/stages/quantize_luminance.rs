@@ -6,25 +6,32 @@ use crate::kernels::colour::tone_gradient;
 use crate::kernels::smoothing::gaussian_blur;
 use isophote_engine::{Class, ImageId};
 
-pub(crate) const BINS: Param =
-    Param::int("bins", "Bins", 8, [1, 256]).slider(2.0, 24.0).doc("Levels between black and white.");
-pub(crate) const PHI_Q: Param = Param::float("phi_q", "Phi q", 3.4, [0.0, 1000.0])
+pub(crate) const BINS: Param = Param::int("bins", "Tones", 8, [1, 256])
+    .slider(2.0, 24.0)
+    .hint("Number of tones from black to white.")
+    .doc("Bins between black and white.");
+pub(crate) const PHI_Q: Param = Param::float("phi_q", "Step steepness", 3.4, [0.0, 1000.0])
     .slider(0.2, 10.0)
-    .doc("Steepness of the steps, per unit of L; counts when not adaptive.");
-pub(crate) const LAMBDA_DELTA: Param = Param::float("lambda_delta", "Lambda delta", 0.0, [0.0, 100.0])
+    .hint("How suddenly one tone changes to the next. Does not count with adaptive steps.")
+    .doc("Steepness of the steps, per unit of L.");
+pub(crate) const LAMBDA_DELTA: Param = Param::float("lambda_delta", "Softest below", 0.0, [0.0, 100.0])
     .slider(0.0, 10.0)
+    .hint("Contrast below which adaptive steps are softest.")
     .doc("Gradient of L, per pixel, from which on steps grow steeper.");
-pub(crate) const OMEGA_DELTA: Param = Param::float("omega_delta", "Omega delta", 2.0, [0.0, 100.0])
+pub(crate) const OMEGA_DELTA: Param = Param::float("omega_delta", "Steepest above", 2.0, [0.0, 100.0])
     .slider(0.0, 10.0)
+    .hint("Contrast above which adaptive steps are steepest.")
     .doc("Gradient of L, per pixel, at which steps are steepest.");
-pub(crate) const LAMBDA_PHI: Param = Param::float("lambda_phi", "Lambda phi", 0.9, [0.0, 1000.0])
+pub(crate) const LAMBDA_PHI: Param = Param::float("lambda_phi", "Flat steepness", 0.9, [0.0, 1000.0])
     .slider(0.2, 10.0)
+    .hint("How sudden adaptive steps are in flat areas.")
     .doc("Steepness in flat parts, per unit of L.");
-pub(crate) const OMEGA_PHI: Param = Param::float("omega_phi", "Omega phi", 1.6, [0.0, 1000.0])
+pub(crate) const OMEGA_PHI: Param = Param::float("omega_phi", "Edge steepness", 1.6, [0.0, 1000.0])
     .slider(0.2, 10.0)
+    .hint("How sudden adaptive steps are at edges.")
     .doc("Steepness at edges, per unit of L.");
 pub(crate) const LEAST_GRADIENT: Param =
-    Param::float("least_gradient", "Least gradient", 0.0, [0.0, 1.0]).slider(0.0, 0.5).structural().doc(
+    Param::float("least_gradient", "Smooth below", 0.0, [0.0, 1.0]).slider(0.0, 0.5).structural().hint("Tones stay smooth where the picture changes less than this; 0 makes steps everywhere.").doc(
         "Gradient of L, per pixel, that the surroundings have where levels step; where they have less, tones are \
          continuous, since borders of levels would follow nothing there. 0 steps everywhere.",
     );

@@ -6,27 +6,32 @@ use crate::kernels::coherence::{laplacian, second_derivative, shock_step};
 use crate::kernels::smoothing::gaussian_blur;
 use isophote_engine::{ImageId, PlanBuilder};
 
-pub(crate) const SIGMA_G: Param = Param::length("sigma_g", "Sigma g", 1.5, [0.2, 20.0]).slider(0.3, 6.0).doc(
-    "Standard deviation of the second derivative along the gradient: larger ones pass over small features.",
-);
-pub(crate) const SIGMA_I: Param = Param::length("sigma_i", "Sigma i", 0.0, [0.0, 20.0])
+pub(crate) const SIGMA_G: Param = Param::length("sigma_g", "Feature size", 1.5, [0.2, 20.0])
+    .slider(0.3, 6.0)
+    .hint("Features smaller than this are passed over when edges are sharpened.")
+    .doc("Standard deviation of the second derivative along the gradient.");
+pub(crate) const SIGMA_I: Param = Param::length("sigma_i", "Pre-smoothing", 0.0, [0.0, 20.0])
     .slider(0.0, 6.0)
     .structural()
-    .doc("Standard deviation of the Gaussian before the second derivative, for stronger abstraction; 0 for none.");
-pub(crate) const RADIUS: Param = Param::length("radius", "Radius", 2.0, [0.0, 20.0])
+    .hint("Smoothing before edges are sharpened, for simpler shapes; 0 for none.")
+    .doc("Standard deviation of the Gaussian before the second derivative.");
+pub(crate) const RADIUS: Param = Param::length("radius", "Sharpening reach", 2.0, [0.0, 20.0])
     .slider(0.0, 6.0)
+    .hint("How wide a soft edge may be to become a sharp one.")
     .doc("How far along the gradient the least or greatest pixel is looked for.");
-pub(crate) const THRESHOLD: Param = Param::float("threshold", "Threshold", 0.005, [0.0, 1.0])
+pub(crate) const THRESHOLD: Param = Param::float("threshold", "Soft below", 0.005, [0.0, 1.0])
     .slider(0.0, 0.05)
-    .doc(
+    .hint("Changes of lightness that are gentler than this stay soft.").doc(
         "Second derivative, in units of luma, up to which a pixel stays as it is (tau_s): keeps shocks out of \
          smooth parts.",
     );
-pub(crate) const ITERATIONS: Param = Param::int("iterations", "Iterations", 3, [1, 100])
+pub(crate) const ITERATIONS: Param = Param::int("iterations", "Rounds", 3, [1, 100])
     .slider(1.0, 20.0)
     .structural()
+    .hint("Steps of the methods that sharpen little by little.")
     .doc("Steps of the two variants that solve an equation.");
-pub(crate) const TIME_STEP: Param = Param::float("time_step", "Time step", 0.4, [0.01, 0.5])
+pub(crate) const TIME_STEP: Param = Param::float("time_step", "Step size", 0.4, [0.01, 0.5])
+    .hint("Strength of each of these steps.")
     .doc("Length of a step of these variants; beyond 1/2 they would not be stable.");
 
 /// The gradient-directed filter; lengths in pixels of the picture that is rendered.

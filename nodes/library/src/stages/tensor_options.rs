@@ -9,15 +9,15 @@ use isophote_engine::ImageId;
 choice! {
     /// The derivative operator.
     pub enum Operator {
-        /// Central differences (2.18).
+        /// Central differences.
         Central ("central", "Central differences"),
-        /// The Sobel operator (2.23).
+        /// The Sobel operator.
         Sobel ("sobel", "Sobel"),
-        /// The 3x3 operator optimized for rotation invariance (2.27).
+        /// The 3x3 operator that treats all directions alike.
         Scharr3 ("scharr3", "Scharr 3x3"),
-        /// The 5x5 operator optimized for rotation invariance (2.29).
+        /// The 5x5 operator that treats all directions alike.
         Scharr5 ("scharr5", "Scharr 5x5"),
-        /// Derivatives of a Gaussian (2.22).
+        /// Derivatives of a Gaussian.
         Gaussian ("gaussian", "Gaussian"),
     }
 }
@@ -34,42 +34,55 @@ choice! {
     }
 }
 
-pub(crate) const DERIVATIVE: Param = Param::choice("derivative", "Derivative", Operator::Scharr3.selected())
-    .uniform()
-    .doc("Derivative operator: (2.18), (2.23), (2.27), (2.29) or (2.22).");
-pub(crate) const SIGMA_G: Param = Param::length("sigma_g", "Sigma of the derivative", 0.867, [0.2, 6.0])
+pub(crate) const DERIVATIVE: Param =
+    Param::choice("derivative", "Edge operator", Operator::Scharr3.selected())
+        .uniform()
+        .hint("How changes of colour are measured.")
+        .doc("Derivative operator: (2.18), (2.23), (2.27), (2.29) or (2.22).");
+pub(crate) const SIGMA_G: Param = Param::length("sigma_g", "Operator size", 0.867, [0.2, 6.0])
     .slider(0.4, 3.0)
-    .doc("Standard deviation of the Gaussian derivative (2.22); the other operators ignore it unless oversampled.");
-pub(crate) const RHO: Param = Param::length("rho", "Rho", 2.0, [0.0, 40.0])
+    .hint("Size of the Gaussian operator; the others do not use it.").doc("Standard deviation of the Gaussian derivative (2.22); the other operators ignore it unless oversampled.");
+pub(crate) const RHO: Param = Param::length("rho", "Flow scale", 2.0, [0.0, 40.0])
     .slider(0.0, 10.0)
+    .hint("Size of the forms that are followed: larger values turn more gently.")
     .doc("Standard deviation of the Gaussian that smooths the tensor.");
-pub(crate) const SPACE: Param = Param::choice("space", "Space", Space::Rgb.selected()).doc(
+pub(crate) const SPACE: Param = Param::choice("space", "Colour space", Space::Rgb.selected()).hint("How colours are compared: as they are stored, by lightness alone, or as the eye sees them.").doc(
     "What the gradient is taken of: gamma-encoded RGB, its Rec. 709 luma, or CIELAB divided by 100, so that \
      from black to white is a step of 1.",
 );
-pub(crate) const NORMALIZE: Param = Param::bool("normalize", "Normalize", false)
-    .doc("Divides each channel's tensor by the magnitude of its gradient (2.133), so that strong edges dominate less.");
-pub(crate) const RELAX_THRESHOLD: Param =
-    Param::float("relax_threshold", "Relaxation threshold", 0.0, [0.0, 10.0])
-        .slider(0.0, 0.2)
-        .structural()
-        .doc(
-            "Keeps tensors where sqrt(lambda1) is above this before smoothing (2.164) and fills the others \
-             smoothly; 0 keeps all.",
-        );
-pub(crate) const RELAX_STEPS: Param = Param::int("relax_steps", "Relaxation steps", 1, [1, 3])
+pub(crate) const NORMALIZE: Param = Param::bool("normalize", "Even contrast", false)
+    .hint("Lets weak edges count nearly as much as strong ones.").doc("Divides each channel's tensor by the magnitude of its gradient (2.133), so that strong edges dominate less.");
+pub(crate) const RELAX_THRESHOLD: Param = Param::float("relax_threshold", "Flow threshold", 0.0, [0.0, 10.0])
+    .slider(0.0, 0.2)
     .structural()
+    .hint(
+        "Where the picture is flatter than this, its direction is taken from around it; 0 keeps every edge.",
+    )
+    .doc(
+        "Keeps tensors where sqrt(lambda1) is above this before smoothing (2.164) and fills the others \
+             smoothly; 0 keeps all.",
+    );
+pub(crate) const RELAX_STEPS: Param = Param::int("relax_steps", "Filling rounds", 1, [1, 3])
+    .structural()
+    .hint("How carefully flat areas are filled with directions from around them.")
     .doc("Jacobi steps on each level of the pyramid (2.171).");
-pub(crate) const LEVELS: Param = Param::int("levels", "Levels", 1, [1, 8]).structural().doc(
-    "Levels of the multi-scale estimation (2.172): each further one halves the picture, and its tensor, \
+pub(crate) const LEVELS: Param = Param::int("levels", "Scales", 1, [1, 8])
+    .structural()
+    .hint("Sizes at which directions are looked for: more are robust against noise.")
+    .doc(
+        "Levels of the multi-scale estimation (2.172): each further one halves the picture, and its tensor, \
      upsampled, joins by its anisotropy (2.173). Guides join on the finest.",
-);
-pub(crate) const OVERSAMPLE: Param = Param::bool("oversample", "Oversample", false).structural().doc(
-    "Takes derivatives at twice the resolution (2.4.6), those of the Gaussian of sigma_g whatever the \
+    );
+pub(crate) const OVERSAMPLE: Param = Param::bool("oversample", "Double resolution", false)
+    .structural()
+    .hint("Looks at twice the resolution: exact for the finest texture, and about ten times as slow.")
+    .doc(
+        "Takes derivatives at twice the resolution (2.4.6), those of the Gaussian of sigma_g whatever the \
      operator: exact also for the finest texture, at about ten times the cost.",
-);
-pub(crate) const GUIDE_WEIGHT: Param = Param::float("guide_weight", "Guide weight", 1.0, [0.0, 100.0])
+    );
+pub(crate) const GUIDE_WEIGHT: Param = Param::float("guide_weight", "Guide strength", 1.0, [0.0, 100.0])
     .slider(0.0, 4.0)
+    .hint("How much normals, depth and object ids count.")
     .doc("Factor on the tensors of normals, depth and object numbers.");
 
 /// Options of a tensor; lengths in pixels of the picture that is rendered.

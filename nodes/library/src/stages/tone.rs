@@ -8,15 +8,16 @@ use isophote_engine::ImageId;
 pub(crate) const SATURATION: Param = Param::float("saturation", "Saturation", 1.0, [0.0, 4.0])
     .slider(0.0, 2.0)
     .group(LOOK)
-    .doc("Factor on the colour axes of CIELAB; 0 is grey.");
-pub(crate) const LIGHTS: Param = Param::float("lights", "Lights", 0.0, [-1.0, 1.0])
+    .hint("Strength of the colours: 0 is grey, 1 leaves them as they are.")
+    .doc("Factor on the colour axes of CIELAB.");
+pub(crate) const LIGHTS: Param = Param::float("lights", "Highlights", 0.0, [-1.0, 1.0])
     .structural()
     .group(LOOK)
-    .doc("Raises (above 0) or lowers the light tones.");
-pub(crate) const DARKS: Param = Param::float("darks", "Darks", 0.0, [-1.0, 1.0])
+    .hint("Brightens the light tones above 0, and darkens them below.");
+pub(crate) const DARKS: Param = Param::float("darks", "Shadows", 0.0, [-1.0, 1.0])
     .structural()
     .group(LOOK)
-    .doc("Raises (above 0) or lowers the dark tones.");
+    .hint("Brightens the dark tones above 0, and darkens them below.");
 
 /// True where `lights` and `darks` leave the tones as they are.
 pub(crate) fn is_neutral(scope: &Scope<'_>) -> bool {

@@ -6,7 +6,7 @@ use crate::kernels::colour::warp::{self, Params};
 use crate::kernels::smoothing::gaussian_blur;
 use isophote_engine::{Class, ImageId, PlanBuilder};
 
-pub(crate) const SIGMA_W: Param = Param::length("sigma_w", "Sigma w", 1.5, [0.1, 20.0]).slider(0.5, 6.0).doc(
+pub(crate) const SIGMA_W: Param = Param::length("sigma_w", "Edge width", 1.5, [0.1, 20.0]).slider(0.5, 6.0).hint("Width of the edges that are sharpened.").doc(
     "Standard deviation of the Gaussian on the gradient magnitude: the width of the edges that are narrowed.",
 );
 

@@ -94,7 +94,7 @@ fn node(spec: &NodeSpec) -> IsophoteNode {
         id: lasting(spec.id),
         label: lasting(spec.label),
         group: lasting(spec.group),
-        doc: lasting(spec.doc),
+        doc: lasting(&spec.text()),
         section: lasting(spec.section),
         input_count: inputs.len() as u32,
         param_count: params.len() as u32,
@@ -120,7 +120,7 @@ fn param(param: &Param) -> IsophoteParam {
     IsophoteParam {
         id: lasting(param.id),
         label: lasting(param.label),
-        doc: lasting(param.doc),
+        doc: lasting(&param.text()),
         group: lasting(param.group),
         kind: param_type(param.default).kind,
         unit: match param.unit {

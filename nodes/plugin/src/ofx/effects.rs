@@ -12,7 +12,7 @@ use isophote::engine::Support;
 use isophote::frames::Frames;
 use isophote::graph::GraphInput;
 use isophote::request::Guides;
-use isophote::spec::{ImageKind, NodeSpec, Param, Unit};
+use isophote::spec::{ImageKind, MIX, NodeSpec, Param, Unit};
 use isophote::{Graph, NodeId, Planned, Request};
 use isophote_colour::Space;
 use isophote_motion::Convention;
@@ -138,6 +138,26 @@ pub fn is_local(graph: &Graph, guides: Guides, frames: Frames) -> isophote::Resu
 pub static EFFECTS: LazyLock<Vec<Effect>> =
     LazyLock::new(|| isophote::registry::nodes().iter().filter_map(|node| Effect::of(node)).collect());
 
+/// A word with a capital first letter, as all labels have.
+fn capital(word: &str) -> String {
+    let mut label = word.to_owned();
+    if let Some(first) = label.get_mut(0..1) {
+        first.make_ascii_uppercase();
+    }
+    label
+}
+
+/// The hint of a parameter, with its unit.
+fn hint(param: &Param) -> String {
+    let unit = match param.unit {
+        Unit::Pixels => " In pixels at the reference height.",
+        Unit::Percent => " In per cent.",
+        Unit::Degrees => " In degrees.",
+        Unit::None => "",
+    };
+    [param.hint, unit].concat()
+}
+
 /// Text without what C strings and menus cannot hold.
 fn text(text: &str) -> CString {
     CString::new(text.replace('\0', " ")).unwrap_or_default()
@@ -169,8 +189,8 @@ impl Effect {
         let mut effect = Self {
             // Some hosts stumble over a hyphen in a label.
             label: text(&label.replace('-', " ")),
-            grouping: text(&format!("Isophote/{}", shown.group)),
-            description: text(&format!("{}\n\nThesis: section {}.", shown.doc, shown.section)),
+            grouping: text(&format!("Isophote/{}", capital(shown.group))),
+            description: text(shown.hint),
             icons: [text(&format!("{identifier}.svg")), text(&format!("{identifier}.png"))],
             identifier: text(&identifier),
             form,
@@ -202,17 +222,15 @@ impl Effect {
 
     fn add_controls(&mut self) {
         if self.form == Form::Lines {
-            self.add(LINES_OUTPUT, "Output", LINES_HINT, "", Target::LinesOutput);
+            self.add(LINES_OUTPUT, "Show", LINES_HINT, "", Target::LinesOutput);
         }
         for (index, node) in self.nodes.clone().into_iter().enumerate() {
             for param in node.params() {
                 let target = Target::Param(index, param);
-                let hint = match param.unit {
-                    Unit::Pixels => format!("{} In pixels of the full-size picture.", param.doc),
-                    Unit::Percent => format!("{} In percent.", param.doc),
-                    Unit::Degrees => format!("{} In degrees.", param.doc),
-                    Unit::None => param.doc.to_owned(),
-                };
+                if param.id == MIX.id {
+                    continue;
+                }
+                let hint = hint(param);
                 if index == 0 {
                     self.add(param.id, param.label, &hint, param.group, target);
                 } else {
@@ -225,6 +243,11 @@ impl Effect {
                 }
             }
         }
+        self.add_common();
+    }
+
+    /// Controls that stand at the end of a page, those of the nodes' results last, where hosts have them.
+    fn add_common(&mut self) {
         if self.temporal {
             self.add(MOTION_FROM, "Motion from", MOTION_HINT, "time", Target::MotionFrom);
             self.add(
@@ -245,6 +268,12 @@ impl Effect {
         self.add(REFERENCE_HEIGHT, "Reference height", HEIGHT_HINT, "output", Target::ReferenceHeight);
         self.add(PROCESS_ALPHA, "Process alpha", ALPHA_HINT, "output", Target::ProcessAlpha);
         self.add(MASK_APPLY, "Apply mask", MASK_HINT, "output", Target::MaskApply);
+        for (index, node) in self.nodes.clone().into_iter().enumerate().filter(|(_, node)| node.has_mix()) {
+            let name = if index == 0 { MIX.id.to_owned() } else { format!("lines_{}", MIX.id) };
+            if let Some((_, param)) = node.param(MIX.id) {
+                self.add(&name, param.label, &hint(param), param.group, Target::Param(index, param));
+            }
+        }
         // Under one heading, controls follow one another.
         self.controls.sort_by_key(|c| c.group);
     }
@@ -271,11 +300,7 @@ impl Effect {
         if let Some(at) = self.groups.iter().position(|g| g.name == name) {
             return at;
         }
-        let mut label = id.to_owned();
-        if let Some(first) = label.get_mut(0..1) {
-            first.make_ascii_uppercase();
-        }
-        self.groups.push(Group { name, label: text(&label), open: id != "advanced" });
+        self.groups.push(Group { name, label: text(&capital(id)), open: id != "advanced" });
         self.groups.len() - 1
     }
 
@@ -309,21 +334,22 @@ fn reads(node: &NodeSpec, input: GraphInput) -> bool {
     node.ports().any(|port| port.id == input.id() && port.kind == input.kind())
 }
 
-const LINES_HINT: &str = "The edge image alone, 1 = paper and 0 = line, or its lines over the picture.";
-const SPACE_HINT: &str = "What the numbers of the pixels mean. Filters are tuned for gamma-encoded colour; linear \
-                          pictures are encoded on the way in and decoded on the way out. 'As is' changes nothing.";
-const HEIGHT_HINT: &str = "Height of pictures, in pixels, at which lengths are meant: with 1080 pictures of all sizes get the \
-                           same look. 0: lengths are pixels of the full-size picture.";
+const LINES_HINT: &str = "The lines alone, black on white, or the lines over the picture.";
+const SPACE_HINT: &str = "Colour space of the pictures that come in and go out; the effect itself works in display colours. \
+                          'As is' changes nothing.";
+const HEIGHT_HINT: &str = "Height in pixels that sizes are meant for: 1080 gives pictures of every size the same look, \
+                           0 takes sizes in pixels of the full picture.";
 const ALPHA_HINT: &str =
     "Filters alpha together with the colour. Off, the result has the alpha of the source.";
 const MASK_HINT: &str = "Lets the mask decide where the effect shows.";
-const MOTION_HINT: &str = "Where the motion between frames comes from, along which they are steadied: the clips Motion \
-                           and Motion forward, or an estimate from the pictures.";
-const CONVENTION_HINT: &str = "What the vectors of the clips Motion and Motion forward mean. One of the clips is enough: \
-                               it stands for the other direction, too.";
+const MOTION_HINT: &str = "Source of the motion by which frames are steadied: the clips Motion and Motion forward, or an \
+                           estimate from the pictures.";
+const CONVENTION_HINT: &str = "Program that the motion vectors of the clips come from. One clip is enough: it also stands for \
+                               the other direction.";
 
 #[cfg(test)]
 mod tests {
+    use super::super::clips::{MASK, OUTPUT, SOURCE, guide_label};
     use super::*;
     use std::collections::BTreeSet;
 
@@ -337,6 +363,45 @@ mod tests {
             }
         }
         assert!(ids.contains(c"org.isophote.structure"));
+    }
+
+    /// Hosts cut longer ones, or show them badly.
+    #[test]
+    fn labels_and_hints_are_short_and_no_two_controls_have_one_label() {
+        for effect in EFFECTS.iter() {
+            let id = effect.identifier.to_string_lossy();
+            let short = |text: &CStr| {
+                let shown = text.to_string_lossy();
+                let good = shown.chars().count() < 20 && shown.starts_with(|c: char| c.is_uppercase());
+                assert!(good, "{id}: label {shown:?}");
+                shown.into_owned()
+            };
+            short(&effect.label);
+            let description = effect.description.to_string_lossy();
+            assert!(
+                !description.contains(['`', '§']) && !description.contains("Fig."),
+                "{id}: {description}"
+            );
+            effect.groups.iter().for_each(|group| drop(short(&group.label)));
+            let mut known: BTreeSet<String> =
+                effect.guides.iter().filter_map(|guide| guide_label(*guide)).map(short).collect();
+            known.extend([SOURCE, OUTPUT, MASK].map(short));
+            for control in &effect.controls {
+                assert!(
+                    known.insert(short(&control.label)),
+                    "{id}: two controls are called {:?}",
+                    control.label
+                );
+                let hint = control.hint.to_string_lossy();
+                let fits = (10..160).contains(&hint.chars().count()) && hint.ends_with('.');
+                assert!(fits && !hint.contains('`'), "{id}: {:?} says {hint:?}", control.label);
+                let fits = |option: &CString| option.to_string_lossy().chars().count() < 20;
+                assert!(control.options.iter().all(fits), "{id}: options {:?}", control.options);
+            }
+            let last = effect.controls.last().unwrap();
+            let has_mix = effect.nodes.iter().any(|node| node.has_mix());
+            assert_eq!(last.label.as_c_str() == c"Mix", has_mix, "{id}: {:?} is last", last.label);
+        }
     }
 
     #[test]

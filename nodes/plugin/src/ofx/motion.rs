@@ -17,7 +17,7 @@ pub enum MotionFrom {
 }
 
 /// Projects store positions in this list.
-pub const MOTION_OPTIONS: [&CStr; 3] = [c"Clips, else estimated", c"Clips alone", c"Estimated"];
+pub const MOTION_OPTIONS: [&CStr; 3] = [c"Clips or estimate", c"Clips alone", c"Estimate"];
 
 impl MotionFrom {
     /// The choice at a position.

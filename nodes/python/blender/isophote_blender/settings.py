@@ -26,7 +26,7 @@ if "is_path_supports_blend_relative" in bpy.types.Property.bl_rna.properties:
     _OUTPUT.add("PATH_SUPPORTS_BLEND_RELATIVE")
 
 # Blender keeps no copy of the texts of items.
-_STYLE_ITEMS = [(id, node.label, node.doc) for id, node in STYLES.items()]
+_STYLE_ITEMS = [(id, node.label, node.hint) for id, node in STYLES.items()]
 
 
 def group_name(node_id: str) -> str:
@@ -36,7 +36,7 @@ def group_name(node_id: str) -> str:
 
 def _property(param: isophote.Param) -> object:
     """A parameter as a property of Blender's."""
-    common = {"name": param.label, "description": param.doc.replace("`", "'")}
+    common = {"name": param.label, "description": param.hint}
     if param.type in ("float", "int"):
         low, high = param.range or (0, 1)
         soft_low, soft_high = param.slider or (low, high)

@@ -41,6 +41,9 @@ export interface Port {
 export interface Param {
   id: string;
   label: string;
+  /** A sentence or two in artists' words, for panels. */
+  hint: string;
+  /** The hint, and after an empty line documentation, where there is any. */
   doc: string;
   /** Heading under which panels show it; empty for the node's own. */
   group: string;
@@ -61,9 +64,14 @@ export interface Node {
   id: string;
   label: string;
   group: "structure" | "smoothing" | "lines" | "painting" | "coherence" | "colour" | "time" | "styles";
+  /** A sentence in artists' words. */
+  hint: string;
+  /** The hint, and documentation after an empty line. */
   doc: string;
   /** Where the thesis or a paper describes it. */
   section: string;
+  /** Of a style that draws with several media: the parameter whose options they are. */
+  medium: string | null;
   inputs: Port[];
   params: Param[];
   output: Port;

@@ -2,7 +2,7 @@
 
 import { looks } from "isophote";
 import { byId, make } from "./dom.js";
-import { firstSentence, isSame } from "./look.js";
+import { isSame } from "./look.js";
 import { Roving } from "./roving.js";
 
 /** The styles in the order in which looks are made of them, which is that of the list of looks. */
@@ -23,20 +23,33 @@ function entries(catalogue) {
     look,
     words: [look.name, look.about, look.style, ...(look.tags ?? [])].join(" ").toLowerCase(),
   }));
-  const plain = ({ id, label, doc }, section) => ({
+  const plain = ({ id, label, hint, doc }, section) => ({
     id: `style-${id}`,
     section,
     name: label,
-    about: firstSentence(doc),
+    about: hint,
     style: id,
     look: { style: id, lengths: "relative", parameters: {} },
     words: `${label} ${doc} ${section}`.toLowerCase(),
   });
+  // What a style draws with is chosen like a style.
+  const media = (node) => {
+    const param = node.params.find(({ id }) => id === node.medium);
+    return (param?.options ?? []).filter(({ id }) => id !== param.default).map(({ id, label, doc }) => ({
+      id: `style-${node.id}-${id}`,
+      section: "Styles",
+      name: label,
+      about: doc,
+      style: node.id,
+      look: { style: node.id, lengths: "relative", parameters: { [param.id]: id } },
+      words: `${label} ${doc} ${node.label} styles`.toLowerCase(),
+    }));
+  };
   const needsColor = ({ inputs, output }) => output.kind === "color" && inputs.every((port) => port.optional || port.id === "color");
   const filters = catalogue.nodes.filter((node) => node.group !== "styles" && node.group !== "time" && needsColor(node));
   return [
     ...shipped,
-    ...styles(catalogue).map((node) => plain(node, "Styles")),
+    ...styles(catalogue).flatMap((node) => [plain(node, "Styles"), ...media(node)]),
     ...filters.map((node) => plain(node, "Filters")),
   ];
 }

@@ -107,6 +107,9 @@ function color(param, id, onInput) {
   return { parts: [make("span", { class: "color" }, alpha, field)], set };
 }
 
+/** Units in words, after a hint. */
+const MEASURES = { px: " In pixels of a picture 1080 lines high.", "%": " In per cent.", deg: " In degrees." };
+
 const KINDS = { float: number, int: number, bool, choice, color };
 
 /** Keys that change a value step by step. */
@@ -141,7 +144,7 @@ export function control({ param, standard }, onInput, { hold: onHold, settle: on
   const id = fresh();
   const { parts, set } = KINDS[param.type](param, id, onInput);
   const what = param.type === "color" ? hex(standard) : param.options?.find((option) => option.id === standard)?.label ?? String(standard);
-  const tip = `${param.doc.replaceAll("`", "")}\n\nDefault: ${what}. Double-click for the default.`;
+  const tip = `${param.hint}${MEASURES[param.unit] ?? ""}\n\nDefault: ${what}. Double-click for the default.`;
   const label = make("label", { for: id, title: tip }, param.label);
   const element = make("div", { class: `control ${param.type}` }, label, ...parts);
   label.addEventListener("click", (event) => {

@@ -53,11 +53,8 @@ export function controls(catalogue, look) {
 /** What a look is called that has no name, and what it does. */
 export function description(catalogue, look) {
   const node = catalogue.nodes.find(({ id }) => id === look.style);
-  return node === undefined ? { name: "Graph", about: "A graph of nodes" } : { name: node.label, about: firstSentence(node.doc) };
+  return node === undefined ? { name: "Graph", about: "A graph of nodes" } : { name: node.label, about: node.hint };
 }
-
-/** The first sentence of a text, without what follows a colon. */
-export const firstSentence = (text) => text.split(/(?<=[.:])\s/)[0].replace(/:$/, ".").replaceAll("`", "");
 
 /** The look with another value, which is left out where it is the standard. */
 export function withValue(look, { name, standard }, value) {

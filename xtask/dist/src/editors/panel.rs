@@ -88,8 +88,7 @@ fn panels(catalogue: &Value) -> Option<Vec<Panel>> {
 }
 
 fn panel(id: &str, label: &str, node: &Value, mut controls: Vec<Control>) -> Option<Panel> {
-    let doc = node["doc"].as_str()?;
-    let about = doc.split_once(". ").map_or(doc, |(first, _)| first).trim_end_matches('.');
+    let about = node["hint"].as_str()?.trim_end_matches('.');
     // Under one heading, controls follow one another.
     let mut groups: Vec<String> = Vec::new();
     for control in &controls {
@@ -112,7 +111,7 @@ fn lines_output() -> Control {
     let options = ["Lines only", "Lines over source"].map(str::to_owned);
     Control {
         name: "lines_output".into(),
-        label: "Output".into(),
+        label: "Show".into(),
         doc: "The lines alone, or over the picture.".into(),
         group: String::new(),
         kind: Kind::Choice { default: options[0].clone(), options: options.to_vec() },
@@ -139,8 +138,7 @@ fn controls(nodes: &[(&str, &Value)]) -> Option<Vec<Control>> {
             controls.push(Control {
                 name: format!("{prefix}{id}"),
                 label: param["label"].as_str()?.to_owned(),
-                // Tips of editors know no marks for names.
-                doc: param["doc"].as_str()?.replace('`', ""),
+                doc: param["hint"].as_str()?.to_owned(),
                 group: group.to_owned(),
                 kind: kind(param)?,
             });

@@ -40,11 +40,11 @@ impl Found {
         }
     }
 
-    /// Description and tags that it gives of itself; a style by itself says what its node does.
+    /// Description and tags that it gives of itself; a style or medium by itself says what its node does.
     pub fn title(&self, library: &Library) -> Title {
         let Content::Look(look) = &self.content else { return Title::default() };
         let about = match self.group {
-            Group::Styles => library.find_node(&look.preset.style).ok().map(|node| node.doc.to_owned()),
+            Group::Styles => library.find_node(&look.preset.style).ok().map(|node| node.hint.to_owned()),
             _ => None,
         };
         look.preset.title.clone().or(Title { name: None, about, tags: Vec::new() })

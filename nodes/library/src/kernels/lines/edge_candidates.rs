@@ -24,12 +24,12 @@ crate::kernel!(edge_candidates {
 crate::declare::choice::choice! {
     /// Criterion of an edge.
     pub enum Method {
-        /// A maximum of the gradient's magnitude along the gradient.
+        /// Thin joined lines where the picture changes most.
         Maximum = 0 ("canny", "Canny"),
-        /// The magnitude alone: gives an edge image, dark from `low` to `high` on.
+        /// Soft bands that darken from weak to strong edges.
         Magnitude = 2 ("sobel", "Sobel"),
-        /// A zero crossing of the Laplacian.
-        ZeroCrossing = 1 ("log_zero_crossing", "Zero crossings of the Laplacian"),
+        /// Closed contours where the Laplacian changes its sign.
+        ZeroCrossing = 1 ("log_zero_crossing", "Zero crossings"),
     }
 }
 

@@ -8,14 +8,14 @@ use isophote_engine::math::Elementary;
 crate::declare::choice::choice! {
     /// Threshold that makes an edge image of a response.
     pub enum Threshold {
-        /// Not at all: the response, in units of L.
-        None = 0 ("none", "None"),
-        /// 1 from epsilon on, 0 below (4.6).
-        Binary = 1 ("binary", "Binary"),
-        /// 1 from epsilon on, 1 + tanh(phi (u - epsilon)) below (4.8).
-        Tanh = 2 ("tanh", "Tanh"),
-        /// 2 smoothstep(-2, 2, phi (u - epsilon)), 1 from epsilon on.
-        Smoothstep = 3 ("smoothstep", "Smoothstep"),
+        /// Not at all: the response of the filter as it is.
+        None = 0 ("none", "Not cut"),
+        /// Paper or line, nothing between.
+        Binary = 1 ("binary", "Hard"),
+        /// A soft ramp into the line.
+        Tanh = 2 ("tanh", "Soft"),
+        /// A soft ramp that also ends softly in the dark.
+        Smoothstep = 3 ("smoothstep", "Soft on both sides"),
     }
 }
 

@@ -44,8 +44,8 @@ crate::declare::choice::choice! {
     /// Where stream lines are sampled.
     pub enum Placement {
         /// At every pixel of length.
-        Equidistant = 0 ("equidistant", "Equidistant"),
-        /// Where they cross the centre of a row or a column (Listings 3.2 and 3.3).
+        Equidistant = 0 ("equidistant", "Even distances"),
+        /// Where they cross the centre of a row or a column.
         PixelCentres = 1 ("pixel_centres", "Pixel centres"),
     }
 }

@@ -46,10 +46,10 @@ crate::declare::choice::choice! {
     pub enum Adapt {
         /// Not at all.
         None = 0 ("none", "Off"),
-        /// sigma (1 + A)^2 / 4, A the anisotropy at the centre (§ 6.3.1).
-        Anisotropy = 1 ("anisotropy", "By anisotropy"),
-        /// The arc length runs faster where the line turns (§ 6.3.2).
-        Angle = 2 ("angle", "By turning angle"),
+        /// Shorter where the direction is uncertain.
+        Anisotropy = 1 ("anisotropy", "Where uncertain"),
+        /// Shorter where the line turns.
+        Angle = 2 ("angle", "Where they turn"),
     }
 }
 

@@ -43,12 +43,12 @@ pub enum Direction {
 crate::declare::choice::choice! {
     /// Where range weights are applied.
     pub enum Sampling {
-        /// To the interpolated colour.
-        Linear = 0 ("linear", "Linear"),
-        /// To both pixels, before the interpolation (3.9).
-        Manual = 1 ("manual", "Manual"),
-        /// To the nearest pixel, without interpolation.
-        Nearest = 2 ("nearest", "Nearest"),
+        /// Colours are blended, then compared.
+        Linear = 0 ("linear", "Smooth"),
+        /// Both pixels are compared, then blended.
+        Manual = 1 ("manual", "Sharp"),
+        /// The nearest pixel is compared, and nothing blended.
+        Nearest = 2 ("nearest", "Jagged"),
     }
 }
 

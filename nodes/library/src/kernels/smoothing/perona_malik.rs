@@ -24,10 +24,10 @@ crate::kernel!(perona_malik {
 crate::declare::choice::choice! {
     /// The diffusivity g (3.2).
     pub enum Diffusivity {
-        /// 1 / (1 + s^2 / lambda^2), which favours wide regions.
-        Rational = 0 ("rational", "Rational"),
-        /// exp(-s^2 / K^2), which favours edges of high contrast.
-        Exponential = 1 ("exponential", "Exponential"),
+        /// Keeps wide areas.
+        Rational = 0 ("rational", "Wide areas"),
+        /// Keeps edges of high contrast.
+        Exponential = 1 ("exponential", "Strong edges"),
     }
 }
 

@@ -42,10 +42,10 @@ crate::kernel!(edge_tangent_flow {
 crate::declare::choice::choice! {
     /// Spatial weight w_s of the neighbours.
     pub enum Window {
-        /// 1 nearer than the radius.
-        Box ("box", "Box"),
-        /// A Gaussian that is cut at the radius, three standard deviations.
-        Gaussian ("gaussian", "Gaussian"),
+        /// All neighbours nearer than the radius alike.
+        Box ("box", "All alike"),
+        /// Nearer neighbours more than others.
+        Gaussian ("gaussian", "Near ones more"),
     }
 }
 

@@ -13,8 +13,9 @@ use isophote_engine::ImageId;
 /// The node.
 pub static NODE: NodeSpec = NodeSpec {
     id: "coherence_enhancing",
-    label: "Coherence-enhancing Filter",
+    label: "Coherence filter",
     group: "coherence",
+    hint: "Lets hair, branches and folds flow together and keeps small round shapes: smooths along edges and sharpens across them.",
     doc: "Abstraction that makes directional features more coherent and keeps shapes, however small and \
           round: adaptive smoothing along the stream lines of the structure tensor (6.3) and shock \
           filtering across them (6.4), in turn; edges are smoothed along themselves at the end (6.5). \

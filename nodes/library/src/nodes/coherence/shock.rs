@@ -13,8 +13,9 @@ use isophote_engine::ImageId;
 /// The node.
 pub static NODE: NodeSpec = NodeSpec {
     id: "shock",
-    label: "Shock Filter",
+    label: "Shock filter",
     group: "coherence",
+    hint: "Makes soft edges sharp without halos or ringing.",
     doc: "Sharpens edges without ringing: erodes about minima and dilates about maxima, so that no value \
           leaves the range of its neighbours. The gradient-directed filter takes the least or greatest \
           pixel along the local gradient (6.4.3) at once; the others solve a differential equation in \
@@ -23,7 +24,7 @@ pub static NODE: NodeSpec = NodeSpec {
     inputs: &[ports::COLOR, ports::TENSOR],
     output: ports::color_output("The sharpened picture."),
     own_params: &[
-        Param::choice("variant", "Variant", Variant::GradientDirected.selected()).doc(
+        Param::choice("variant", "Method", Variant::GradientDirected.selected()).hint("How edges are sharpened: in small steps, in small steps along lines, or at once.").doc(
             "The classical filter, by the Laplacian (6.4.1); Weickert's, by the second derivative along the \
              gradient (6.4.2); or the local filter along the gradient (6.4.3).",
         ),
@@ -44,12 +45,12 @@ pub static NODE: NodeSpec = NodeSpec {
 choice! {
     /// The shock filter.
     enum Variant {
-        /// The classical filter, by the Laplacian (6.4.1).
-        OsherRudin ("osher_rudin", "Osher-Rudin"),
-        /// Weickert's, by the second derivative along the gradient (6.4.2).
-        CoherenceEnhancing ("coherence_enhancing", "Coherence-enhancing"),
-        /// The local filter along the gradient (6.4.3).
-        GradientDirected ("gradient_directed", "Gradient-directed"),
+        /// Osher and Rudin's filter, in small steps.
+        OsherRudin ("osher_rudin", "Small steps"),
+        /// Weickert's filter, in small steps that let lines grow together.
+        CoherenceEnhancing ("coherence_enhancing", "Steps along lines"),
+        /// A local filter, at once.
+        GradientDirected ("gradient_directed", "At once"),
     }
 }
 

@@ -10,6 +10,7 @@ pub static NODE: NodeSpec = NodeSpec {
     id: "composite_lines",
     label: "Composite lines",
     group: "colour",
+    hint: "Draws lines over the picture, or over plain paper.",
     doc: "Draws an edge image (1 = paper, 0 = line) over the picture, or over plain paper.",
     section: "4.6",
     inputs: &[
@@ -18,10 +19,12 @@ pub static NODE: NodeSpec = NodeSpec {
     ],
     output: ports::color_output("The picture with lines."),
     own_params: &[
-        Param::color("color", "Line colour", [0.0, 0.0, 0.0, 1.0]).doc("Colour of the lines."),
-        Param::float("opacity", "Opacity", 1.0, [0.0, 1.0]).neutral_at_zero().doc("Opacity of the lines."),
+        Param::color("color", "Line colour", [0.0, 0.0, 0.0, 1.0]).hint("Colour of the lines."),
+        Param::float("opacity", "Opacity", 1.0, [0.0, 1.0])
+            .neutral_at_zero()
+            .hint("How opaque the lines are."),
         Param::color("paper", "Paper", [1.0, 1.0, 1.0, 0.0])
-            .doc("Paper in place of the picture; its alpha says how much it covers, 0 leaves it unset."),
+            .hint("Paper in place of the picture; its opacity says how much of the picture it covers."),
     ],
     build,
 };

@@ -11,8 +11,9 @@ use isophote_engine::ImageId;
 /// The node.
 pub static NODE: NodeSpec = NodeSpec {
     id: "quantize_luminance",
-    label: "Quantize luminance",
+    label: "Posterize",
     group: "colour",
+    hint: "Flattens lightness to a few soft steps and keeps the colours.",
     doc: "Flattens CIELAB lightness to soft steps, q + d/2 tanh(phi_q (L - q)) with q the middle of the \
           bin of L and d = 100 / bins; colour stays. Bins continue below black and above white.",
     section: "4.6",
@@ -21,9 +22,11 @@ pub static NODE: NodeSpec = NodeSpec {
     own_params: &[
         BINS,
         PHI_Q,
-        Param::bool("adaptive", "Adaptive", true).doc(
-            "Steepness from the gradient of L instead of `phi_q`: flat parts step softly and flicker less.",
-        ),
+        Param::bool("adaptive", "Adaptive steps", true)
+            .hint(
+                "Softer steps in flat areas and steeper ones at edges, so that moving pictures flicker less.",
+            )
+            .doc("Steepness from the gradient of L instead of `phi_q`."),
         LAMBDA_DELTA,
         OMEGA_DELTA,
         LAMBDA_PHI,

@@ -8,8 +8,9 @@ use isophote_engine::ImageId;
 /// The node.
 pub static NODE: NodeSpec = NodeSpec {
     id: "warp_sharpen",
-    label: "Warp Sharpen",
+    label: "Warp sharpen",
     group: "colour",
+    hint: "Sharpens edges by pulling pixels towards them, without halos.",
     doc: "Sharpens edges by moving pixels towards them, as image-based warping does: samples are taken \
           away from the ridges of the smoothed gradient magnitude, found by the Sobel operator (2.23). No \
           value leaves the range of its neighbourhood.",
@@ -18,9 +19,9 @@ pub static NODE: NodeSpec = NodeSpec {
     output: ports::color_output("The sharpened picture."),
     own_params: &[
         SIGMA_W,
-        Param::length("phi_w", "Phi w", 2.7, [0.0, 20.0]).neutral_at_zero()
+        Param::length("phi_w", "Strength", 2.7, [0.0, 20.0]).neutral_at_zero()
             .slider(0.0, 10.0)
-            .doc("How far a sharp edge from black to white moves what is beside it, which is also the farthest move."),
+            .hint("How far pixels are pulled towards the edges.").doc("How far a sharp edge from black to white moves what is beside it, which is also the farthest move."),
     ],
     build,
 };

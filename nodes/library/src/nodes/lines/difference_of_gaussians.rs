@@ -14,8 +14,9 @@ use isophote_engine::ImageId;
 /// The node.
 pub static NODE: NodeSpec = NodeSpec {
     id: "difference_of_gaussians",
-    label: "Difference of Gaussians",
+    label: "Plain lines",
     group: "lines",
+    hint: "Draws lines at edges of any direction: white is paper, black is line.",
     doc: "Lines by the extended difference of Gaussians on lightness (4.7, 4.8) or its sharpening form \
           (4.10): 1 is paper, 0 is line. Transparent pixels neither draw nor receive lines.",
     section: "4.2-4.4",

@@ -14,6 +14,7 @@ pub static NODE: NodeSpec = NodeSpec {
     id: "edge_detector",
     label: "Edge detector",
     group: "lines",
+    hint: "Thin lines at the edges of the picture, found by classical detectors: white is paper, black is line.",
     doc: "Edges of the lightness by classical detectors: Canny's (maxima of the gradient, joined by \
           hysteresis), the thresholded Sobel operator, or zero crossings of the Laplacian of Gaussian. 1 is \
           paper, 0 is line. Lines are one pixel of the full-size picture wide; smaller renderings show them lighter, \
@@ -23,24 +24,24 @@ pub static NODE: NodeSpec = NodeSpec {
     inputs: &[ports::COLOR],
     output: dog::EDGES,
     own_params: &[
-        Param::choice("method", "Method", Method::Maximum.selected()).doc(
+        Param::choice("method", "Method", Method::Maximum.selected()).hint("How edges are found: as thin joined lines, as soft bands, or as closed contours.").doc(
             "Canny: thin, joined lines at maxima of the gradient. Sobel: the magnitude of the gradient, from \
              `low` (paper) to `high` (line). Zero crossings: where the Laplacian of Gaussian changes its \
              sign (4.3), joined like Canny's.",
         ),
-        Param::length("sigma", "Sigma", 1.4, [0.0, 20.0])
+        Param::length("sigma", "Smoothing", 1.4, [0.0, 20.0])
             .slider(0.0, 5.0)
-            .doc("Standard deviation of the smoothing before differentiation; 0 for none."),
-        Param::float("low", "Low", 10.0, [0.0, 200.0])
+            .hint("How far the picture is smoothed before edges are looked for; 0 for not at all.").doc("Standard deviation of the smoothing before differentiation; 0 for none."),
+        Param::float("low", "Weak edges", 10.0, [0.0, 200.0])
             .slider(0.0, 100.0)
-            .doc("Height, in L per pixel of an unsmoothed step, from which on an edge may continue a stronger one."),
-        Param::float("high", "High", 30.0, [0.0, 200.0])
+            .hint("Contrast from which on an edge may continue a stronger one.").doc("Height, in L per pixel of an unsmoothed step, from which on an edge may continue a stronger one."),
+        Param::float("high", "Strong edges", 30.0, [0.0, 200.0])
             .slider(0.0, 100.0)
-            .doc("Height, in L per pixel of an unsmoothed step, from which on an edge is drawn by itself."),
-        Param::length("reach", "Reach", 120.0, [0.0, 600.0])
+            .hint("Contrast from which on an edge is drawn by itself.").doc("Height, in L per pixel of an unsmoothed step, from which on an edge is drawn by itself."),
+        Param::length("reach", "Joining distance", 120.0, [0.0, 600.0])
             .slider(0.0, 240.0)
             .structural()
-            .doc(
+            .hint("How far weak edges are followed from a strong one.").doc(
                 "Hysteresis: how far, along a chain of edges above `low`, the nearest one above `high` may be. \
                  Twelve pixels take a pass; tiles read as far around them.",
             ),

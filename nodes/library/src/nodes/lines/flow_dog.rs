@@ -15,8 +15,9 @@ use isophote_engine::ImageId;
 /// The node.
 pub static NODE: NodeSpec = NodeSpec {
     id: "flow_dog",
-    label: "Flow-based difference of Gaussians",
+    label: "Flowing lines",
     group: "lines",
+    hint: "Long clean lines that flow along the forms, also at creases and outlines of objects: white is paper, black is line.",
     doc: "Coherent lines: a difference of Gaussians across the edges, smoothed along them (Listing 4.1). \
           Where normals, depth or object ids are given and `guide_weight` is above 0, lines are also \
           drawn where these break, along the same flow. 1 is paper, 0 is line.",
@@ -35,27 +36,27 @@ pub static NODE: NodeSpec = NodeSpec {
         dog::EPSILON_P,
         dog::PHI_P,
         dog::THRESHOLD,
-        Param::int("iterations", "Iterations", 1, [1, 16]).slider(1.0, 5.0).structural().doc(
+        Param::int("iterations", "Rounds", 1, [1, 16]).slider(1.0, 5.0).structural().hint("How often lines are looked for, each time on top of those found, which closes gaps.").doc(
             "Times the filter runs, each on the lightness times the lines found so far, which closes gaps.",
         ),
         KERNEL,
         INTEGRATOR,
-        Param::float("guide_weight", "Guide weight", 0.0, [0.0, 16.0])
+        Param::float("guide_weight", "Guide strength", 0.0, [0.0, 16.0])
             .slider(0.0, 2.0)
             .structural()
-            .doc("Strength of lines where normal, depth or object id break; 0 leaves the guides unread."),
+            .hint("Strength of the lines that normals, depth and object ids draw; 0 leaves these out.").doc("Strength of lines where normal, depth or object id break; 0 leaves the guides unread."),
         STEADINESS,
         WINDOW,
     ],
     build,
 };
 
-const INTEGRATOR: Param = Param::choice("integrator", "Integrator", Tracing::Midpoint.selected()).doc(
+const INTEGRATOR: Param = Param::choice("integrator", "Line tracing", Tracing::Midpoint.selected()).hint("How lines are followed: simply and fast, or more exactly.").doc(
     "How stream lines are stepped: Euler (2.176), second order (2.182), from pixel boundary to pixel \
      boundary with the Gaussian integrated exactly (Cabral and Leedom, 2.193), or second order with the tangent \
      here extrapolated from the last steps, which takes less time.",
 );
-const KERNEL: Param = Param::choice("kernel", "Kernel", Kernel::Separable.selected()).doc(
+const KERNEL: Param = Param::choice("kernel", "Precision", Kernel::Separable.selected()).hint("Fast, or thorough, which takes long and hardly looks different.").doc(
     "Separable: across the tangent at each pixel, then along its stream line. Two-dimensional: across the \
      tangent at every point of the stream line, as first proposed; costly, and hardly different to the eye.",
 );
@@ -63,14 +64,14 @@ const KERNEL: Param = Param::choice("kernel", "Kernel", Kernel::Separable.select
 choice! {
     /// Method by which stream lines are stepped.
     enum Tracing {
-        /// Euler's method (2.176).
-        Euler ("euler", "Euler"),
-        /// The midpoint method, a second-order Runge-Kutta method (2.182).
-        Midpoint ("rk2", "Runge-Kutta, second order"),
-        /// From pixel boundary to pixel boundary, with the Gaussian integrated exactly (2.193).
-        CabralLeedom ("cabral_leedom", "Cabral-Leedom"),
-        /// The midpoint method with an extrapolated tangent, of second order too and faster.
-        TwoStep ("two_step", "Two-step midpoint, second order"),
+        /// Euler's method.
+        Euler ("euler", "Simple"),
+        /// The midpoint method, a second-order Runge-Kutta method.
+        Midpoint ("rk2", "Exact"),
+        /// From pixel boundary to pixel boundary, the method of Cabral and Leedom.
+        CabralLeedom ("cabral_leedom", "Pixel by pixel"),
+        /// The midpoint method with an extrapolated tangent, as exact and faster.
+        TwoStep ("two_step", "Exact, faster"),
     }
 }
 

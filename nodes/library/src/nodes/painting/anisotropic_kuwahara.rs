@@ -12,8 +12,9 @@ use isophote_engine::ImageId;
 /// The node.
 pub static NODE: NodeSpec = NodeSpec {
     id: "anisotropic_kuwahara",
-    label: "Anisotropic Kuwahara",
+    label: "Flowing Kuwahara",
     group: "painting",
+    hint: "Paints the picture in flat strokes that lie along its forms, with sharp borders.",
     doc: "A painterly flattening along the local structure: every pixel takes the mean of the sectors of an \
           ellipse that lies along it, those that vary least counting most (5.14, 5.33). Directional features \
           survive and become strokes, borders stay sharp, and no clusters form. Several levels abstract more \
@@ -27,14 +28,14 @@ pub static NODE: NodeSpec = NodeSpec {
         Q,
         THRESHOLD,
         ALPHA,
-        Param::choice("weights", "Weights", Weights::Polynomial.selected()).doc(
+        Param::choice("weights", "Precision", Weights::Polynomial.selected()).hint("How patches are weighted: exactly, or nearly so and faster; the eye hardly sees a difference.").doc(
             "Weighting functions of the sectors: sampled from their definition (5.33), or polynomials (5.38), \
              which hardly differ and are faster on CPUs.",
         ),
-        Param::int("iterations", "Iterations", 1, [1, 10])
+        Param::int("iterations", "Rounds", 1, [1, 10])
             .slider(1.0, 5.0)
             .structural()
-            .doc("How often the filter runs, each time on its own result and that one's orientation."),
+            .hint("How often the picture is painted over.").doc("Times that the filter runs, each time on its own result and that one's orientation."),
         LEVELS,
         P_S,
         P_D,

@@ -10,8 +10,9 @@ use isophote_engine::ImageId;
 /// The node.
 pub static NODE: NodeSpec = NodeSpec {
     id: "generalized_kuwahara",
-    label: "Generalized Kuwahara",
+    label: "Smooth Kuwahara",
     group: "painting",
+    hint: "Flattens the picture to soft patches like paint and keeps its edges sharp.",
     doc: "A painterly flattening that keeps edges sharp: every pixel takes the mean of the smooth sectors of \
           a disc, those that vary least counting most (5.14). Transparent pixels lend no colour, and \
           coverage stays as it is.",
@@ -22,11 +23,11 @@ pub static NODE: NodeSpec = NodeSpec {
         Param::length("radius", "Radius", 6.0, [0.0, 40.0])
             .neutral_at_zero()
             .slider(0.0, 20.0)
-            .doc("Radius of the disc, 2.5 standard deviations of its Gaussian (r)."),
+            .hint("Size of the patches that colours are averaged over.").doc("Radius of the disc, 2.5 standard deviations of its Gaussian (r)."),
         SECTORS,
         Q,
         THRESHOLD,
-        Param::choice("method", "Method", Method::Spatial.selected()).uniform().doc(
+        Param::choice("method", "Method", Method::Spatial.selected()).uniform().hint("How the processor adds up; the picture is the same.").doc(
             "How the CPU sums up the sectors: pixel by pixel, or by the fast Fourier transform (5.16), whose \
              cost hardly grows with the radius. The picture is the same.",
         ),
@@ -38,8 +39,8 @@ choice! {
     /// Method by which the CPU sums up the sectors.
     enum Method {
         /// Pixel by pixel.
-        Spatial ("spatial", "Spatial"),
-        /// By the fast Fourier transform (5.16).
+        Spatial ("spatial", "Pixel by pixel"),
+        /// By the fast Fourier transform.
         Fourier ("fft", "Fourier transform"),
     }
 }

@@ -12,6 +12,7 @@ pub static NODE: NodeSpec = NodeSpec {
     id: "kuwahara",
     label: "Kuwahara",
     group: "painting",
+    hint: "Flattens noise and fine detail and keeps edges sharp; large sizes show square patches.",
     doc: "Removes noise and fine detail and keeps edges: every pixel takes the mean of that one of four \
           neighbouring regions that varies least (5.4), where several vary alike their mean. Large radii \
           show the regions' shape; the generalized and the anisotropic filter do not. Transparent pixels \
@@ -23,11 +24,15 @@ pub static NODE: NodeSpec = NodeSpec {
         Param::length("radius", "Radius", 3.0, [0.0, 60.0])
             .neutral_at_zero()
             .slider(0.0, 20.0)
+            .hint("Size of the patches that colours are averaged over.")
             .doc("Reach of the regions from the pixel (r); squares take the nearest whole number."),
-        Param::choice("regions", "Regions", Regions::Squares.selected()).uniform().doc(
-            "Squares that share the pixel as a corner (5.1), or Gaussians with the squares' means and \
+        Param::choice("regions", "Patches", Regions::Squares.selected())
+            .uniform()
+            .hint("Shape of the patches: squares, or soft rounds, which leave no pattern.")
+            .doc(
+                "Squares that share the pixel as a corner (5.1), or Gaussians with the squares' means and \
              variances (5.6), which leave no ringing.",
-        ),
+            ),
     ],
     build,
 };
@@ -35,10 +40,10 @@ pub static NODE: NodeSpec = NodeSpec {
 choice! {
     /// The regions whose variances are compared.
     enum Regions {
-        /// Squares that share the pixel as a corner (5.1).
+        /// Squares that share the pixel as a corner.
         Squares ("squares", "Squares"),
-        /// Gaussians with the means and variances of the squares (5.6).
-        Gaussian ("gaussian", "Gaussian"),
+        /// Soft rounds of the size of the squares.
+        Gaussian ("gaussian", "Soft rounds"),
     }
 }
 

@@ -13,8 +13,9 @@ use isophote_engine::{Class, ImageId, PlanBuilder};
 /// The node.
 pub static NODE: NodeSpec = NodeSpec {
     id: "anisotropic_diffusion",
-    label: "Anisotropic Diffusion",
+    label: "Diffusion",
     group: "smoothing",
+    hint: "Lets colours run into each other and stop at edges, or run along them.",
     doc: "Diffuses colours and stops at edges: with Perona and Malik's diffusivity (3.2, 3.3), or with a \
           diffusion tensor that smooths along edges but not across them (edge-enhancing), or along lines \
           that it closes (coherence-enhancing). Every step is a weighted mean, so no value leaves the \
@@ -23,28 +24,28 @@ pub static NODE: NodeSpec = NodeSpec {
     inputs: &[ports::COLOR],
     output: ports::color_output("The diffused picture."),
     own_params: &[
-        Param::choice("scheme", "Scheme", Diffusion::PeronaMalik.selected()).doc("What stops or guides the diffusion."),
-        Param::int("iterations", "Iterations", 10, [0, 60]).neutral_at_zero()
+        Param::choice("scheme", "Method", Diffusion::PeronaMalik.selected()).hint("Whether smoothing stops at edges, runs along edges, or runs along lines and closes them."),
+        Param::int("iterations", "Rounds", 10, [0, 60]).neutral_at_zero()
             .slider(0.0, 40.0)
             .structural()
-            .doc("Steps. Without edges, their number times twice the time step is the variance of the smoothing in px^2."),
-        Param::float("time_step", "Time step", 0.2, [0.01, 0.25])
-            .doc("Length of a step. Above 1/4 explicit steps would not be stable."),
-        Param::float("contrast", "Contrast", 4.0, [0.01, 100.0]).slider(0.5, 20.0).doc(
+            .hint("How often the picture is smoothed.").doc("Steps. Without edges, their number times twice the time step is the variance of the smoothing in px^2."),
+        Param::float("time_step", "Step size", 0.2, [0.01, 0.25])
+            .hint("How much is smoothed in each round.").doc("Length of a step. Above 1/4 explicit steps would not be stable."),
+        Param::float("contrast", "Edge contrast", 4.0, [0.01, 100.0]).slider(0.5, 20.0).hint("Difference of colour that counts as an edge.").doc(
             "Difference of colour that counts as an edge, K or lambda of 3.2, in per cent of RGB: between \
              neighbours (Perona-Malik), or per pixel. Of the coherence-enhancing scheme, four times the \
              gradient above which lines are drawn out.",
         ),
-        Param::choice("diffusivity", "Diffusivity", Diffusivity::Rational.selected()).uniform().doc(
+        Param::choice("diffusivity", "Preference", Diffusivity::Rational.selected()).uniform().hint("Whether wide areas or strong edges are kept. Counts with the first method.").doc(
             "Perona-Malik only: 1 / (1 + s^2 / lambda^2), which favours wide regions, or exp(-s^2 / K^2), \
              which favours strong edges (3.2).",
         ),
-        Param::length("sigma", "Sigma", 1.0, [0.0, 10.0])
+        Param::length("sigma", "Pre-smoothing", 1.0, [0.0, 10.0])
             .slider(0.0, 4.0)
-            .doc("Smoothing before gradients are taken, against noise; not used by Perona-Malik."),
-        Param::length("rho", "Rho", 3.0, [0.0, 20.0])
+            .hint("Smoothing before edges are looked for, against noise. Does not count with the first method.").doc("Smoothing before gradients are taken, against noise; not used by Perona-Malik."),
+        Param::length("rho", "Flow scale", 3.0, [0.0, 20.0])
             .slider(0.0, 8.0)
-            .doc("Smoothing of the structure tensor, the scale of lines; of the coherence-enhancing scheme only."),
+            .hint("Size of the lines that are followed. Counts with the method along lines.").doc("Smoothing of the structure tensor, the scale of lines; of the coherence-enhancing scheme only."),
     ],
     build,
 };
@@ -52,12 +53,12 @@ pub static NODE: NodeSpec = NodeSpec {
 choice! {
     /// Measure that stops or guides the diffusion.
     enum Diffusion {
-        /// A diffusivity that falls with the difference between neighbours (3.2, 3.3).
-        PeronaMalik ("perona_malik", "Perona-Malik"),
-        /// A diffusion tensor that smooths along edges and not across them.
-        EdgeEnhancing ("edge_enhancing", "Edge-enhancing"),
-        /// A diffusion tensor that smooths along lines and closes them.
-        CoherenceEnhancing ("coherence_enhancing", "Coherence-enhancing"),
+        /// Perona and Malik's: less is smoothed where neighbours differ more.
+        PeronaMalik ("perona_malik", "Stop at edges"),
+        /// Edge-enhancing: smooths along edges and not across them.
+        EdgeEnhancing ("edge_enhancing", "Along edges"),
+        /// Coherence-enhancing: smooths along lines and closes them.
+        CoherenceEnhancing ("coherence_enhancing", "Along lines"),
     }
 }
 

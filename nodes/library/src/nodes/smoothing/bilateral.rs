@@ -13,6 +13,7 @@ pub static NODE: NodeSpec = NodeSpec {
     id: "bilateral",
     label: "Bilateral",
     group: "smoothing",
+    hint: "Flattens areas of like colour and keeps the edges between them.",
     doc: "Flattens regions and keeps edges: a mean of the neighbours, weighted by their distance and by \
           the difference of their colour (3.4), repeated. The separable form is fast and shows \
           artefacts along rows and columns (3.3). Transparent pixels lend no colour, and coverage stays \
@@ -21,20 +22,20 @@ pub static NODE: NodeSpec = NodeSpec {
     inputs: &[ports::COLOR],
     output: ports::color_output("The abstracted picture."),
     own_params: &[
-        Param::choice("kernel", "Kernel", Kernel::Full.selected())
-            .doc("The full window (3.2), or rows and then columns (3.3)."),
-        Param::length("sigma_d", "Sigma d", 3.0, [0.0, 20.0])
+        Param::choice("kernel", "Neighbourhood", Kernel::Full.selected())
+            .hint("Whether all directions are smoothed at once, or rows and then columns, which is faster and less clean.").doc("The full window (3.2), or rows and then columns (3.3)."),
+        Param::length("sigma_d", "Smoothing reach", 3.0, [0.0, 20.0])
             .slider(0.0, 10.0)
-            .doc("Standard deviation of the domain weight."),
-        Param::float("sigma_r", "Sigma r", 4.25, [0.01, 200.0])
+            .hint("How far colours are smoothed over what is around them.").doc("Standard deviation of the domain weight."),
+        Param::float("sigma_r", "Colour tolerance", 4.25, [0.01, 200.0])
             .slider(0.5, 30.0)
-            .doc("Standard deviation of the range weight, in CIELAB units or in per cent of RGB."),
-        Param::int("iterations", "Iterations", 4, [0, 20])
+            .hint("How different colours may be and still be smoothed into one.").doc("Standard deviation of the range weight, in CIELAB units or in per cent of RGB."),
+        Param::int("iterations", "Rounds", 4, [0, 20])
             .neutral_at_zero()
             .slider(0.0, 10.0)
             .structural()
-            .doc("How often the filter runs."),
-        Param::choice("space", "Colour space", Space::Lab.selected()).doc(
+            .hint("How often the picture is smoothed: more rounds give flatter areas.").doc("Times that the filter runs."),
+        Param::choice("space", "Colour space", Space::Lab.selected()).hint("How colours are compared: as the eye sees them, or as they are stored.").doc(
             "Where differences are measured: CIELAB, L in 0..100; or gamma-encoded RGB times 100, so that \
              white lies 173 from black.",
         ),
@@ -46,7 +47,7 @@ pub static NODE: NodeSpec = NodeSpec {
 choice! {
     /// Space in which differences of colour are measured.
     enum Space {
-        /// CIELAB, L in 0..100.
+        /// CIELAB: differences as the eye sees them.
         Lab ("lab", "CIELAB"),
         /// Gamma-encoded RGB.
         Rgb ("rgb", "RGB"),

@@ -15,8 +15,9 @@ use isophote_engine::ImageId;
 /// The node.
 pub static NODE: NodeSpec = NodeSpec {
     id: "flow_bilateral",
-    label: "Flow Bilateral",
+    label: "Flow bilateral",
     group: "smoothing",
+    hint: "Flattens areas of like colour and draws their features out along flowing lines.",
     doc: "Flattens regions and draws features out along their flow: a bilateral filter across the edges \
           and then along the stream lines of the structure tensor (3.10), repeated. Colours are compared \
           in CIELAB. Transparent pixels lend no colour, and coverage stays as it is.",

@@ -10,8 +10,9 @@ use isophote_engine::{Class, ImageId};
 /// The node.
 pub static NODE: NodeSpec = NodeSpec {
     id: "flow_dilation",
-    label: "Flow Dilation",
+    label: "Flow strokes",
     group: "smoothing",
+    hint: "Paints strokes of one colour along the edges.",
     doc: "Paints strokes of one colour along the edges: each pixel takes the colour from where noise is \
           greatest on the stream line through it, as continuous glass patterns do. Transparent pixels \
           lend no colour, and coverage stays as it is.",
@@ -19,17 +20,15 @@ pub static NODE: NodeSpec = NodeSpec {
     inputs: &[ports::COLOR, ports::TENSOR],
     output: ports::color_output("The picture in strokes."),
     own_params: &[
-        Param::length("length", "Length", 12.0, [0.0, 60.0]).neutral_at_zero().slider(0.0, 30.0).doc(
-            "Arc length that is searched on each side; strokes are up to twice as long.",
-        ),
-        Param::bool("adapt", "Adapt length", false).doc(
+        Param::length("length", "Stroke length", 12.0, [0.0, 60.0]).neutral_at_zero().slider(0.0, 30.0).hint("How far strokes reach to each side; they are up to twice as long.").doc("Arc length that is searched on each side."),
+        Param::bool("adapt", "Spare corners", false).hint("Makes strokes shorter where directions are uncertain, so that they do not cross corners.").doc(
             "Searches less far where the orientation is uncertain, (1 + A)^2 / 4 times the length (6.3.1), which keeps \
              strokes from crossing corners.",
         ),
-        Param::length("width", "Width", 1.2, [0.0, 10.0])
+        Param::length("width", "Stroke fineness", 1.2, [0.0, 10.0])
             .slider(0.0, 4.0)
-            .doc("Standard deviation of the smoothing of the noise: strokes are about three times as wide."),
-        Param::int("seed", "Seed", 1, [0, 9999]).slider(0.0, 100.0).doc("Another number, other strokes."),
+            .hint("Strokes are about three times as wide as this.").doc("Standard deviation of the smoothing of the noise."),
+        Param::int("seed", "Seed", 1, [0, 9999]).slider(0.0, 100.0).hint("Another number gives other strokes."),
         HOLD,
     ],
     build,

@@ -15,8 +15,9 @@ use isophote_engine::ImageId;
 /// The node.
 pub static NODE: NodeSpec = NodeSpec {
     id: "line_integral_convolution",
-    label: "Line Integral Convolution",
+    label: "Flow blur",
     group: "smoothing",
+    hint: "Blurs the picture along its edges, as if painted along them, and never across.",
     doc: "Smooths the picture along the edges by following the stream lines of the smoothed structure \
           tensor (2.186): features become coherent, as if painted along, and do not bleed across edges. \
           Lines grow shorter where the orientation is uncertain (6.3.1) or turns (6.3.2).",
@@ -27,13 +28,13 @@ pub static NODE: NodeSpec = NodeSpec {
     build,
 };
 
-const INTEGRATOR: Param = Param::choice("integrator", "Integrator", Stepping::Midpoint.selected()).doc(
+const INTEGRATOR: Param = Param::choice("integrator", "Line tracing", Stepping::Midpoint.selected()).hint("How lines are followed: simply, exactly, pixel by pixel, or exactly and faster.").doc(
     "How lines are stepped: Euler's method (2.177), the second-order midpoint method (2.182), from pixel \
      boundary to pixel boundary with the Gaussian integrated exactly on the pixels (Cabral and Leedom, 2.193), \
      where `step` has no part, or the midpoint method with the tangent here extrapolated from the last steps, of \
      second order too, which takes less time.",
 );
-const SAMPLING: Param = Param::choice("sampling", "Sampling", Sampling::Linear.selected()).uniform().doc(
+const SAMPLING: Param = Param::choice("sampling", "Direction sampling", Sampling::Linear.selected()).uniform().hint("Whether directions between pixels are blended, or taken from the nearest: faster, and rougher.").doc(
     "What a line follows between pixels: the tensor interpolated bilinearly, or that of the nearest pixel, which takes \
      less and gives rougher lines (2.9.2); Cabral and Leedom's method always takes the pixel's own.",
 );
@@ -41,9 +42,9 @@ const SAMPLING: Param = Param::choice("sampling", "Sampling", Sampling::Linear.s
 choice! {
     /// Tensor that a line follows between pixels.
     enum Sampling {
-        /// The interpolated tensor.
-        Linear ("linear", "Linear"),
-        /// The tensor of the nearest pixel.
+        /// Blended between pixels.
+        Linear ("linear", "Blended"),
+        /// Taken from the nearest pixel.
         Nearest ("nearest", "Nearest"),
     }
 }
@@ -51,14 +52,14 @@ choice! {
 choice! {
     /// Method by which stream lines are stepped.
     enum Stepping {
-        /// Euler's method (2.177).
-        Euler ("euler", "Euler"),
-        /// The midpoint method, a second-order Runge-Kutta method (2.182).
-        Midpoint ("rk2", "Runge-Kutta 2"),
-        /// From pixel boundary to pixel boundary, with the Gaussian integrated exactly (2.193).
-        CabralLeedom ("cabral_leedom", "Cabral-Leedom"),
-        /// The midpoint method with an extrapolated tangent, of second order too and faster.
-        TwoStep ("two_step", "Two-step midpoint"),
+        /// Euler's method.
+        Euler ("euler", "Simple"),
+        /// The midpoint method, a second-order Runge-Kutta method.
+        Midpoint ("rk2", "Exact"),
+        /// From pixel boundary to pixel boundary, the method of Cabral and Leedom.
+        CabralLeedom ("cabral_leedom", "Pixel by pixel"),
+        /// The midpoint method with an extrapolated tangent, as exact and faster.
+        TwoStep ("two_step", "Exact, faster"),
     }
 }
 

@@ -10,8 +10,9 @@ use isophote_engine::ImageId;
 /// The node.
 pub static NODE: NodeSpec = NodeSpec {
     id: "mean_curvature_flow",
-    label: "Mean Curvature Flow",
+    label: "Mean curvature flow",
     group: "smoothing",
+    hint: "Simplifies shapes: small features round off, shrink and vanish.",
     doc: "Simplifies shapes: every isophote moves with its curvature (6.1), so that small features round \
           off, shrink and vanish. The constraint (6.2) protects what follows the local orientation, and \
           shock filtering in between keeps edges sharp. Transparent pixels lend no colour, and coverage \
@@ -20,23 +21,23 @@ pub static NODE: NodeSpec = NodeSpec {
     inputs: &[ports::COLOR, ports::TENSOR],
     output: ports::color_output("The simplified picture."),
     own_params: &[
-        Param::int("iterations", "Iterations", 15, [0, 60]).neutral_at_zero()
+        Param::int("iterations", "Rounds", 15, [0, 60]).neutral_at_zero()
             .slider(0.0, 40.0)
             .structural()
-            .doc("Steps of the flow."),
-        Param::float("constraint", "Constraint", 0.0, [0.0, 1.0]).structural().doc(
+            .hint("How often shapes are simplified.").doc("Steps of the flow."),
+        Param::float("constraint", "Keep directions", 0.0, [0.0, 1.0]).structural().hint("How far lines that follow the forms of the picture are spared; 1 spares them most.").doc(
             "How much the flow is slowed down where isophotes do not follow the smoothed structure tensor \
              of the input, or one that is connected, r of 6.2: 0 for the free flow, 1 for none across the \
              orientation.",
         ),
-        Param::float("time_step", "Time step", 0.25, [0.01, 0.25]).doc(
+        Param::float("time_step", "Step size", 0.25, [0.01, 0.25]).hint("How much is simplified in each round.").doc(
             "Length of a step. Where one of this length would overshoot, pixels go to the mean of their \
              neighbours and no further.",
         ),
-        Param::int("shock_every", "Shock every", 0, [0, 60])
+        Param::int("shock_every", "Sharpen every", 0, [0, 60])
             .slider(0.0, 15.0)
             .structural()
-            .doc("Sharpens edges by a step of the classical shock filter (6.3) after every so many steps; 0 for never."),
+            .hint("Rounds after which edges are sharpened once; 0 for never.").doc("Sharpening is a step of the classical shock filter (6.3)."),
         tensor_options::RHO.doc("Standard deviation of the Gaussian that smooths the tensor of the constraint, where none is connected."),
     ],
     build,

@@ -17,6 +17,7 @@ pub static NODE: NodeSpec = NodeSpec {
     id: "morphology",
     label: "Morphology",
     group: "smoothing",
+    hint: "Removes small light or dark spots, or widens light or dark areas.",
     doc: "Greatest and least values within a disc, channel by channel. Opening removes light features \
           smaller than the disc, closing dark ones; one after the other they smooth the picture. Closing \
           first gives the lighter result that suits watercolour. Transparent pixels lend no colour, and \
@@ -25,11 +26,13 @@ pub static NODE: NodeSpec = NodeSpec {
     inputs: &[ports::COLOR],
     output: ports::color_output("The filtered picture."),
     own_params: &[
-        Param::choice("operator", "Operator", Operator::OpenClose.selected())
+        Param::choice("operator", "Operation", Operator::OpenClose.selected())
+            .hint("Widens light or dark areas, or removes small light or dark spots.")
             .doc("Dilation and erosion, opening (erosion, then dilation), closing (the reverse), or both."),
         Param::length("radius", "Radius", 3.0, [0.0, 30.0])
             .neutral_at_zero()
             .slider(0.0, 12.0)
+            .hint("Size of the spots that go, or how far areas are widened.")
             .doc("Radius of the disc; its pixels are those with x^2 + y^2 <= radius (radius + 1)."),
     ],
     build,
@@ -38,18 +41,18 @@ pub static NODE: NodeSpec = NodeSpec {
 choice! {
     /// The morphological operator.
     enum Operator {
-        /// The greatest value.
-        Dilate ("dilate", "Dilate"),
-        /// The least value.
-        Erode ("erode", "Erode"),
-        /// Erosion, then dilation.
-        Open ("open", "Open"),
-        /// Dilation, then erosion.
-        Close ("close", "Close"),
+        /// Dilation: the greatest value.
+        Dilate ("dilate", "Widen lights"),
+        /// Erosion: the least value.
+        Erode ("erode", "Widen darks"),
+        /// Opening: erosion, then dilation.
+        Open ("open", "Remove lights"),
+        /// Closing: dilation, then erosion.
+        Close ("close", "Remove darks"),
         /// Opening, then closing.
-        OpenClose ("open_close", "Open, then close"),
+        OpenClose ("open_close", "Lights, then darks"),
         /// Closing, then opening.
-        CloseOpen ("close_open", "Close, then open"),
+        CloseOpen ("close_open", "Darks, then lights"),
     }
 }
 

@@ -14,8 +14,9 @@ use isophote_engine::ImageId;
 /// The node.
 pub static NODE: NodeSpec = NodeSpec {
     id: "oriented_bilateral",
-    label: "Oriented Bilateral",
+    label: "Oriented bilateral",
     group: "smoothing",
+    hint: "Flattens areas of like colour along the edges and keeps their borders clean.",
     doc: "Flattens regions of like colour and keeps their borders: a bilateral filter in two passes, \
           along the gradient and then along the tangent of the local structure (Listing 3.1), \
           repeated. Colours are compared in CIELAB. Transparent pixels lend no colour, and coverage \

@@ -11,8 +11,9 @@ use isophote_engine::ImageId;
 /// The node.
 pub static NODE: NodeSpec = NodeSpec {
     id: "edge_tangent_flow",
-    label: "Edge Tangent Flow",
+    label: "Edge tangent flow",
     group: "structure",
+    hint: "Finds the directions of the picture's edges by averaging them over their surroundings.",
     doc: "Local orientation by Kang's edge tangent flow: the tangents of the colour gradient (optimized \
           3x3 operator) are averaged several times over a neighbourhood (2.134), each by the strength of \
           its gradient against the centre's (2.135) and by how much it agrees with the centre's \
@@ -29,16 +30,18 @@ pub static NODE: NodeSpec = NodeSpec {
     own_params: &[
         Param::length("radius", "Radius", 5.0, [1.0, 20.0])
             .slider(2.0, 12.0)
+            .hint("How far around directions are averaged.")
             .doc("Neighbours lie nearer than this."),
-        Param::choice("kernel", "Kernel", Window::Box.selected())
+        Param::choice("kernel", "Neighbourhood", Window::Box.selected())
             .uniform()
+            .hint("Whether all neighbours count alike, or near ones more.")
             .doc("Spatial weight: 1 for all neighbours, or a Gaussian of a third of the radius."),
-        Param::int("iterations", "Iterations", 3, [1, 10])
+        Param::int("iterations", "Rounds", 3, [1, 10])
             .structural()
-            .doc("Times that the tangents are averaged."),
-        Param::bool("separable", "Separable", false)
+            .hint("How often directions are averaged."),
+        Param::bool("separable", "Fast", false)
             .structural()
-            .doc("Averages over the row and then over the column: faster for large radii, less exact."),
+            .hint("Averages rows and then columns: faster for large radii, and less exact."),
     ],
     build,
 };

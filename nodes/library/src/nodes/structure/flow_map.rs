@@ -8,8 +8,9 @@ use isophote_engine::ImageId;
 /// The node.
 pub static NODE: NodeSpec = NodeSpec {
     id: "flow_map",
-    label: "Flow Map",
+    label: "Flow map",
     group: "structure",
+    hint: "Bends the directions that strokes and lines follow to what an artist painted.",
     doc: "Bends a tensor field to what an artist painted: red and green are the x and y of a direction, 0.5 for \
           none, and alpha is its strength. Which way a direction points does not matter. Where nothing is painted \
           the field stays as it is.",

@@ -13,8 +13,9 @@ use isophote_engine::ImageId;
 /// The node.
 pub static NODE: NodeSpec = NodeSpec {
     id: "structure_tensor",
-    label: "Structure Tensor",
+    label: "Structure tensor",
     group: "structure",
+    hint: "Finds the directions of the picture's edges and how clear they are.",
     doc: "Local orientation of the picture: the outer product of the colour gradient with itself \
           (2.34), smoothed by a Gaussian. The minor eigenvector runs along edges. Normals, depth and \
           object numbers, where given, count as further channels; flat parts can be filled from what is around \

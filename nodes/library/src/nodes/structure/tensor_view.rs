@@ -14,8 +14,9 @@ use isophote_engine::{ImageId, PlanBuilder};
 /// The node.
 pub static NODE: NodeSpec = NodeSpec {
     id: "tensor_view",
-    label: "Tensor View",
+    label: "Tensor view",
     group: "structure",
+    hint: "Shows the directions of a picture as flowing lines, as colours or as grey.",
     doc: "Shows a tensor field: noise smeared along its stream lines by line integral convolution; the \
           tangent's orientation as a hue that is the more saturated the more anisotropic the place is \
           (horizontal edges are red); or, as grey, an anisotropy, the gradient's magnitude, a cornerness, \
@@ -32,23 +33,23 @@ pub static NODE: NodeSpec = NodeSpec {
     }],
     output: ports::color_output("An opaque picture of it."),
     own_params: &[
-        Param::choice("show", "Show", View::StreamLines.selected()).doc(
+        Param::choice("show", "Show", View::StreamLines.selected()).hint("What is shown of the directions in the picture.").doc(
             "What to show: stream lines (2.186), the angle of the tangent, the anisotropy (2.137), (2.138) or \
              (2.139), sqrt(lambda1), the condition number c (2.140) as c / (1 + c), the corner measure (2.159), (2.160), (2.161) or det, or the anisotropy \
              where it is significant (2.154) and else black.",
         ),
-        Param::length("sigma", "Sigma", 6.0, [0.5, 40.0])
+        Param::length("sigma", "Line length", 6.0, [0.5, 40.0])
             .slider(1.0, 20.0)
-            .doc("Standard deviation of the convolution along the stream lines."),
-        Param::float("k", "Harris k", 0.04, [0.0, 0.25])
+            .hint("Length of the flow lines.").doc("Standard deviation of the convolution along the stream lines."),
+        Param::float("k", "Corner threshold", 0.04, [0.0, 0.25])
             .slider(0.0, 0.1)
-            .doc("k of the Harris measure det - k tr^2 (2.159); usual are 0.04 to 0.06, from 0.25 on nothing is a corner."),
-        Param::float("alpha", "Significance level", 0.05, [0.0001, 0.5])
+            .hint("How clear a corner must be with Harris corners.").doc("k of the Harris measure det - k tr^2 (2.159); usual are 0.04 to 0.06, from 0.25 on nothing is a corner."),
+        Param::float("alpha", "Chance level", 0.05, [0.0001, 0.5])
             .slider(0.001, 0.2)
-            .doc("Share of pure noise that passes for structure, alpha of (2.154)."),
-        Param::length("rho", "Rho of the tensor", tensor_options::RHO.default_float(), [0.0, 40.0])
+            .hint("Share of pure noise that may pass for structure.").doc("Share of pure noise that passes for structure, alpha of (2.154)."),
+        Param::length("rho", "Found at scale", tensor_options::RHO.default_float(), [0.0, 40.0])
             .slider(0.5, 10.0)
-            .doc("Standard deviation that the tensor was smoothed by: significance counts 4 pi rho^2 samples (2.158)."),
+            .hint("Flow scale at which the directions were found. Counts with significance.").doc("Standard deviation that the tensor was smoothed by: significance counts 4 pi rho^2 samples (2.158)."),
     ],
     build,
 };
@@ -59,29 +60,29 @@ const SPREAD: f32 = 0.22;
 choice! {
     /// Measure to show.
     enum View {
-        /// Noise along the stream lines (2.186).
-        StreamLines ("lic", "Line integral convolution"),
-        /// The angle of the tangent as a hue.
-        Orientation ("orientation", "Orientation"),
-        /// The anisotropy (2.137).
+        /// Noise, smeared along the lines.
+        StreamLines ("lic", "Flow lines"),
+        /// The direction as a hue.
+        Orientation ("orientation", "Direction"),
+        /// The anisotropy: how clear the direction is.
         Anisotropy ("anisotropy", "Anisotropy"),
-        /// The anisotropy of the roots of the eigenvalues (2.138).
-        AnisotropySqrt ("anisotropy_sqrt", "Anisotropy of roots"),
-        /// The squared anisotropy (2.139).
-        AnisotropySquared ("anisotropy_squared", "Squared anisotropy"),
-        /// The magnitude of the gradient, sqrt(lambda1).
-        Magnitude ("magnitude", "Gradient magnitude"),
-        /// The condition number c (2.140) as c / (1 + c): 1/2 where no orientation is, 1 on edges.
+        /// The anisotropy, with clear directions nearer to each other.
+        AnisotropySqrt ("anisotropy_sqrt", "Mild anisotropy"),
+        /// The anisotropy, with clear directions further from each other.
+        AnisotropySquared ("anisotropy_squared", "Sharp anisotropy"),
+        /// The strength of the edges.
+        Magnitude ("magnitude", "Edge strength"),
+        /// The condition number: grey where no direction is, white on edges.
         Condition ("condition", "Condition number"),
-        /// The corner measure det - k tr^2 (2.159).
+        /// Corners by the measure of Harris.
         Harris ("harris", "Harris corners"),
-        /// The corner measure det / tr (2.160).
+        /// Corners by the measure of Foerstner.
         Foerstner ("foerstner", "Foerstner corners"),
-        /// The corner measure lambda2 (2.161).
-        TomasiKanade ("tomasi_kanade", "Tomasi-Kanade corners"),
-        /// The corner measure det.
+        /// Corners by the measure of Tomasi and Kanade.
+        TomasiKanade ("tomasi_kanade", "Tomasi corners"),
+        /// Corners by the measure of Rohr.
         Rohr ("rohr", "Rohr corners"),
-        /// The anisotropy where it is significant (2.154), else black.
+        /// The anisotropy where it is no chance, and black elsewhere.
         Significance ("significance", "Significance"),
     }
 }

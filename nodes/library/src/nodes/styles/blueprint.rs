@@ -15,6 +15,7 @@ pub static NODE: NodeSpec = NodeSpec {
     id: "blueprint",
     label: "Blueprint",
     group: "styles",
+    hint: "Light lines on blue paper with a grid.",
     doc: "Light lines on blue paper with a grid: the flow-based difference of Gaussians of lightness and, \
           where given, of the breaks of normals, depth and object ids.",
     section: "1.2, 4.5",
@@ -29,24 +30,25 @@ pub static NODE: NodeSpec = NodeSpec {
         lines::TEXTURE_LINES,
         Param::color("line_color", "Line colour", [0.92, 0.96, 1.0, 1.0])
             .group(LOOK)
-            .doc("Colour of lines and grid; its alpha is their opacity."),
+            .hint("Colour and opacity of the lines and the grid."),
         Param::color("paper_color", "Paper colour", [0.0706, 0.251, 0.4824, 1.0])
             .group(LOOK)
-            .doc("Colour of the paper."),
+            .hint("Colour of the paper."),
         Param::length("grid", "Grid", 32.0, [0.0, 4096.0])
             .slider(0.0, 128.0)
             .group(LOOK)
-            .doc("Spacing of the grid, every fifth line stronger; 0 for none."),
+            .hint("Spacing of the grid, whose every fifth line is stronger; 0 for none."),
         Param::float("paper_texture", "Paper texture", 0.12, [0.0, 1.0])
             .group(LOOK)
-            .doc("Strength of the paper's texture."),
+            .hint("How rough the paper looks."),
         Param::float("fill", "Fill", 0.25, [0.0, 1.0])
             .group(LOOK)
-            .doc("How much of the picture's tones shows on the paper."),
+            .hint("How much of the picture's tones shows on the paper."),
         abstraction::DETAIL,
-        Param::bool("cover", "Cover", false)
+        Param::bool("cover", "Opaque paper", false)
             .group(LOOK)
-            .doc("Paper also where the picture is transparent; the result is then opaque."),
+            .hint("Puts paper also where the picture is transparent.")
+            .doc("The result is then opaque."),
         abstraction::ABSTRACTION,
         lines::N_E,
         abstraction::SIGMA_D,

@@ -20,6 +20,7 @@ pub static NODE: NodeSpec = NodeSpec {
     id: "cartoon",
     label: "Cartoon",
     group: "styles",
+    hint: "Flat colours, a few tones and flowing black lines.",
     doc: "Flattened colours and coherent black lines: bilateral filtering in CIELAB along the local \
           structure, lines by the flow-based difference of Gaussians, soft quantization of lightness. \
           Defaults are those of Fig. 4.8, but for `tau`, and for steps of lightness, which are crisp and lie \
@@ -45,10 +46,11 @@ pub static NODE: NodeSpec = NodeSpec {
         abstraction::ABSTRACTION,
         LINE_FILTER,
         lines::N_E,
-        Param::int("n_a", "Iterations for colour", 4, [0, 16])
+        Param::int("n_a", "Smoothing rounds", 4, [0, 16])
             .slider(0.0, 8.0)
             .structural()
             .group(ADVANCED)
+            .hint("How often the colours are smoothed: more rounds give flatter areas.")
             .doc("Bilateral iterations behind the colours (n_a)."),
         abstraction::SIGMA_D,
         abstraction::SIGMA_R,
@@ -63,9 +65,12 @@ pub static NODE: NodeSpec = NodeSpec {
         lines::GUIDE_WEIGHT,
         // Crisper steps than those of Fig. 4.8, where there is something that they follow.
         quantization::PHI_Q.with_default(Value::Float(8.0)).group(ADVANCED),
-        Param::bool("adaptive", "Adaptive quantization", false)
+        Param::bool("adaptive", "Adaptive steps", false)
             .group(ADVANCED)
-            .doc("Steepness from the gradient of L instead of `phi_q`, for steady sequences."),
+            .hint(
+                "Softer steps in flat areas and steeper ones at edges, so that moving pictures flicker less.",
+            )
+            .doc("Steepness from the gradient of L instead of `phi_q`."),
         quantization::LAMBDA_DELTA.group(ADVANCED),
         quantization::OMEGA_DELTA.group(ADVANCED),
         quantization::LAMBDA_PHI.group(ADVANCED),
@@ -81,32 +86,34 @@ pub static NODE: NodeSpec = NodeSpec {
 
 const LINE_COLOR: Param = Param::color("line_color", "Line colour", [0.0, 0.0, 0.0, 1.0])
     .group(LOOK)
-    .doc("Colour of the lines; its alpha is their opacity.");
+    .hint("Colour and opacity of the lines.");
 const SIGMA_A: Param = Param::length("sigma_a", "Edge smoothing", 1.5, [0.0, 20.0])
     .slider(0.0, 5.0)
     .structural()
     .group(ADVANCED)
-    .doc("Standard deviation of the final smoothing along the edges, against jagged steps and lines; 0 for none.");
+    .hint("Last smoothing along the edges, against jagged steps and lines; 0 for none.")
+    .doc("Standard deviation of the final smoothing along the edges.");
 
-const LINE_FILTER: Param = Param::choice("line_filter", "Line filter", LineFilter::Flow.selected())
+const LINE_FILTER: Param = Param::choice("line_filter", "Line method", LineFilter::Flow.selected())
     .group(ADVANCED)
-    .doc(
+    .hint("Lines that flow along the forms, or plain ones, for which normals, depth and object ids do not count.").doc(
         "How lines are found: across and along the local orientation (4.5), or in all directions alike (4.2), where \
          `sigma_m` has no part and guides draw no lines.",
     );
-const WARP: Param = Param::length("warp", "Warp", 0.0, [0.0, 20.0])
+const WARP: Param = Param::length("warp", "Edge pull", 0.0, [0.0, 20.0])
     .slider(0.0, 6.0)
     .structural()
     .group(ADVANCED)
-    .doc("How far the colours beside sharp edges are pulled towards them before lines are drawn, which narrows blurred edges (phi_w of `warp_sharpen`); 0 for not at all.");
+    .hint("How far colours are pulled towards sharp edges, which narrows blurred ones; 0 for not at all.")
+    .doc("The pull comes before lines are drawn (phi_w of `warp_sharpen`).");
 
 choice! {
     /// Filter by which lines are found.
     enum LineFilter {
-        /// Across and along the local orientation (4.5).
-        Flow ("flow", "Flow-based"),
-        /// In all directions alike (4.2).
-        Isotropic ("isotropic", "Isotropic"),
+        /// Lines that flow along the forms.
+        Flow ("flow", "Flowing"),
+        /// Plain lines, found in all directions alike.
+        Isotropic ("isotropic", "Plain"),
     }
 }
 

@@ -16,6 +16,7 @@ pub static NODE: NodeSpec = NodeSpec {
     id: "coherent",
     label: "Coherent",
     group: "styles",
+    hint: "The picture as if drawn with one confident hand: hair, branches and folds flow together, and outlines become clear.",
     doc: "The picture as if drawn with one confident hand: hair, branches and folds flow together, outlines \
           become clear, and small round features keep their shape. Smoothing along the local structure and \
           sharpening across it, in turn; defaults are the thesis'.",
@@ -51,11 +52,11 @@ pub static NODE: NodeSpec = NodeSpec {
     build,
 };
 
-const DETAIL: Param = abstraction::DETAIL
-    .doc("How much survives the abstraction: scales `sigma_t` and `sigma_g` from 2 to 1/2 times.");
+const DETAIL: Param = abstraction::DETAIL.doc("Scales `sigma_t` and `sigma_g` from 2 to 1/2 times.");
 const SHARPNESS: Param = Param::float("sharpness", "Sharpness", 0.5, [0.0, 1.0])
     .group(LOOK)
-    .doc("How wide a soft edge may be to become a sharp one: scales `radius` from 0 to 2 times.");
+    .hint("How wide a soft edge may be to become a sharp one.")
+    .doc("Scales `radius` from 0 to 2 times.");
 
 fn build(scope: &mut Scope<'_>) -> ImageId {
     let (filtered, tensor) = filtered(scope, of);

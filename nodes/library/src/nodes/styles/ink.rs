@@ -32,6 +32,7 @@ pub static NODE: NodeSpec = NodeSpec {
     id: "ink",
     label: "Ink",
     group: "styles",
+    hint: "Drawings on paper, in pencil, ink, charcoal, woodcut or pastel.",
     doc: "Drawings on paper: pencil, ink, charcoal, woodcut or pastel. All are one filter, the flow-based \
           difference of Gaussians in its sharpening form (4.10), thresholded more or less softly (4.8), with \
           hatching, strokes along the form and the paper's grain, at five sets of values; `advanced` trims \
@@ -41,16 +42,17 @@ pub static NODE: NodeSpec = NodeSpec {
     inputs: &[ports::COLOR, flow_dog::NORMAL, flow_dog::DEPTH, flow_dog::OBJECT_ID, ports::REST_POSITION],
     output: ports::color_output("The drawing."),
     own_params: &[
-        Param::choice("style", "Style", Style::Ink.selected())
+        Param::choice("style", "Medium", Style::Ink.selected())
             .group(LOOK)
-            .doc("What is drawn with; sets every technical value."),
-        lines::LINE_WIDTH.doc("Width of lines; 2 is the style's own. None is narrower than a pixel of the picture: it is lighter instead."),
-        lines::LINE_AMOUNT.doc(
-            "How many lines: 0 leaves masses and shading alone, 1 draws faint edges too; scales p (4.10).",
-        ),
-        lines::SUPPRESS_SMALL.doc(
-            "Drops short and weak lines: lengthens the smoothing along lines by up to 0.8 of it and halves p.",
-        ),
+            .hint("What is drawn with: pencil, ink, charcoal, woodcut or pastel.")
+            .doc("Sets every technical value."),
+        lines::LINE_WIDTH
+            .hint("How thick lines are: 2 is the medium's own.")
+            .doc("None is narrower than a pixel of the picture: it is lighter instead."),
+        lines::LINE_AMOUNT
+            .hint("How many lines there are: 0 leaves areas and shading alone, 1 draws faint edges too.")
+            .doc("Scales p (4.10)."),
+        lines::SUPPRESS_SMALL.doc("Lengthens the smoothing along lines by up to 0.8 of it and halves p."),
         lines::OUTLINE_WIDTH,
         lines::CREASE_WIDTH,
         lines::TEXTURE_LINES,
@@ -59,30 +61,59 @@ pub static NODE: NodeSpec = NodeSpec {
         abstraction::DETAIL,
         Param::color("line_color", "Line colour", [0.09, 0.085, 0.1, 1.0])
             .group(LOOK)
-            .doc("Colour of what is drawn with; its alpha is its opacity."),
+            .hint("Colour and opacity of what is drawn with."),
         Param::color("paper_color", "Paper colour", [0.965, 0.955, 0.93, 1.0])
             .group(LOOK)
-            .doc("Colour of the paper."),
-        tone::SATURATION.doc("Factor on the picture's own colours, in as far as the style shows them."),
-        Param::bool("cover", "Cover", false)
+            .hint("Colour of the paper."),
+        tone::SATURATION
+            .hint("Strength of the picture's own colours, as far as the medium shows them: 0 is grey."),
+        Param::bool("cover", "Opaque paper", false)
             .group(LOOK)
-            .doc("Paper also where the picture is transparent; the result is then opaque."),
-        factor("edge_scale", "Edge scale", "Factor on sigma_e, the scale of edges (4.7)."),
-        factor("flow_length", "Flow length", "Factor on sigma_m, the smoothing along lines (4.5)."),
-        factor("sharpening", "Sharpening", "Factor on p, the weight of edges (4.10)."),
+            .hint("Puts paper also where the picture is transparent.")
+            .doc("The result is then opaque."),
+        factor("edge_scale", "Edge scale", "Size of the edges that draw lines: 1 is the medium's own.")
+            .doc("Factor on sigma_e (4.7)."),
+        factor(
+            "flow_length",
+            "Line smoothing",
+            "How far lines are smoothed along themselves: 1 is the medium's own.",
+        )
+        .doc("Factor on sigma_m (4.5)."),
+        factor("sharpening", "Edge strength", "How strongly edges are brought out: 1 is the medium's own.")
+            .doc("Factor on p (4.10)."),
         shift(
             "threshold_shift",
-            "Threshold shift",
+            "Ink level",
             100.0,
-            "Added to epsilon, the lightness from which on there is no ink (4.8).",
+            "Puts ink on lighter tones above 0, and on fewer below.",
+        )
+        .doc("Added to epsilon, the lightness from which on there is no ink (4.8)."),
+        factor("steepness", "Ink contrast", "How suddenly paper turns to ink: 1 is the medium's own.")
+            .doc("Factor on phi (4.8)."),
+        factor(
+            "carving",
+            "Carving",
+            "How much of the hatching follows the form: 1 is the medium's own, 0 is regular.",
+        )
+        .doc("Factor on the share of the hatching that follows the form."),
+        factor(
+            "shading",
+            "Shading",
+            "How fast tones grow dark that are hatched or rubbed in: 1 is the medium's own.",
         ),
-        factor("steepness", "Steepness", "Factor on phi, the steepness of the ramp from paper to ink (4.8)."),
-        factor("carving", "Carving", "Factor on how much of the hatching follows the form; the rest is regular."),
-        factor("shading", "Shading", "Factor on how fast tones grow dark, which are hatched or rubbed in."),
-        factor("hatch_spacing", "Hatch spacing", "Factor on the distance of hatches."),
-        factor("grain_size", "Grain size", "Factor on the size of the paper's grains."),
-        shift("own_color", "Own colour", 1.0, "Added to how much of the picture's own colours shows."),
-        factor("edge_smoothing", "Edge smoothing", "Factor on the final smoothing along the edges."),
+        factor(
+            "hatch_spacing",
+            "Hatch spacing",
+            "Distance between the lines of the hatching: 1 is the medium's own.",
+        ),
+        factor("grain_size", "Grain size", "Size of the grain of the paper: 1 is the medium's own."),
+        shift(
+            "own_color",
+            "Picture colours",
+            1.0,
+            "Shows more of the picture's own colours above 0, and less below.",
+        ),
+        factor("edge_smoothing", "Edge smoothing", "Last smoothing along the edges: 1 is the medium's own."),
         dog::K.group(ADVANCED),
         abstraction::ABSTRACTION,
         lines::N_E,
@@ -97,12 +128,12 @@ pub static NODE: NodeSpec = NodeSpec {
     build,
 };
 
-const fn factor(id: &'static str, label: &'static str, doc: &'static str) -> Param {
-    Param::float(id, label, 1.0, [0.0, 4.0]).slider(0.0, 2.0).group(ADVANCED).doc(doc)
+const fn factor(id: &'static str, label: &'static str, hint: &'static str) -> Param {
+    Param::float(id, label, 1.0, [0.0, 4.0]).slider(0.0, 2.0).group(ADVANCED).hint(hint)
 }
 
-const fn shift(id: &'static str, label: &'static str, most: f32, doc: &'static str) -> Param {
-    Param::float(id, label, 0.0, [-most, most]).group(ADVANCED).doc(doc)
+const fn shift(id: &'static str, label: &'static str, most: f32, hint: &'static str) -> Param {
+    Param::float(id, label, 0.0, [-most, most]).group(ADVANCED).hint(hint)
 }
 
 /// Factor by which guides count more than where lightness is inhibited: here it counts in full, and light grounds are

@@ -15,8 +15,9 @@ use isophote_engine::{ImageId, math};
 /// The node.
 pub static NODE: NodeSpec = NodeSpec {
     id: "oil_paint",
-    label: "Oil Paint",
+    label: "Oil paint",
     group: "styles",
+    hint: "Brush strokes of thick paint that follow the shapes, with marks of bristles and light on them.",
     doc: "Brush strokes that follow the shapes: regions are flattened, painted in strokes of one colour \
           along the local orientation and smoothed along it; noise smoothed the same way gives the marks \
           of bristles, and the light on them.",
@@ -28,14 +29,14 @@ pub static NODE: NodeSpec = NodeSpec {
         STROKE_WIDTH,
         Param::float("bristle", "Bristle", 0.5, [0.0, 1.0])
             .group(LOOK)
-            .doc("How dark and light the marks of the bristles are: up to 20 units of L on white."),
+            .hint("How clearly the marks of the bristles show.").doc("How dark and light the marks are: up to 20 units of L on white."),
         Param::float("shine", "Shine", 0.4, [0.0, 1.0])
             .group(LOOK)
-            .doc("How much light the ridges of the paint catch: up to 30 units of L on white."),
+            .hint("How much light the ridges of the paint catch.").doc("Up to 30 units of L on white."),
         Param::float("light_angle", "Light angle", 120.0, [0.0, 360.0])
             .degrees()
             .group(LOOK)
-            .doc("Where the light comes from, counter-clockwise from the right; 90 is above."),
+            .hint("Where the light comes from: 0 is the right, 90 above, 180 the left."),
         abstraction::DETAIL,
         tone::SATURATION,
         tone::LIGHTS,
@@ -44,34 +45,34 @@ pub static NODE: NodeSpec = NodeSpec {
         abstraction::N_A.with_default(Value::Int(2)).doc("Bilateral iterations before the strokes."),
         abstraction::SIGMA_D,
         abstraction::SIGMA_R,
-        Param::length("rho", "Rho", 3.0, [0.0, 20.0])
+        Param::length("rho", "Flow scale", 3.0, [0.0, 20.0])
             .slider(0.0, 8.0)
             .group(ADVANCED)
-            .doc("Standard deviation of the smoothing of the structure tensor: strokes turn no faster."),
-        Param::int("levels", "Levels", 5, [1, 8])
+            .hint("How gently strokes turn.").doc("Standard deviation of the smoothing of the structure tensor: strokes turn no faster."),
+        Param::int("levels", "Scales", 5, [1, 8])
             .structural()
             .group(ADVANCED)
-            .doc("Scales at which the orientation is found (2.8): strokes in flat parts follow what is around them."),
-        Param::length("dilation_length", "Dilation length", 8.0, [0.0, 60.0])
+            .hint("Sizes at which directions are looked for: more let strokes in flat areas follow what is around.").doc("Scales at which the orientation is found (2.8)."),
+        Param::length("dilation_length", "Colour length", 8.0, [0.0, 60.0])
             .slider(0.0, 30.0)
             .group(ADVANCED)
-            .doc("Arc length on each side over which strokes take one colour (5.1)."),
-        Param::length("sigma_t", "Sigma t", 3.0, [0.0, 40.0])
+            .hint("How far a stroke keeps one colour, to each side.").doc("Arc length on each side over which strokes take one colour (5.1)."),
+        Param::length("sigma_t", "Colour smoothing", 3.0, [0.0, 40.0])
             .slider(0.0, 20.0)
             .group(ADVANCED)
-            .doc("Standard deviation of the smoothing of colours along the flow."),
-        Param::length("sigma_n", "Sigma n", 1.0, [0.0, 10.0])
+            .hint("How far colours are smoothed along the strokes.").doc("Standard deviation of the smoothing of colours along the flow."),
+        Param::length("sigma_n", "Bristle width", 1.0, [0.0, 10.0])
             .slider(0.0, 4.0)
             .group(ADVANCED)
-            .doc("Standard deviation of the smoothing of the noise: how wide strokes and marks are."),
-        Param::length("sigma_b", "Sigma b", 10.0, [0.0, 40.0])
+            .hint("How wide strokes and the marks of bristles are.").doc("Standard deviation of the smoothing of the noise."),
+        Param::length("sigma_b", "Bristle length", 10.0, [0.0, 40.0])
             .slider(0.0, 20.0)
             .group(ADVANCED)
-            .doc("Standard deviation of the smoothing of the noise along the flow: how long marks are."),
+            .hint("How long the marks of bristles are.").doc("Standard deviation of the smoothing of the noise along the flow."),
         Param::int("seed", "Seed", 1, [0, 9999])
             .slider(0.0, 100.0)
             .group(ADVANCED)
-            .doc("Another number, other strokes."),
+            .hint("Another number gives other strokes."),
         STEADINESS,
         WINDOW,
         HOLD,
@@ -83,11 +84,13 @@ pub static NODE: NodeSpec = NodeSpec {
 const STROKE_LENGTH: Param = Param::length("stroke_length", "Stroke length", 20.0, [0.0, 80.0])
     .slider(2.0, 50.0)
     .group(LOOK)
-    .doc("Length of strokes: scales `dilation_length`, `sigma_t` and `sigma_b` by length / 20.");
+    .hint("How long brush strokes are.")
+    .doc("Scales `dilation_length`, `sigma_t` and `sigma_b` by length / 20.");
 const STROKE_WIDTH: Param = Param::length("stroke_width", "Stroke width", 4.0, [0.5, 20.0])
     .slider(1.0, 12.0)
     .group(LOOK)
-    .doc("Width of strokes: scales `sigma_n` and `rho` by width / 4.");
+    .hint("How wide brush strokes are.")
+    .doc("Scales `sigma_n` and `rho` by width / 4.");
 
 /// Units of L, on white, of the look controls at 1.
 const MOST_BRISTLE: f32 = 20.0;

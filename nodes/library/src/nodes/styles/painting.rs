@@ -18,6 +18,7 @@ pub static NODE: NodeSpec = NodeSpec {
     id: "painting",
     label: "Painting",
     group: "styles",
+    hint: "Flat strokes of paint that follow the forms: coarse where little happens, fine where the picture varies.",
     doc: "Flat strokes of paint that follow the forms of the picture, coarse where little happens and fine \
           where it varies: the anisotropic Kuwahara filter from coarse to fine scales. No stroke is painted \
           across strong contrast, nor across edges of normals, depth and object ids, where given.",
@@ -26,9 +27,8 @@ pub static NODE: NodeSpec = NodeSpec {
     output: ports::color_output("The painting."),
     own_params: &[
         BRUSH_SIZE,
-        abstraction::DETAIL.doc(
-            "How much fine detail survives: scales `p_s` from 1/4 times on and, above the middle, the brush down to 0.6.",
-        ),
+        abstraction::DETAIL
+            .doc("Scales `p_s` from 1/4 times on and, above the middle, the brush down to 0.6."),
         STROKE_LENGTH,
         SHARPNESS,
         tone::SATURATION.structural(),
@@ -58,13 +58,16 @@ const OBJECT_ID: Port = Port { doc: "Object numbers; strokes end at borders.", .
 const BRUSH_SIZE: Param = Param::length("brush_size", "Brush size", 12.0, [0.0, 64.0])
     .slider(2.0, 32.0)
     .group(LOOK)
-    .doc("Width of round strokes where the picture varies: scales `radius` by size / 12.");
+    .hint("Width of the strokes where the picture varies.")
+    .doc("Width of round strokes: scales `radius` by size / 12.");
 const STROKE_LENGTH: Param = Param::float("stroke_length", "Stroke length", 0.5, [0.0, 1.0])
     .group(LOOK)
-    .doc("How far strokes stretch along the forms: 0 is nearly round; scales `alpha` from 4 to 1/4 times.");
+    .hint("How far strokes stretch along the forms: 0 is nearly round.")
+    .doc("Scales `alpha` from 4 to 1/4 times.");
 const SHARPNESS: Param = Param::float("sharpness", "Sharpness", 0.5, [0.0, 1.0])
     .group(LOOK)
-    .doc("How crisp the borders of strokes are: scales `q` from 1/4 to 4 times.");
+    .hint("How crisp the borders of strokes are.")
+    .doc("Scales `q` from 1/4 to 4 times.");
 /// A factor from 1/4 to 4 for a control of 0..=1, 1 at its middle.
 fn quadruple(control: f32) -> f32 {
     4f32.powf(2.0 * control - 1.0)

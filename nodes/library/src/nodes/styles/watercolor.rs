@@ -14,8 +14,9 @@ use isophote_engine::ImageId;
 /// The node.
 pub static NODE: NodeSpec = NodeSpec {
     id: "watercolor",
-    label: "Watercolor",
+    label: "Watercolour",
     group: "styles",
+    hint: "Washes of thin paint with wavering outlines, pigment at their borders and the grain of the paper.",
     doc: "Washes of thin paint: the bilateral filter along the local structure and a closing followed by \
           an opening simplify the picture, outlines waver, pigment gathers at the borders, in clouds and in \
           the grain of the paper.",
@@ -26,25 +27,25 @@ pub static NODE: NodeSpec = NodeSpec {
         Param::length("wash_size", "Wash size", 1.5, [0.0, 30.0])
             .slider(0.0, 12.0)
             .group(LOOK)
-            .doc("Radius of the smallest patches of colour that are painted."),
+            .hint("Size of the smallest patches of colour that are painted.").doc("Radius of these patches."),
         abstraction::DETAIL,
         Param::float("pigment", "Pigment", 0.95, [0.0, 1.0])
             .slider(0.3, 1.0)
             .group(LOOK)
-            .doc("How much pigment is in the water: 1 keeps the colours, less shows the paper, 0 leaves it white."),
+            .hint("How much paint is in the water: 1 keeps the colours, less lets the paper shine through, 0 leaves it white."),
         Param::float("edge_darkening", "Edge darkening", 0.5, [0.0, 1.0])
             .group(LOOK)
-            .doc("How much pigment gathers at the borders of dark regions."),
+            .hint("How much paint gathers at the borders of dark areas."),
         Param::float("clouds", "Clouds", 0.5, [0.0, 1.0])
             .group(LOOK)
-            .doc("How unevenly the water carries the pigment."),
+            .hint("How unevenly the water carries the paint."),
         Param::float("granulation", "Granulation", 0.5, [0.0, 1.0])
             .group(LOOK)
-            .doc("How much pigment settles in the grain of the paper."),
+            .hint("How much paint settles in the grain of the paper."),
         Param::length("wobble", "Wobble", 2.0, [0.0, 20.0])
             .slider(0.0, 6.0)
             .group(LOOK)
-            .doc("How far outlines waver; far ones in waves that are longer than `wavelength`, so that none folds."),
+            .hint("How far outlines waver.").doc("Far ones waver in waves that are longer than `wavelength`, so that none folds."),
         tone::SATURATION,
         tone::LIGHTS,
         tone::DARKS,
@@ -55,19 +56,19 @@ pub static NODE: NodeSpec = NodeSpec {
         Param::length("sigma_a", "Edge smoothing", 2.0, [0.0, 20.0])
             .slider(0.0, 5.0)
             .group(ADVANCED)
-            .doc("Standard deviation of the smoothing of the patches along their outlines."),
+            .hint("How far patches are smoothed along their outlines.").doc("Standard deviation of the smoothing of the patches along their outlines."),
         Param::length("edge_width", "Edge width", 2.0, [0.0, 30.0])
             .slider(0.0, 10.0)
             .group(ADVANCED)
-            .doc("Width of the dark borders, the standard deviation of a Gaussian."),
-        Param::float("wavelength", "Wavelength", 24.0, [2.0, 400.0])
+            .hint("Width of the dark borders.").doc("Standard deviation of a Gaussian."),
+        Param::float("wavelength", "Wobble length", 24.0, [2.0, 400.0])
             .slider(8.0, 100.0)
             .group(ADVANCED)
-            .doc("Length of the waves of the outlines, in pixels of the full-size picture."),
+            .hint("Length of the waves in the outlines, in pixels of the full-size picture."),
         Param::float("grain_size", "Grain size", 2.5, [0.5, 40.0])
             .slider(1.0, 10.0)
             .group(ADVANCED)
-            .doc("Size of the paper's grain, in pixels of the full-size picture."),
+            .hint("Size of the grain of the paper, in pixels of the full-size picture."),
         STEADINESS,
         WINDOW,
         RENEWAL,

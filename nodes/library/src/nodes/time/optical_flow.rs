@@ -12,6 +12,7 @@ pub static NODE: NodeSpec = NodeSpec {
     id: "optical_flow",
     label: "Optical flow",
     group: "time",
+    hint: "Finds how things move from one frame to the next.",
     doc: "Where the points of a picture are in a neighbouring frame, estimated by dense inverse search with variational \
           refinement (Kroeger et al. 2016). Unknown where there is no such frame.",
     section: "",
@@ -25,10 +26,11 @@ pub static NODE: NodeSpec = NodeSpec {
     own_params: &[
         Param::choice("direction", "Direction", Direction::Backward.selected())
             .group("time")
+            .hint("Whether motion leads to the frame before, or to the one after.")
             .doc("To the frame before, for `motion`, or to the one after, for `motion_forward`."),
         Param::choice("quality", "Quality", Quality::Medium.selected())
             .group("time")
-            .doc("How much is done for precision."),
+            .hint("How much care is taken over the motion: more takes longer."),
     ],
     build,
 };

@@ -11,6 +11,7 @@ pub static NODE: NodeSpec = NodeSpec {
     id: "steady",
     label: "Steady",
     group: "time",
+    hint: "Averages flicker and noise of moving pictures away before they reach a style.",
     doc: "Flicker and noise, averaged away before they reach a filter: neighbouring frames are carried here along the \
           motion of things and count where they agree. For pictures that are not stylized; the styles have a steadiness \
           of their own, which averages what is not decided yet.",
@@ -25,7 +26,7 @@ const COLOR_AGREEMENT: Param =
     Param::float("color_agreement", "Colour agreement", COLOUR_AGREEMENT, [0.1, 200.0])
         .slider(1.0, 40.0)
         .group("time")
-        .doc(
+        .hint("How different colours of neighbouring frames may be and still be averaged.").doc(
             "How far the colours of frames may differ to be averaged, CIELAB units: the standard deviation of a Gaussian.",
         );
 

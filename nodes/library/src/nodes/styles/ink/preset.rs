@@ -8,7 +8,7 @@ use crate::stages::lines::{self, length_factor, width_factor};
 choice! {
     /// Tool that is drawn with.
     pub enum Style {
-        /// Thin grey lines, tones hatched in two directions, a fine grain.
+        /// Thin grey lines, tones hatched in two directions, and a fine grain.
         Pencil ("pencil", "Pencil"),
         /// Black, white and hatching.
         Ink ("ink", "Ink"),
@@ -37,11 +37,13 @@ impl Style {
 /// Amount of the drawing that is dark.
 pub const TONE: Param = Param::float("tone", "Tone", 0.5, [0.0, 1.0])
     .group(LOOK)
-    .doc("How much is dark: 0 leaves lines alone, 1 fills what is not bright; shifts epsilon and scales the shading from 0 to 4 times.");
+    .hint("How much of the drawing is dark: 0 leaves lines alone, 1 fills all that is not bright.")
+    .doc("Shifts epsilon and scales the shading from 0 to 4 times.");
 /// Amount of the paper that shows.
-pub const GRAIN: Param = Param::float("grain", "Grain", 0.5, [0.0, 1.0])
+pub const GRAIN: Param = Param::float("grain", "Paper grain", 0.5, [0.0, 1.0])
     .group(LOOK)
-    .doc("How much the paper shows in lines and tones, from not at all to twice the style's own.");
+    .hint("How much the paper shows in lines and tones: 0.5 is the medium's own, 0 none.")
+    .doc("Scales the medium's own grain from 0 to 2 times.");
 
 /// One set of values; lengths in pixels of the full-size picture.
 #[derive(Clone, Copy, Debug, PartialEq)]
