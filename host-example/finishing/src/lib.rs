@@ -7,13 +7,18 @@
 //! | [`sheet`] | contact sheets |
 //! | [`shot`] | frames of a scene, rendered and stylized |
 //! | [`staging`] | options of scenes, as command lines have them |
+//! | [`writing`] | options of files that are written, as command lines have them |
+//! | [`naming`] | names of results that nobody names |
 //! | [`stylize`] | styles, presets and looks, and what stylizes a frame on the renderer's device |
 
 #![forbid(unsafe_code)]
 
 pub mod apply;
+pub mod naming;
+mod options;
 pub mod sheet;
 pub mod shot;
 pub mod staging;
 pub mod stylize;
 pub mod video;
+pub mod writing;

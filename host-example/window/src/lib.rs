@@ -8,8 +8,8 @@
 //! | `app` | the window's events, and when a frame is drawn | `keys`, `opening`, `clicks`, `pace` |
 //! | `widgets` | the controls | one file each |
 //! | `drawing` | what lives on the device | `stage`, `shown`, `made`, `screen`, `sources`, `source`, `pictures`, `snapshot`, `live_look`, `canvas`, `probe`, `panel` |
-//! | `jobs` | work beside the window | `background`, `worker`, `opening`, `dialogs`, `document`, `reader`, `exporting`, `export`, `look_work`, `listing`, `preview`, `watch`, `idle` |
-//! | `state` | all that is known of what is shown, steps back, and the window's end | `session`, `open`, `scenery`, `document`, `playback`, `looks`, `look`, `chain`, `values`, `viewport`, `dialogs`, `leaving`, `plan`, `work`, `outcome`, `progress`, `history`, `file_steps`, `command`, `notes`, `record`, `settings` |
+//! | `jobs` | work beside the window | `background`, `worker`, `opening`, `dialogs`, `document`, `reader`, `exporting`, `export`, `reveal`, `look_work`, `listing`, `preview`, `watch`, `idle` |
+//! | `state` | all that is known of what is shown, steps back, and the window's end | `session`, `open`, `scenery`, `document`, `playback`, `looks`, `look`, `chain`, `values`, `viewport`, `dialogs`, `leaving`, `plan`, `formats`, `batch`, `running`, `work`, `outcome`, `progress`, `history`, `file_steps`, `command`, `notes`, `record`, `settings` |
 //! | | what comes with the program to try looks on | `demo`, `samples` |
 //! | | looks to choose from | `browser`, `preview`, `comparison`, `saving` |
 

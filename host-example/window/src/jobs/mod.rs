@@ -11,5 +11,6 @@ mod look_work;
 mod opening;
 pub mod preview;
 mod reader;
+mod reveal;
 mod watch;
 pub(crate) mod worker;

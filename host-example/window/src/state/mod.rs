@@ -1,5 +1,6 @@
 //! State of the window: plain values and what may be done with them. Nothing here has a thread or lives on the device.
 
+pub mod batch;
 pub mod browser;
 pub mod chain;
 pub mod command;
@@ -8,6 +9,7 @@ pub mod demo;
 pub mod dialogs;
 pub mod document;
 pub mod file_steps;
+pub mod formats;
 pub mod history;
 pub mod leaving;
 pub mod look;
@@ -20,6 +22,7 @@ pub mod playback;
 pub mod preview;
 pub mod progress;
 pub mod record;
+pub mod running;
 pub mod samples;
 pub mod saving;
 pub mod scenery;

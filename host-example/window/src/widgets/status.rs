@@ -3,6 +3,7 @@
 use egui::{Button, DragValue, Label, RichText, Slider, Ui};
 
 use super::theme;
+use crate::state::running::Running;
 use crate::state::session::Session;
 use crate::state::work::Request;
 
@@ -11,7 +12,8 @@ pub fn show(ui: &mut Ui, session: &mut Session) {
     ui.horizontal(|ui| {
         ui.set_min_height(22.0);
         if let Some(share) = session.work.exported {
-            ui.add(egui::ProgressBar::new(share).desired_width(160.0).text("Exporting"));
+            let text = session.work.running.as_ref().map_or_else(|| "Exporting".to_owned(), Running::words);
+            ui.add(egui::ProgressBar::new(share).desired_width(240.0).text(text));
             if ui.button("Cancel").clicked() {
                 session.work.ask(Request::CancelExport);
             }

@@ -12,6 +12,11 @@ use crate::state::work::Request;
 /// Points of the bar, beside the menu, up to which the name is left out.
 const NARROW: f32 = 660.0;
 
+/// Points that the right end of the bar needs for the button of exports.
+const WITH_EXPORT: f32 = 110.0;
+/// The same for all that belongs there.
+const WITH_ALL: f32 = 330.0;
+
 /// Shows the bar.
 pub fn show(ui: &mut Ui, session: &mut Session) {
     ui.horizontal(|ui| {
@@ -61,7 +66,7 @@ fn file_menu(ui: &mut Ui, session: &mut Session) {
             }
         }
         ui.separator();
-        let can_export = session.open.file().is_some() && (has_look || session.open.scenery().is_some());
+        let can_export = session.can_export();
         let copy = Button::new("Copy the command line").shortcut_text("");
         if ui.add_enabled(session.open.file().is_some(), copy).clicked() {
             ui.ctx().copy_text(command::copied(session));
@@ -71,6 +76,14 @@ fn file_menu(ui: &mut Ui, session: &mut Session) {
             session.plan_export();
             ui.close();
         }
+        item(
+            ui,
+            session,
+            "Use the look on several pictures…",
+            "",
+            Request::Choose(Dialog::Several),
+            has_look,
+        );
         ui.separator();
         let recent = session.settings.recent.clone();
         if !recent.is_empty() {
@@ -182,12 +195,21 @@ fn overlays(ui: &mut Ui, session: &mut Session) {
 
 fn right(ui: &mut Ui, session: &mut Session) {
     // The menu has it all.
-    let is_narrow = ui.available_width() < 260.0;
+    let width = ui.available_width();
     ui.with_layout(egui::Layout::right_to_left(egui::Align::Center), |ui| {
         if ui.button("?").on_hover_text("Keys and mouse").clicked() {
             session.dialogs.shows_help = !session.dialogs.shows_help;
         }
-        if !session.open.has_picture() || is_narrow {
+        if !session.open.has_picture() || width < WITH_EXPORT {
+            return;
+        }
+        let export = Button::new("Export").fill(theme::CHOSEN);
+        let export = ui.add_enabled(session.can_export(), export);
+        let export = export.on_hover_text("Writes the picture, its frames or a video (Ctrl+E)");
+        if export.on_disabled_hover_text("Choose a style first").clicked() {
+            session.plan_export();
+        }
+        if width < WITH_ALL {
             return;
         }
         let copy = ui.add_enabled(session.open.file().is_some(), Button::new("Copy command"));
