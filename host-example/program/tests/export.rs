@@ -293,10 +293,10 @@ fn size_quality_and_depth_are_those_that_were_chosen() {
     });
     assert_eq!(image::image_dimensions(&light).expect("a picture"), (30, 20));
     assert_eq!(color(&light), image::ColorType::Rgb32F);
+    let light = image::open(&light).expect("a picture");
     // Floats are of light: what is opened again is the same picture.
     let small = plan(2, &|plan| (plan.choices.scaling, plan.choices.side) = (Scaling::Width, 30));
-    let [light, small] = [light, small].map(|file| image::open(file).expect("a picture"));
-    let small = small.into_rgb8();
+    let small = image::open(&small).expect("a picture").into_rgb8();
     for (light, encoded) in light.into_rgb32f().pixels().zip(small.pixels()) {
         let again = srgb_encode(light[1]) * 255.0;
         assert!((again - f32::from(encoded[1])).abs() < 2.5, "{again} {}", encoded[1]);

@@ -25,6 +25,7 @@ pub struct Running {
 impl Running {
     /// One that has just begun.
     pub fn new(place: PathBuf, noun: &'static str) -> Self {
+        let place = std::path::absolute(&place).unwrap_or(place);
         Self { place, noun, done: 0.0, total: 0.0, started: Instant::now() }
     }
 

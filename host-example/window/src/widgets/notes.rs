@@ -6,6 +6,11 @@ use super::theme;
 use crate::state::session::Session;
 use crate::state::work::Request;
 
+/// Points beside the text for the button that closes a note.
+const CLOSING: f32 = 48.0;
+/// The same with the button that shows its file.
+const SHOWING: f32 = 170.0;
+
 /// Shows all notes.
 pub fn show(context: &egui::Context, rect: Rect, session: &mut Session) {
     let (mut dismissed, mut shown) = (None, None);
@@ -24,7 +29,15 @@ pub fn show(context: &egui::Context, rect: Rect, session: &mut Session) {
                     ui.horizontal(|ui| {
                         ui.set_max_width(width);
                         let color = if note.is_bad { theme::BAD } else { theme::TEXT };
-                        ui.add(egui::Label::new(RichText::new(&note.text).color(color)).wrap());
+                        let buttons = match (&note.place, note.is_bad) {
+                            (Some(_), _) => SHOWING,
+                            (None, true) => CLOSING,
+                            (None, false) => 0.0,
+                        };
+                        ui.vertical(|ui| {
+                            ui.set_max_width((width - buttons).max(80.0));
+                            ui.add(egui::Label::new(RichText::new(&note.text).color(color)).wrap());
+                        });
                         if let Some(place) = &note.place
                             && ui.add(Button::new("Show in folder").small()).clicked()
                         {
