@@ -5,6 +5,7 @@ mod support;
 
 use std::fs;
 use std::path::{Path, PathBuf};
+use std::time::Duration;
 
 use egui::accesskit::Role;
 use isophote_loader::Library;
@@ -21,6 +22,8 @@ use support::{folder, picture};
 
 /// Size of the window.
 const SIZE: &str = "1000x700";
+/// Time in which a click has done what it does.
+const PAUSE: Duration = Duration::from_millis(400);
 /// The upper part of the canvas, above what is said at its lower border.
 const CANVAS: Part = [0, 60, 650, 330];
 
@@ -145,10 +148,6 @@ fn one_look_goes_on_all_pictures_that_are_dropped_and_their_folder_is_shown() {
     let results = PathBuf::from(&batch.folder);
     asking.dialogs.batch = Some(batch);
     let start = places(asking, (1000, 700))("Use the look on all", Role::Button).center();
-    let mut told_of = session();
-    told_of.notes.tell_of(results.clone(), format!("3 pictures are in {}", results.display()), false);
-    let show = places(told_of, (1000, 700))("Show in folder", Role::Button).center();
-
     let mut command = view(folder.path(), SIZE);
     let path = std::env::var("PATH").unwrap_or_default();
     command.env("PATH", format!("{}:{path}", programs.display()));
@@ -170,8 +169,12 @@ fn one_look_goes_on_all_pictures_that_are_dropped_and_their_folder_is_shown() {
     support::succeeds(&mut apply);
     let same = [results.join("beach.png"), folder.path().join("own.png")].map(|file| fs::read(file).unwrap());
     assert!(same[0] == same[1], "it is what the command line makes");
+    // The button follows the text of the message, in the middle above the lower border.
+    let mut at = 200;
     window.wait_for("the folder", |window| {
-        window.click([show.x as i32, show.y as i32]);
+        at += 24;
+        window.click([at, 635]);
+        std::thread::sleep(PAUSE);
         told.exists() && fs::read_to_string(&told).unwrap() == format!("{}|", results.display())
     });
     window.close();

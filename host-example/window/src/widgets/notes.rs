@@ -6,10 +6,8 @@ use super::theme;
 use crate::state::session::Session;
 use crate::state::work::Request;
 
-/// Points beside the text for the button that closes a note.
-const CLOSING: f32 = 48.0;
-/// The same with the button that shows its file.
-const SHOWING: f32 = 170.0;
+/// Points beside the text for the buttons of a note that tells of a file.
+const BUTTONS: f32 = 170.0;
 
 /// Shows all notes.
 pub fn show(context: &egui::Context, rect: Rect, session: &mut Session) {
@@ -29,15 +27,18 @@ pub fn show(context: &egui::Context, rect: Rect, session: &mut Session) {
                     ui.horizontal(|ui| {
                         ui.set_max_width(width);
                         let color = if note.is_bad { theme::BAD } else { theme::TEXT };
-                        let buttons = match (&note.place, note.is_bad) {
-                            (Some(_), _) => SHOWING,
-                            (None, true) => CLOSING,
-                            (None, false) => 0.0,
-                        };
-                        ui.vertical(|ui| {
-                            ui.set_max_width((width - buttons).max(80.0));
-                            ui.add(egui::Label::new(RichText::new(&note.text).color(color)).wrap());
-                        });
+                        let text = egui::Label::new(RichText::new(&note.text).color(color)).wrap();
+                        match note.place {
+                            Some(_) => {
+                                ui.vertical(|ui| {
+                                    ui.set_max_width((width - BUTTONS).max(80.0));
+                                    ui.add(text)
+                                });
+                            }
+                            None => {
+                                ui.add(text);
+                            }
+                        }
                         if let Some(place) = &note.place
                             && ui.add(Button::new("Show in folder").small()).clicked()
                         {
