@@ -171,18 +171,27 @@ pub fn write(
             files::write(path, existing, |file| tiff_write::write(file, &pixels, meaning, profile.as_deref()))
         }
         Format::Jpeg => {
-            let pixels = opaque(path, pixels.converted(Precision::U8));
-            let (color, quality) = (color_type(&pixels), options.quality.unwrap_or(JPEG_QUALITY));
-            files::write(path, existing, |file| {
-                let mut encoder = image::codecs::jpeg::JpegEncoder::new_with_quality(file, quality);
-                let [across, down] = display::densities(meaning.pixel_aspect);
-                let density = (across as u16, down as u16);
-                encoder.set_pixel_density(PixelDensity { density, unit: PixelDensityUnit::PixelAspectRatio });
-                say(&mut encoder, meaning, pixels.channels());
-                as_text(encoder.write_image(pixels.bytes(), pixels.width(), pixels.height(), color))
-            })
+            let quality = options.quality.unwrap_or(JPEG_QUALITY);
+            write_jpeg(path, existing, opaque(path, pixels.converted(Precision::U8)), (quality, meaning))
         }
     }
+}
+
+fn write_jpeg(
+    path: &Path,
+    existing: Existing,
+    pixels: Pixels,
+    (quality, meaning): (u8, &Meaning),
+) -> Result<()> {
+    let color = color_type(&pixels);
+    files::write(path, existing, |file| {
+        let mut encoder = image::codecs::jpeg::JpegEncoder::new_with_quality(file, quality);
+        let [across, down] = display::densities(meaning.pixel_aspect);
+        let density = (across as u16, down as u16);
+        encoder.set_pixel_density(PixelDensity { density, unit: PixelDensityUnit::PixelAspectRatio });
+        say(&mut encoder, meaning, pixels.channels());
+        as_text(encoder.write_image(pixels.bytes(), pixels.width(), pixels.height(), color))
+    })
 }
 
 impl Options {

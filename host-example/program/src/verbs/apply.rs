@@ -225,9 +225,7 @@ pub fn run(args: &ApplyArgs) -> Result<()> {
     let mut planner = Planner::new(library.clone(), own)?.with_flow(args.flow.is_some());
     args.check_results(&tasks, &planner, &choices)?;
     let guides = args.guides_found(&tasks, &selection, opened.as_ref(), &planner)?;
-    let filter =
-        Filter::new(library.clone(), looks, backend, args.space, args.threads)?.into_space(args.output_space);
-    let filter = filter.precisely(args.result.is_precise());
+    let filter = args.filter(&library, looks, backend)?;
     let most = args.memory.unwrap_or_else(memory::usual);
     let needs = args.needs(&mut planner, &tasks, opened.as_ref(), most)?;
     if args.dry_run {
@@ -238,9 +236,7 @@ pub fn run(args: &ApplyArgs) -> Result<()> {
     if !tasks.are_several() {
         stop.ends_the_process("the picture");
     }
-    let size = opened.as_ref().and_then(Opened::size);
-    let size = size.map(|size| args.result.resize.and_then(|resize| resize.of(size).ok()).unwrap_or(size));
-    let report = args.report(&tasks).of_result(&files.output, size);
+    let report = args.report(&tasks).of_result(&files.output, args.size(opened.as_ref()));
     let is_parallel = tasks.are_several() && !is_film && threads == Threads::Several;
     let mut filters = filters(filter, is_parallel, || args.looks(&library, files.style, &entries))?;
     let budget = Budget::new(most.0, filters.len());
@@ -285,6 +281,18 @@ pub struct Files<'a> {
 }
 
 impl ApplyArgs {
+    /// The filter of pictures.
+    fn filter(&self, library: &Library, looks: Vec<MaskedStyle>, backend: Backend) -> Result<Filter> {
+        let filter = Filter::new(library.clone(), looks, backend, self.space, self.threads)?;
+        Ok(filter.into_space(self.output_space).precisely(self.result.is_precise()))
+    }
+
+    /// Size of the result of a picture, where that is known.
+    fn size(&self, opened: Option<&Opened>) -> Option<(u32, u32)> {
+        let size = opened.and_then(Opened::size)?;
+        Some(self.result.resize.and_then(|resize| resize.of(size).ok()).unwrap_or(size))
+    }
+
     /// Report of a run, with the frames that are missing.
     fn report(&self, tasks: &Tasks) -> Report {
         let is_listed = tasks.are_several() && !tasks.is_sequence();
