@@ -72,7 +72,7 @@ fn every_parameter_of_every_style_is_found_by_its_label() {
         assert!(labels.len() > 10);
         let name = session.look().name.clone();
         for (label, count) in labels {
-            let is_control = |role| role != egui::accesskit::Role::Label;
+            let is_control = |role| role != Role::Label;
             let found =
                 harness.query_all_by_label(label).filter(|node| is_control(node.accesskit_node().role()));
             let found = found.count();
@@ -149,9 +149,8 @@ fn controls_can_be_used_by_programs_that_read_windows_aloud() {
         .find(|parameter| parameter.param.label == "Posterize")
         .unwrap()
         .clone();
-    let slider = harness
-        .query_all_by_label("Posterize")
-        .find(|node| node.accesskit_node().role() == egui::accesskit::Role::Slider);
+    let slider =
+        harness.query_all_by_label("Posterize").find(|node| node.accesskit_node().role() == Role::Slider);
     slider.unwrap().click();
     harness.run_ok();
     assert!(harness.state().look().differs(&parameter), "a click in the middle of a slider sets it");
