@@ -332,6 +332,8 @@ fn light(text: &str) -> Read<Direction> {
 
 #[cfg(test)]
 mod tests {
+    use clap::Command;
+
     use super::*;
 
     #[test]
