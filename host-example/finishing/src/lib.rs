@@ -9,11 +9,15 @@
 //! | [`read_back`] | the same on frames that are read back from a renderer |
 //! | [`shot`] | frames of a scene, rendered and stylized |
 //! | [`staging`] | options of scenes, as command lines have them |
+//! | [`writing`] | options of files that are written, as command lines have them |
+//! | [`naming`] | names of results that nobody names |
 //! | [`stylize`] | styles, presets and looks, and what stylizes a frame on the renderer's device |
 
 #![forbid(unsafe_code)]
 
 pub mod apply;
+pub mod naming;
+mod options;
 pub mod processor;
 pub mod read_back;
 pub mod sheet;
@@ -21,3 +25,4 @@ pub mod shot;
 pub mod staging;
 pub mod stylize;
 pub mod video;
+pub mod writing;

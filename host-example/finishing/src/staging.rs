@@ -5,9 +5,10 @@ use std::path::{Path, PathBuf};
 use std::str::FromStr;
 use std::sync::Arc;
 
-use clap::{Args, Command, ValueEnum};
+use clap::{Args, ValueEnum};
 use glam::Vec3;
 
+use crate::options::{flag, words};
 use crate::stylize::preset;
 use isophote_files::error::{Error, Result};
 use isophote_files::output;
@@ -16,25 +17,6 @@ use isophote_render::background::Background;
 use isophote_scene::camera::{self, Direction, Framing};
 use isophote_scene::environment::Environment;
 use isophote_scene::{Scene, floor};
-
-/// The words of the options that `written` has a text for, in the order of their declaration; flags have an empty one.
-fn words<A: Args>(written: impl Fn(&str) -> Option<String>) -> Vec<String> {
-    let command = A::augment_args(Command::new("options"));
-    let mut words = Vec::new();
-    for option in command.get_arguments() {
-        let (Some(name), Some(value)) = (option.get_long(), written(option.get_id().as_str())) else {
-            continue;
-        };
-        words.push(format!("--{name}"));
-        words.extend(Some(value).filter(|_| option.get_action().takes_values()));
-    }
-    words
-}
-
-/// The text of a flag.
-fn flag(is_set: bool) -> Option<String> {
-    is_set.then(String::new)
-}
 
 /// Options for reading scenes.
 #[derive(Args, Clone, Debug, Default, PartialEq)]
@@ -350,6 +332,8 @@ fn light(text: &str) -> Read<Direction> {
 
 #[cfg(test)]
 mod tests {
+    use clap::Command;
+
     use super::*;
 
     #[test]

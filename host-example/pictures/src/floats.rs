@@ -40,7 +40,7 @@ pub enum Precision {
 /// As [`files::write()`]; [`Error::Input`] for other extensions.
 pub fn save(path: &Path, existing: Existing, picture: &Picture) -> Result<()> {
     match extension(path).as_str() {
-        "png" => save_png(path, existing, picture),
+        "png" => save_png(path, existing, picture, false),
         "exr" if picture.channels == 1 => {
             save_exr(path, existing, picture, &["Y"], Precision::Float, (None, None))
         }
@@ -73,30 +73,44 @@ fn extension(path: &Path) -> String {
     path.extension().and_then(|e| e.to_str()).unwrap_or_default().to_ascii_lowercase()
 }
 
-fn save_png(path: &Path, existing: Existing, picture: &Picture) -> Result<()> {
-    let byte = |value: f32| (value.clamp(0.0, 1.0) * 255.0 + 0.5) as u8;
-    let mut bytes = Vec::with_capacity(picture.data.len());
+/// Saves a picture as PNG of 8 bits, or of 16 where it is to be deep.
+///
+/// # Errors
+/// As [`files::write()`].
+pub fn save_png(path: &Path, existing: Existing, picture: &Picture, is_deep: bool) -> Result<()> {
+    let most = if is_deep { 65535.0 } else { 255.0 };
+    let whole = |value: f32| (value.clamp(0.0, 1.0) * most + 0.5) as u16;
+    let mut samples = Vec::with_capacity(picture.data.len());
     let mut opaque = true;
     for pixel in picture.data.chunks_exact(picture.channels) {
         match pixel {
             [r, g, b, a] => {
                 // PNG keeps colour and coverage apart.
                 let unpremultiply = if *a > 0.0 && *a < 1.0 { 1.0 / a } else { 1.0 };
-                bytes.extend([r, g, b].map(|v| byte(srgb_encode(v * unpremultiply))));
-                bytes.push(byte(*a));
+                samples.extend([r, g, b].map(|v| whole(srgb_encode(v * unpremultiply))));
+                samples.push(whole(*a));
                 opaque &= *a >= 1.0;
             }
-            _ => bytes.extend(pixel.first().map(|v| byte(*v))),
+            _ => samples.extend(pixel.first().map(|v| whole(*v))),
         }
     }
-    let color = match (picture.channels, opaque) {
-        (4, true) => image::ExtendedColorType::Rgb8,
-        (4, false) => image::ExtendedColorType::Rgba8,
-        _ => image::ExtendedColorType::L8,
+    use image::ExtendedColorType as Color;
+    let color = match (picture.channels, opaque, is_deep) {
+        (4, true, false) => Color::Rgb8,
+        (4, false, false) => Color::Rgba8,
+        (4, true, true) => Color::Rgb16,
+        (4, false, true) => Color::Rgba16,
+        (_, _, false) => Color::L8,
+        (_, _, true) => Color::L16,
     };
-    if color == image::ExtendedColorType::Rgb8 {
-        bytes = bytes.as_chunks::<4>().0.iter().flat_map(|[r, g, b, _]| [*r, *g, *b]).collect();
+    if picture.channels == 4 && opaque {
+        samples = samples.as_chunks::<4>().0.iter().flat_map(|[r, g, b, _]| [*r, *g, *b]).collect();
     }
+    let bytes: Vec<u8> = match is_deep {
+        // The encoder takes the machine's order.
+        true => samples.into_iter().flat_map(u16::to_ne_bytes).collect(),
+        false => samples.into_iter().map(|v| v as u8).collect(),
+    };
     files::write(path, existing, |file| {
         let encoder = image::codecs::png::PngEncoder::new(file);
         image::ImageEncoder::write_image(encoder, &bytes, picture.width, picture.height, color)

@@ -14,6 +14,7 @@
 //! | [`webp`] | frames of animated WebP files |
 //! | [`write`](mod@write) | pictures to files |
 //! | [`exr`] | layers, guides, masks and mattes of EXR files |
+//! | [`resize`] | pixels at another size |
 //! | [`mix`] | mixing of two pictures by a mask |
 
 #![forbid(unsafe_code)]
@@ -34,6 +35,7 @@ pub mod mix;
 pub mod pixels;
 mod png;
 pub mod read;
+pub mod resize;
 mod said;
 pub mod space;
 mod tiff;

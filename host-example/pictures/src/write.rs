@@ -13,6 +13,7 @@ use crate::meaning::{Alpha, ImageState, Meaning};
 use crate::pixels::{Pixels, Precision, Samples};
 use crate::primaries::REC709;
 use crate::read::Source;
+use crate::resize::{self, Resize};
 use crate::space::Space;
 use crate::transfer::Transfer;
 use crate::{display, icc, png, tiff_write};
@@ -22,6 +23,17 @@ use isophote_files::output;
 
 /// Quality of JPEG files, 1 to 100.
 const JPEG_QUALITY: u8 = 95;
+
+/// Options of a file that is written; those that are not given are as the picture asks for.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct Options {
+    /// Quality of JPEG files, 1 to 100.
+    pub quality: Option<u8>,
+    /// Precision of samples.
+    pub depth: Option<Precision>,
+    /// Size of the picture.
+    pub resize: Option<Resize>,
+}
 
 /// A kind of file that can be written.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -53,6 +65,16 @@ impl Format {
                 "is not a kind of picture that is written",
                 "name a .png, .jpg, .tif or .exr file",
             )),
+        }
+    }
+
+    /// Precisions of samples that its files can have.
+    pub const fn depths(self) -> &'static [Precision] {
+        match self {
+            Self::Png => &[Precision::U8, Precision::U16],
+            Self::Jpeg => &[Precision::U8],
+            Self::Tiff => &[Precision::U8, Precision::U16, Precision::F32],
+            Self::Exr => &[Precision::F16, Precision::F32],
         }
     }
 
@@ -95,17 +117,18 @@ impl Format {
 /// All of them go into `exr`, an EXR file that they came from; of other files there is one picture.
 ///
 /// # Errors
-/// As [`files::write()`].
+/// As [`files::write()`]; [`Error::Input`] for another size or precision of what goes into an EXR file beside what it has.
 pub fn write(
     path: &Path,
     existing: Existing,
-    format: Format,
+    (format, options): (Format, Options),
     mut results: Vec<Pixels>,
     meaning: &Meaning,
     source: &Source,
     exr: Option<ExrFile>,
 ) -> Result<()> {
     if let (Format::Exr, Some(mut exr)) = (format, exr) {
+        options.check_in_place(path)?;
         for (at, result) in results.drain(..).enumerate() {
             exr.replace(at, &result)
                 .map_err(|problem| Error::file(path, problem, "choose another picture"))?;
@@ -116,8 +139,15 @@ pub fn write(
         return Err(Error::file(path, "would be empty", "choose another picture"));
     };
     let pixels = display::shown(pixels, meaning);
+    let pixels = options.sized(path, pixels, meaning)?;
+    let of_depth = options.depth.and_then(|depth| meaning_at(format, depth, meaning));
+    let converted = of_depth.as_ref().and_then(|to| Some(Conversion::between(meaning, to)?.apply(&pixels).0));
+    let (pixels, meaning) = (converted.unwrap_or(pixels), of_depth.as_ref().unwrap_or(meaning));
     match format {
-        Format::Exr => write_exr(path, existing, &pixels, (picture.pixels.precision(), meaning)),
+        Format::Exr => {
+            let source = options.depth.unwrap_or(picture.pixels.precision());
+            write_exr(path, existing, &pixels, (source, meaning))
+        }
         Format::Png => {
             // A float result holds more than 8 bits can, and so does light of 8 bits.
             let is_wide = matches!(meaning.transfer, Transfer::Linear | Transfer::Pq | Transfer::Hlg);
@@ -125,7 +155,7 @@ pub fn write(
                 Precision::U8 if !is_wide || pixels.precision() == Precision::U8 => Precision::U8,
                 _ => Precision::U16,
             };
-            let pixels = pixels.converted(precision);
+            let pixels = pixels.converted(options.depth.unwrap_or(precision));
             files::write(path, existing, |file| {
                 file.write_all(&png_file(&pixels, meaning)?).map_err(|e| e.to_string())
             })
@@ -136,22 +166,67 @@ pub fn write(
                 (ImageState::DisplayReferred, Precision::U8) => Precision::U8,
                 (ImageState::DisplayReferred, _) => Precision::U16,
             };
-            let pixels = grey_as_rgb(pixels.converted(precision));
+            let pixels = grey_as_rgb(pixels.converted(options.depth.unwrap_or(precision)));
             let profile = profile(meaning, pixels.channels());
             files::write(path, existing, |file| tiff_write::write(file, &pixels, meaning, profile.as_deref()))
         }
         Format::Jpeg => {
-            let pixels = opaque(path, pixels.converted(Precision::U8));
-            let color = color_type(&pixels);
-            files::write(path, existing, |file| {
-                let mut encoder = image::codecs::jpeg::JpegEncoder::new_with_quality(file, JPEG_QUALITY);
-                let [across, down] = display::densities(meaning.pixel_aspect);
-                let density = (across as u16, down as u16);
-                encoder.set_pixel_density(PixelDensity { density, unit: PixelDensityUnit::PixelAspectRatio });
-                say(&mut encoder, meaning, pixels.channels());
-                as_text(encoder.write_image(pixels.bytes(), pixels.width(), pixels.height(), color))
-            })
+            let quality = options.quality.unwrap_or(JPEG_QUALITY);
+            write_jpeg(path, existing, opaque(path, pixels.converted(Precision::U8)), (quality, meaning))
         }
+    }
+}
+
+fn write_jpeg(
+    path: &Path,
+    existing: Existing,
+    pixels: Pixels,
+    (quality, meaning): (u8, &Meaning),
+) -> Result<()> {
+    let color = color_type(&pixels);
+    files::write(path, existing, |file| {
+        let mut encoder = image::codecs::jpeg::JpegEncoder::new_with_quality(file, quality);
+        let [across, down] = display::densities(meaning.pixel_aspect);
+        let density = (across as u16, down as u16);
+        encoder.set_pixel_density(PixelDensity { density, unit: PixelDensityUnit::PixelAspectRatio });
+        say(&mut encoder, meaning, pixels.channels());
+        as_text(encoder.write_image(pixels.bytes(), pixels.width(), pixels.height(), color))
+    })
+}
+
+impl Options {
+    /// Refuses what would change all that an EXR file has beside the result.
+    fn check_in_place(self, path: &Path) -> Result<()> {
+        let problem =
+            "keeps the other layers of the EXR file, whose size and precision are those of the file";
+        match (self.resize, self.depth) {
+            (None, None) => Ok(()),
+            _ => Err(Error::file(path, problem, "leave --resize and --depth out, or name a .tif file")),
+        }
+    }
+
+    /// Pixels in the size that is asked for.
+    ///
+    /// # Errors
+    /// [`Error::Input`] for one that has too many.
+    pub fn sized(self, path: &Path, pixels: Pixels, meaning: &Meaning) -> Result<Pixels> {
+        let Some(resize) = self.resize else { return Ok(pixels) };
+        let size = resize
+            .of((pixels.width(), pixels.height()))
+            .map_err(|problem| Error::file(path, problem, "ask for a smaller size"))?;
+        Ok(resize::resized(&pixels, size, meaning.is_premultiplied()))
+    }
+}
+
+/// Meaning of numbers of a precision in TIFF files, where it is another: floats are of light, and integers of what displays show.
+fn meaning_at(format: Format, depth: Precision, meaning: &Meaning) -> Option<Meaning> {
+    let is_float = matches!(depth, Precision::F16 | Precision::F32);
+    match (format, is_float, meaning.state) {
+        (Format::Tiff, true, _) if meaning.transfer != Transfer::Linear => {
+            Some(Meaning { transfer: Transfer::Linear, profile: None, ..meaning.clone() })
+        }
+        (Format::Tiff, false, ImageState::SceneReferred) => Some(Meaning::display()),
+        _ => None,
     }
 }
 

@@ -6,12 +6,18 @@ use std::fs;
 use std::path::{Path, PathBuf};
 use std::time::{Duration, Instant};
 
+use isophote_finishing::writing::{Depth, FileKind};
+use isophote_pictures::transfer::srgb_encode;
 use isophote_window::jobs::document::{Document, Options};
 use isophote_window::jobs::export::{Export, ExportJob};
+use isophote_window::state::batch::Batch;
 use isophote_window::state::document::kind::Kind;
+use isophote_window::state::formats::{PICTURES, Scaling, VIDEOS};
+use isophote_window::state::plan::Plan;
 use isophote_window::state::progress::{Progress, State};
 
-use support::{cube, folder, isophote, listing, picture, succeeds};
+use support::video::probe;
+use support::{cube, fails, folder, isophote, listing, picture, succeeds};
 
 /// This only ends a test that hangs.
 const PATIENCE: Duration = Duration::from_secs(120);
@@ -238,4 +244,154 @@ fn failures_are_told_in_the_words_of_the_verb() {
     let plain = ExportJob { preset: None, ..job(Kind::Picture, &at("in.0001.png"), &at("out.png")) };
     assert!(Export::start(plain).is_err());
     assert_eq!(listing(folder.path()), ["in.0001.png", "in.0002.png", "out.0001.png"]);
+}
+
+/// The job of a plan, as the window makes it.
+fn planned(plan: &Plan, input: &Path) -> ExportJob {
+    let mut job = job(plan.kind, input, Path::new(&plan.path));
+    (job.frames, job.rate) = (plan.frames(), plan.rate);
+    job.arguments.extend(plan.options().words().into_iter().map(Into::into));
+    job
+}
+
+/// The first value of the first table of quantization of a JPEG file, which its quality says.
+fn coarseness(file: &Path) -> u8 {
+    let bytes = fs::read(file).expect("a file");
+    let table = bytes.windows(2).position(|two| two == [0xFF, 0xDB]).expect("a table");
+    bytes[table + 5]
+}
+
+#[test]
+fn size_quality_and_depth_are_those_that_were_chosen() {
+    let folder = folder();
+    let at = |name: &str| folder.path().join(name);
+    picture(90, 61).save(at("in.png")).expect("the folder is writable");
+    let plan = |format: usize, change: &dyn Fn(&mut Plan)| {
+        let mut plan = Plan::new(Kind::Picture, &at("in.png"), None, (90, 61), 0);
+        plan.format = PICTURES[format];
+        plan.rename();
+        change(&mut plan);
+        assert_eq!(done(planned(&plan, &at("in.png"))), 1.0);
+        PathBuf::from(plan.path)
+    };
+    let color = |file: &Path| image::open(file).expect("a picture").color();
+    let deep = plan(0, &|plan| {
+        plan.choices.depth = Some(Depth::Sixteen);
+        plan.choices.scaling = Scaling::Half;
+    });
+    assert_eq!(image::image_dimensions(&deep).expect("a picture"), (45, 31));
+    assert_eq!(color(&deep), image::ColorType::Rgb16);
+    let is_finer = |pixel: &image::Rgb<u16>| pixel.0.iter().any(|v| v % 257 != 0);
+    assert!(image::open(&deep).expect("a picture").into_rgb16().pixels().any(is_finer), "more than 8 bits");
+    let loose = plan(1, &|plan| plan.choices.quality = 40);
+    assert_eq!(coarseness(&loose), 20);
+    let usual = plan(1, &|_| {});
+    assert_eq!((coarseness(&usual), color(&usual)), (2, image::ColorType::Rgb8));
+    let light = plan(2, &|plan| {
+        (plan.choices.depth, plan.choices.scaling, plan.choices.side) =
+            (Some(Depth::Float), Scaling::Width, 30);
+    });
+    assert_eq!(image::image_dimensions(&light).expect("a picture"), (30, 20));
+    assert_eq!(color(&light), image::ColorType::Rgb32F);
+    let light = image::open(&light).expect("a picture");
+    // Floats are of light: what is opened again is the same picture.
+    let small = plan(2, &|plan| (plan.choices.scaling, plan.choices.side) = (Scaling::Width, 30));
+    let small = image::open(&small).expect("a picture").into_rgb8();
+    for (light, encoded) in light.into_rgb32f().pixels().zip(small.pixels()) {
+        let again = srgb_encode(light[1]) * 255.0;
+        assert!((again - f32::from(encoded[1])).abs() < 2.5, "{again} {}", encoded[1]);
+    }
+    let exr = plan(3, &|plan| plan.choices.depth = Some(Depth::Float));
+    let (text, _) = succeeds(isophote().args(["info", "--json"]).arg(exr));
+    assert!(text.contains("32"), "{text}");
+}
+
+#[test]
+fn options_that_files_cannot_have_are_refused_with_what_they_can() {
+    let folder = folder();
+    picture(20, 12).save(folder.path().join("in.png")).expect("the folder is writable");
+    for (output, options, words) in [
+        ("out.png", &["--quality", "50"][..], &["--quality", "JPEG"][..]),
+        ("out.jpg", &["--depth", "16"], &["--depth", "choose 8"]),
+        ("out.tif", &["--depth", "half"], &["8 or 16 or float"]),
+        ("out.png", &["--codec", "h264"], &["--codec", "videos"]),
+        ("out.png", &["--format", "jpeg"], &["--format", "--to"]),
+        ("out.png", &["--resize", "12"], &["50%", "1920x"]),
+    ] {
+        let mut command = isophote();
+        command.current_dir(folder.path()).args(["apply", "cartoon", "in.png", output]).args(options);
+        fails(&mut command, 2, words);
+    }
+    assert_eq!(listing(folder.path()), ["in.png"]);
+}
+
+#[test]
+fn codecs_rates_and_ranges_are_those_that_were_chosen() {
+    let Some(folder) = support::video_folder() else { return };
+    let at = |name: &str| folder.path().join(name);
+    for number in 1..=4 {
+        picture(96, 64).save(at(&format!("in.000{number}.png"))).expect("the folder is writable");
+    }
+    let input = at("in.####.png");
+    let frames = Document::open(&input, &Options::default()).expect("a sequence").frames();
+    let made = |format: usize, scaling: Scaling| {
+        let mut plan = Plan::new(Kind::Sequence, &input, frames.clone(), (96, 64), 0);
+        (plan.first, plan.last, plan.rate) = (2, 4, 12.5);
+        (plan.format, plan.choices.scaling) = (VIDEOS[format], scaling);
+        plan.rename();
+        assert_eq!(done(planned(&plan, &input)), 3.0);
+        probe(Path::new(&plan.path), "v:0", "codec_name,width,height,pix_fmt,r_frame_rate,nb_frames")
+    };
+    assert_eq!(made(0, Scaling::Same), "h264,96,64,yuv420p,25/2,3");
+    assert_eq!(made(3, Scaling::Half), "prores,48,32,yuv422p10le,25/2,3");
+    assert!(made(7, Scaling::Half).starts_with("gif,48,32,"));
+    // Of a video some frames become pictures, and all a smaller video.
+    let film = at("in-look.mp4");
+    let frames = Document::open(&film, &Options::default()).expect("a video").frames();
+    let mut plan = Plan::new(Kind::Video, &film, frames, (96, 64), 0);
+    plan.format = PICTURES[1];
+    (plan.first, plan.last) = (2, 3);
+    plan.rename();
+    assert_eq!(done(planned(&plan, &film)), 2.0);
+    (plan.format, plan.choices.scaling, plan.choices.side) = (VIDEOS[4], Scaling::Height, 33);
+    plan.path = at("small.mkv").display().to_string();
+    assert_eq!(done(planned(&plan, &film)), 3.0);
+    assert_eq!(probe(&at("small.mkv"), "v:0", "width,height"), "50,34");
+    let names = listing(folder.path());
+    let pictures: Vec<_> = names.iter().filter(|name| name.ends_with(".jpg")).collect();
+    assert_eq!(pictures, ["in-look-look.0002.jpg", "in-look-look.0003.jpg"]);
+}
+
+#[test]
+fn one_look_goes_on_many_pictures_and_one_that_fails_does_not_stop_the_others() {
+    let folder = folder();
+    let at = |name: &str| folder.path().join(name);
+    picture(40, 30).save(at("a.png")).expect("the folder is writable");
+    picture(30, 40).save(at("c.jpg")).expect("the folder is writable");
+    fs::write(at("b.png"), "no picture").expect("the folder is writable");
+    let to = at("made of them");
+    let mut batch = Batch::new(["a.png", "b.png", "c.jpg"].map(at).to_vec(), None);
+    batch.kind = Some(FileKind::Jpeg);
+    (batch.choices.quality, batch.choices.scaling) = (40, Scaling::Half);
+    let mut many = job(Kind::Picture, &at("a.png"), &to);
+    many.more = ["b.png", "c.jpg"].map(at).to_vec();
+    many.arguments.extend(batch.options().words().into_iter().map(Into::into));
+    let progress = ended(many);
+    let State::Partly(failures) = &progress.state else { panic!("{progress:?}") };
+    assert!(matches!(failures.as_slice(), [one] if one.contains("b.png")), "{failures:?}");
+    assert_eq!((progress.done, progress.total), (3.0, 3.0));
+    assert_eq!(listing(&to), ["a.jpg", "c.jpg"]);
+    assert_eq!(image::image_dimensions(to.join("c.jpg")).expect("a picture"), (15, 20));
+    assert_eq!(coarseness(&to.join("a.jpg")), 20);
+    // What is finished stays when the rest is cancelled.
+    picture(1600, 1200).save(at("large.png")).expect("the folder is writable");
+    let kept = at("kept");
+    let mut many = job(Kind::Picture, &at("a.png"), &kept);
+    many.more = ["large.png", "c.jpg"].map(at).to_vec();
+    many.preset = Some(r#"{"style": "oil_paint"}"#.into());
+    let mut export = Export::start(many).unwrap_or_else(|e| panic!("{e}"));
+    wait_until(&export, |progress| progress.done >= 1.0);
+    export.cancel();
+    wait_until(&export, |progress| progress.state == State::Cancelled);
+    assert!(listing(&kept).contains(&"a.png".to_owned()) && !listing(&kept).contains(&"c.jpg".to_owned()));
 }

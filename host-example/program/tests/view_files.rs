@@ -4,14 +4,26 @@
 mod support;
 
 use std::fs;
-use std::path::Path;
+use std::path::{Path, PathBuf};
+use std::time::Duration;
+
+use egui::accesskit::Role;
+use isophote_loader::Library;
+use isophote_window::jobs::document::{Document, Options};
+use isophote_window::state::batch::Batch;
+use isophote_window::state::look::EditedLook;
+use isophote_window::state::session::Session;
+use isophote_window::state::settings::Settings;
 
 use support::others::drop_files;
+use support::places::places;
 use support::window::{Display, Part, Window, program, view};
 use support::{folder, picture};
 
 /// Size of the window.
 const SIZE: &str = "1000x700";
+/// Time in which a click has done what it does.
+const PAUSE: Duration = Duration::from_millis(400);
 /// The upper part of the canvas, above what is said at its lower border.
 const CANVAS: Part = [0, 60, 650, 330];
 
@@ -159,4 +171,63 @@ fn dialogs_choose_files_and_where_there_are_none_the_window_says_what_to_do() {
     });
     window.close();
     assert_eq!(window.said(), "");
+}
+
+#[test]
+fn one_look_goes_on_all_pictures_that_are_dropped_and_their_folder_is_shown() {
+    let Some(display) = Display::open("1100x800") else { return };
+    let folder = folder();
+    let photos = folder.path().join("holiday's, größer");
+    fs::create_dir(&photos).unwrap();
+    let files = ["beach.png", "dog.jpg", "tree.png"].map(|name| photos.join(name));
+    files.iter().for_each(|file| picture(96, 64).save(file).unwrap());
+    let mine = folder.path().join("mine.json");
+    fs::write(&mine, r#"{"style": "cartoon", "lengths": "pixels"}"#).unwrap();
+    let told = folder.path().join("told");
+    let script = format!("#!/bin/sh\nprintf '%s|' \"$@\" > '{}'\n", told.display());
+    let programs = program(folder.path(), "xdg-open", &script);
+    let session = || {
+        let library = Library::from_file(support::library()).unwrap();
+        let look = EditedLook::open(&library, &mine).unwrap();
+        let mut session = Session::new(library, vec![look], Settings::default()).unwrap();
+        let document = Document::open(&files[0], &Options::default()).unwrap();
+        session.show_playback(document.playback().unwrap());
+        session
+    };
+    let mut asking = session();
+    let batch = Batch::new(files.to_vec(), None);
+    let results = PathBuf::from(&batch.folder);
+    asking.dialogs.batch = Some(batch);
+    let start = places(asking, (1000, 700))("Use the look on all", Role::Button).center();
+    let mut command = view(folder.path(), SIZE);
+    let path = std::env::var("PATH").unwrap_or_default();
+    command.env("PATH", format!("{}:{path}", programs.display()));
+    let mut window = Window::open(&display, command.arg("--style").arg(&mine));
+    window.wait_for("the start screen", |window| window.title() == "Isophote");
+    drops(&display, &window, &[&files[0], &files[1], &files[2]]);
+    window.shows("beach.png", "mine");
+    window.settled(CANVAS);
+    window.click([start.x as i32, start.y as i32]);
+    window.wait_for("the results", |_| {
+        fs::read_dir(&results).is_ok_and(|found| {
+            let names = found.flatten().map(|entry| entry.file_name());
+            names.filter(|name| ["beach.png", "dog.jpg", "tree.png"].iter().any(|file| name == file)).count()
+                == 3
+        })
+    });
+    let mut apply = support::isophote();
+    apply.arg("apply").arg("--preset").arg(&mine).arg(&files[0]).arg(folder.path().join("own.png"));
+    support::succeeds(&mut apply);
+    let same = [results.join("beach.png"), folder.path().join("own.png")].map(|file| fs::read(file).unwrap());
+    assert!(same[0] == same[1], "it is what the command line makes");
+    // The button follows the text of the message, in the middle above the lower border.
+    let mut at = 200;
+    window.wait_for("the folder", |window| {
+        at += 24;
+        window.click([at, 635]);
+        std::thread::sleep(PAUSE);
+        told.exists() && fs::read_to_string(&told).unwrap() == format!("{}|", results.display())
+    });
+    window.close();
+    assert!(!window.said().contains("panicked"), "{}", window.said());
 }

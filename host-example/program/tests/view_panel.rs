@@ -5,6 +5,7 @@ mod support;
 
 use std::collections::HashMap;
 
+use egui::accesskit::Role;
 use egui_kittest::Harness;
 use egui_kittest::kittest::{NodeT, Queryable};
 use isophote_files::files::Existing;
@@ -14,6 +15,8 @@ use isophote_pictures::floats::{self, Layer, Picture, Precision};
 use isophote_scene::Scene;
 use isophote_window::jobs::document::{Document, Options};
 use isophote_window::state::look::EditedLook;
+use isophote_window::state::outcome::{Opened, Outcome};
+use isophote_window::state::progress::{Progress, State};
 use isophote_window::state::scenery::{Scenery, Staging};
 use isophote_window::state::session::Session;
 use isophote_window::state::settings::Settings;
@@ -69,7 +72,7 @@ fn every_parameter_of_every_style_is_found_by_its_label() {
         assert!(labels.len() > 10);
         let name = session.look().name.clone();
         for (label, count) in labels {
-            let is_control = |role| role != egui::accesskit::Role::Label;
+            let is_control = |role| role != Role::Label;
             let found =
                 harness.query_all_by_label(label).filter(|node| is_control(node.accesskit_node().role()));
             let found = found.count();
@@ -146,9 +149,8 @@ fn controls_can_be_used_by_programs_that_read_windows_aloud() {
         .find(|parameter| parameter.param.label == "Posterize")
         .unwrap()
         .clone();
-    let slider = harness
-        .query_all_by_label("Posterize")
-        .find(|node| node.accesskit_node().role() == egui::accesskit::Role::Slider);
+    let slider =
+        harness.query_all_by_label("Posterize").find(|node| node.accesskit_node().role() == Role::Slider);
     slider.unwrap().click();
     harness.run_ok();
     assert!(harness.state().look().differs(&parameter), "a click in the middle of a slider sets it");
@@ -202,6 +204,89 @@ fn an_export_is_asked_for_in_a_window_of_its_own() {
     assert_eq!(harness.state().work.requests(), [Request::Export]);
 }
 
+/// A session of all styles with a photograph in a folder, the first style chosen.
+fn with_photo(folder: &std::path::Path) -> Session {
+    let file = folder.join("photo.png");
+    support::picture(40, 30).save(&file).unwrap();
+    let mut session = session();
+    session.choose(1);
+    session.show_playback(Document::open(&file, &Options::default()).unwrap().playback().unwrap());
+    session
+}
+
+#[test]
+fn an_export_offers_what_files_have_and_asks_before_it_replaces_the_photograph() {
+    let folder = support::folder();
+    let mut harness = harness(with_photo(folder.path()));
+    harness.get_by_role_and_label(Role::Button, "Export").click();
+    harness.run_ok();
+    let choose = |harness: &mut Harness<'_, Session>, list: &str, entry: &str| {
+        harness.get_by_role_and_label(Role::ComboBox, list).click();
+        harness.run_ok();
+        harness.get_by_label(entry).click();
+        harness.run_ok();
+    };
+    assert!(harness.query_by_label("Quality").is_none(), "it is for JPEG");
+    choose(&mut harness, "Bit depth", "16 bits");
+    choose(&mut harness, "Size", "Half");
+    let plan = harness.state().dialogs.plan.clone().expect("a plan");
+    assert_eq!(plan.options().words().join(" "), "--depth 16 --resize 50%");
+    choose(&mut harness, "Format", "JPEG");
+    assert!(
+        harness.query_by_label("Bit depth").is_none() && harness.query_all_by_label("Quality").count() > 0
+    );
+    let plan = harness.state_mut().dialogs.plan.as_mut().expect("a plan");
+    assert!(plan.path.ends_with("photo-look.jpg"), "{}", plan.path);
+    plan.place(&folder.path().join("photo.png"));
+    harness.run_ok();
+    harness.get_by_label("Start the export").click();
+    harness.run_ok();
+    harness.get_by_label_contains("This replaces the photograph you opened, photo.png.");
+    assert!(harness.get_by_label("Cancel").accesskit_node().is_focused(), "Return replaces nothing");
+    harness.get_by_label("Cancel").click();
+    harness.run_ok();
+    assert!(harness.state().work.requests().is_empty());
+    harness.get_by_label("Start the export").click();
+    harness.run_ok();
+    harness.get_by_label("Replace the original").click();
+    harness.run_ok();
+    assert_eq!(harness.state().work.requests(), [Request::Export]);
+}
+
+#[test]
+fn one_look_is_used_on_many_pictures_and_what_failed_is_named() {
+    let folder = support::folder();
+    let mut session = with_photo(folder.path());
+    session.choose(0);
+    let files = ["photo.png", "other.png"].map(|name| folder.path().join(name));
+    let shown = Document::open(&files[0], &Options::default()).unwrap().playback().unwrap();
+    let first = Box::new(Opened::Pictures(Box::new(shown)));
+    session.take_over(Outcome::Opened(Opened::OfSeveral(first, files.to_vec(), None)));
+    let mut harness = harness(session);
+    harness.get_by_label("Use this look on 2 pictures");
+    harness.get_by_label("Choose a look first.");
+    harness.state_mut().choose(1);
+    harness.run_ok();
+    harness.get_by_label("Use the look on all").click();
+    harness.run_ok();
+    assert_eq!(harness.state_mut().work.take_requests(), [Request::UseOnSeveral]);
+    let place = std::path::PathBuf::from(&harness.state().dialogs.batch.as_ref().expect("a batch").folder);
+    let come = |harness: &mut Harness<'_, Session>, done, state| {
+        harness.state_mut().take_over(Outcome::Export(Progress { done, total: 2.0, state }));
+        harness.run_ok();
+    };
+    harness.state_mut().take_over(Outcome::ExportBegun(Ok(())));
+    come(&mut harness, 1.0, State::Running);
+    assert!(harness.state().dialogs.batch.is_none() && harness.state().work.exported == Some(0.5));
+    assert!(harness.state().work.running.as_ref().expect("an export").words().starts_with("1 of 2 pictures"));
+    come(&mut harness, 2.0, State::Partly(vec!["other.png: is damaged".into()]));
+    harness.get_by_label_contains("1 of 2 could not be done; the others are there.");
+    harness.get_by_label_contains("other.png: is damaged");
+    harness.get_by_label("Show in folder").click();
+    harness.run_ok();
+    assert_eq!(harness.state_mut().work.take_requests(), [Request::Reveal(place)]);
+}
+
 #[test]
 fn layers_are_chosen_from_a_list() {
     let folder = support::folder();
@@ -211,7 +296,7 @@ fn layers_are_chosen_from_a_list() {
     let document = Document::open(&file, &Options::default()).unwrap();
     session.show_playback(document.playback().unwrap());
     let mut harness = harness(session);
-    harness.get_by_role_and_label(egui::accesskit::Role::ComboBox, "Layer").click();
+    harness.get_by_role_and_label(Role::ComboBox, "Layer").click();
     harness.run_ok();
     harness.get_by_label("beauty").click();
     harness.run_ok();

@@ -50,6 +50,8 @@ pub struct Filter {
     device: Option<Arc<Device>>,
     space: Option<Space>,
     output_space: Option<Space>,
+    /// True where results are floats, whatever the picture's precision is.
+    is_precise: bool,
     threads: u32,
 }
 
@@ -202,14 +204,20 @@ impl Filter {
         space: Option<Space>,
         threads: u32,
     ) -> Result<Self> {
-        let device = backend.device(&library)?.map(Arc::new);
-        Ok(Self { library, layers: layers(looks)?, device, space, output_space: None, threads })
+        let (device, layers) = (backend.device(&library)?.map(Arc::new), layers(looks)?);
+        Ok(Self { library, layers, device, space, output_space: None, is_precise: false, threads })
     }
 
     /// The same with results in a space of their own.
     #[must_use]
     pub fn into_space(self, output_space: Option<Space>) -> Self {
         Self { output_space, ..self }
+    }
+
+    /// The same with results that are as exact as they are computed, for files that hold more than the picture's.
+    #[must_use]
+    pub fn precisely(self, is_precise: bool) -> Self {
+        Self { is_precise, ..self }
     }
 
     /// The library that it runs.
@@ -223,8 +231,7 @@ impl Filter {
     /// As [`Filter::new`].
     pub fn beside(&self, looks: Vec<MaskedStyle>) -> Result<Self> {
         let (library, device) = (self.library.clone(), self.device.clone());
-        let Self { space, output_space, threads, .. } = *self;
-        Ok(Self { library, layers: layers(looks)?, device, space, output_space, threads })
+        Ok(Self { library, layers: layers(looks)?, device, ..*self })
     }
 
     /// Number of them that should work on the frames of a sequence. Two on a graphics device: while it computes one
@@ -279,7 +286,7 @@ impl Filter {
             let there = working.there.as_ref();
             let (color, bad) = own.working(at, there).unwrap_or((&picture.pixels, 0));
             filtered.replaced += bad;
-            let is_same = to == source.state() && self.output_space.is_none();
+            let is_same = to == source.state() && self.output_space.is_none() && !self.is_precise;
             let precision = if is_same { color.precision() } else { Precision::F32 };
             let size = (color.width(), color.height());
             let usual = self.library.request(size).map_err(|e| e.at(name, "use a smaller picture"))?;

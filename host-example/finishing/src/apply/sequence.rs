@@ -31,6 +31,8 @@ pub struct Run<'a> {
     pub tasks: &'a [Task],
     /// Consent to replace files.
     pub consent: Consent,
+    /// Options of the files.
+    pub options: write::Options,
     /// Threads on which frames are read and written beside being filtered, if they are.
     pub threads: Threads,
     /// Report of the progress.
@@ -193,7 +195,7 @@ impl<'a> Run<'a> {
             write::write(
                 &task.output,
                 existing,
-                format,
+                (format, self.options),
                 filtered.results,
                 &filtered.meaning,
                 &own.source,

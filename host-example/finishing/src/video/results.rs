@@ -9,6 +9,7 @@ use isophote_files::frames::{FrameList, Pattern};
 use isophote_files::replacing::{Consent, Made};
 use isophote_pictures::pixels::Precision;
 use isophote_pictures::read::{self, Source};
+use isophote_pictures::resize::resized;
 use isophote_pictures::write::{self, Format};
 
 /// Pictures that the frames of a video become, numbered from 1.
@@ -18,6 +19,8 @@ pub struct Numbered<'a> {
     pub pattern: &'a Pattern,
     /// Kind of their files.
     pub format: Format,
+    /// Options of their files.
+    pub options: write::Options,
     /// Numbers of those that are made; all where there is none.
     pub frames: Option<&'a FrameList>,
     /// Consent to replace files.
@@ -39,8 +42,8 @@ pub enum Turn {
 
 /// Place where results go.
 pub enum Results<'a> {
-    /// A video, whose encoder is started for frames of so many channels.
-    Video(&'a dyn Fn(u32) -> Result<Encoder>, Option<Encoder>),
+    /// A video of frames of a size, whose encoder is started for so many channels.
+    Video(&'a dyn Fn(u32) -> Result<Encoder>, (u32, u32), Option<Encoder>),
     /// Numbered pictures, which are made from this file.
     Pictures(Numbered<'a>, &'a Path),
 }
@@ -85,23 +88,26 @@ impl Results<'_> {
     /// As [`write::write()`], and those of starting an encoder.
     pub fn put(&mut self, number: i64, filtered: Filtered, source: &Source) -> Result<bool> {
         match self {
-            Self::Video(start, encoder) => {
+            Self::Video(start, size, encoder) => {
                 let none = || {
                     Error::failure("filtering stopped", "this is a mistake in the program; please report it")
                 };
                 let result = filtered.results.into_iter().next().ok_or_else(none)?.converted(Precision::U16);
+                let is_sized = (result.width(), result.height()) == *size;
+                let result = if is_sized { result } else { resized(&result, *size, false) };
                 let encoder = match encoder {
                     Some(encoder) => encoder,
                     None => encoder.insert(start(result.channels())?),
                 };
                 Ok(encoder.put(&result))
             }
-            Self::Pictures(Numbered { pattern, format, consent, .. }, input) => {
+            Self::Pictures(Numbered { pattern, format, options, consent, .. }, input) => {
                 let path = pattern.file(number);
                 let made = Made { from: Some(input), to: &path };
                 let Filtered { results, meaning, .. } = filtered;
-                let write =
-                    |existing| write::write(&path, existing, *format, results, &meaning, source, None);
+                let write = |existing| {
+                    write::write(&path, existing, (*format, *options), results, &meaning, source, None)
+                };
                 consent.write(made, read::is_whole, write).map(|_| true)
             }
         }
@@ -110,7 +116,7 @@ impl Results<'_> {
     /// True where every frame was taken.
     pub fn is_open(&self) -> bool {
         match self {
-            Self::Video(_, encoder) => encoder.as_ref().is_none_or(Encoder::is_open),
+            Self::Video(_, _, encoder) => encoder.as_ref().is_none_or(Encoder::is_open),
             Self::Pictures(..) => true,
         }
     }
@@ -122,7 +128,7 @@ impl Results<'_> {
     pub fn end(self, count: i64, input: &Path) -> Result<()> {
         match self {
             _ if count == 0 => Err(Error::file(input, "has no frames that can be decoded", "name a video")),
-            Self::Video(_, encoder) => encoder.map_or(Ok(()), Encoder::end),
+            Self::Video(_, _, encoder) => encoder.map_or(Ok(()), Encoder::end),
             Self::Pictures(numbered, _) => match numbered.last() {
                 Some(last) if last > count => {
                     let problem = format!("ends with frame {count} and has no frame {last}");

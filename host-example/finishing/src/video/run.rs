@@ -27,6 +27,7 @@ use isophote_files::output;
 use isophote_files::stop::Stop;
 use isophote_pictures::pixels::{Pixels, Precision};
 use isophote_pictures::read::Source;
+use isophote_pictures::resize::Resize;
 
 /// Advice about a video that is damaged.
 const DAMAGED: &str = "use an intact file, or give --on-error skip to write what can be read";
@@ -46,6 +47,8 @@ pub struct VideoJob<'a> {
     pub existing: Existing,
     /// Options of the encoder instead of the usual ones.
     pub encode: Option<&'a str>,
+    /// Size of the frames of a video, where it is another; sides are even then.
+    pub resize: Option<Resize>,
     /// Treatment of a damaged input.
     pub on_error: OnError,
     /// True where lines of JSON are wanted.
@@ -111,8 +114,10 @@ impl VideoJob<'_> {
         let tracks = more.map_or(Ok(Tracks::default()), |(path, _)| Tracks::of(path, container))?;
         tracks.warn(self.input, self.output);
         let more = more.map(|(path, start)| More { path, tracks: &tracks, start });
+        let (width, height) = self.size(stream)?;
+        let written = &Stream { width, height, ..stream.clone() };
         let encoder = |channels| {
-            let (output, options, times) = (self.output, self.encode, times.as_ref());
+            let (output, options, times, stream) = (self.output, self.encode, times.as_ref(), written);
             Encoder::start(&Encoding { stream, channels, more, times, output, options }, place)
         };
         if times.is_some() && self.pictures.is_some() {
@@ -123,7 +128,7 @@ impl VideoJob<'_> {
         }
         let mut results = match self.pictures {
             Some(pictures) => Results::Pictures(pictures, self.input),
-            None => Results::Video(&encoder, None),
+            None => Results::Video(&encoder, (width, height), None),
         };
         let ((count, is_over), cut) = std::thread::scope(|scope| {
             // It ends with the stream, or with the decoder.
@@ -171,6 +176,16 @@ impl VideoJob<'_> {
                 Ok(())
             }
         }
+    }
+
+    /// Size of the frames of the result.
+    fn size(&self, stream: &Stream) -> Result<(u32, u32)> {
+        let size = (stream.width, stream.height);
+        let Some(resize) = self.resize else { return Ok(size) };
+        let (width, height) =
+            resize.of(size).map_err(|problem| Error::input("--resize", problem, "ask for a smaller size"))?;
+        // Most videos have no odd ones.
+        Ok((width.next_multiple_of(2), height.next_multiple_of(2)))
     }
 
     fn damaged(&self, problem: &str) -> Error {

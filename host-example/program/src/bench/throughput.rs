@@ -84,6 +84,7 @@ pub fn measure(
     let stop = Stop::default();
     let run = Run {
         tasks: &tasks,
+        options: Default::default(),
         consent: Consent::default(),
         threads: Threads::Several,
         report: &report,

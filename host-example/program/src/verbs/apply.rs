@@ -2,7 +2,6 @@
 
 mod film;
 mod guiding;
-mod naming;
 mod on_video;
 mod several;
 
@@ -31,6 +30,7 @@ use isophote_finishing::apply::sequence::Run;
 use isophote_finishing::apply::tasks::{OnMissing, Task, Tasks};
 use isophote_finishing::stylize::style::{Setting, Style};
 use isophote_finishing::video::{self, OnError};
+use isophote_finishing::writing::ResultArgs;
 use isophote_loader::Library;
 use isophote_pictures::exr::{Convention, GuideChoice, MaskSource, OnUnknown, Selection};
 use isophote_pictures::read::{self, Opened};
@@ -172,6 +172,9 @@ pub struct ApplyArgs {
     /// scale=NUMBER [default: what the name of their layer says].
     #[arg(long, value_name = "NAME")]
     pub motion_convention: Option<Convention>,
+    /// Files that are written.
+    #[command(flatten)]
+    pub result: ResultArgs,
     /// Options of ffmpeg's encoder for a video, such as "-c:v libx265 -crf 20" [default: what loses little in its container, and
     /// keeps alpha and exact red, green and blue where that can].
     #[arg(long, value_name = "OPTIONS", allow_hyphen_values = true)]
@@ -204,6 +207,7 @@ pub fn run(args: &ApplyArgs) -> Result<()> {
     }
     let format = if is_film { Format::Png } else { Format::of(&tasks.ready[0].output)? };
     format.check_space(args.output_space)?;
+    tasks.ready.iter().try_for_each(|task| args.result.check(&task.input, &task.output))?;
     let library = Library::open()?;
     let threads = limits::start_threads(args.threads as usize)?;
     let entries = args.entries()?;
@@ -220,8 +224,7 @@ pub fn run(args: &ApplyArgs) -> Result<()> {
     let mut planner = Planner::new(library.clone(), own)?.with_flow(args.flow.is_some());
     args.check_results(&tasks, &planner, &choices)?;
     let guides = args.guides_found(&tasks, &selection, opened.as_ref(), &planner)?;
-    let filter =
-        Filter::new(library.clone(), looks, backend, args.space, args.threads)?.into_space(args.output_space);
+    let filter = args.filter(&library, looks, backend)?;
     let most = args.memory.unwrap_or_else(memory::usual);
     let needs = args.needs(&mut planner, &tasks, opened.as_ref(), most)?;
     if args.dry_run {
@@ -232,14 +235,16 @@ pub fn run(args: &ApplyArgs) -> Result<()> {
     if !tasks.are_several() {
         stop.ends_the_process("the picture");
     }
-    let report = args.report(&tasks).of_result(&files.output, opened.as_ref().and_then(Opened::size));
+    let report = args.report(&tasks).of_result(&files.output, args.size(opened.as_ref()));
     let is_parallel = tasks.are_several() && !is_film && threads == Threads::Several;
     let mut filters = filters(filter, is_parallel, || args.looks(&library, files.style, &entries))?;
     let budget = Budget::new(most.0, filters.len());
     let (frames, motion) = (tasks.sequence.as_ref(), motion.as_ref());
     let (selection, masks, budget) = (&selection, &masks, &budget);
     let frame_source = FrameSource { frames, motion, selection, masks, budget };
-    let run = Run { tasks: &tasks.ready, consent: args.consent(), threads, report: &report, stop: &stop };
+    let options = args.result.options();
+    let run =
+        Run { tasks: &tasks.ready, consent: args.consent(), options, threads, report: &report, stop: &stop };
     let reader = Reader::new(frame_source, planner, &tasks.ready, opened);
     let result = match is_film {
         true => args.film(&mut filters[0], reader, &tasks.ready, (&report, &stop)),
@@ -275,6 +280,18 @@ pub struct Files<'a> {
 }
 
 impl ApplyArgs {
+    /// The filter of pictures.
+    fn filter(&self, library: &Library, looks: Vec<MaskedStyle>, backend: Backend) -> Result<Filter> {
+        let filter = Filter::new(library.clone(), looks, backend, self.space, self.threads)?;
+        Ok(filter.into_space(self.output_space).precisely(self.result.is_precise()))
+    }
+
+    /// Size of the result of a picture, where that is known.
+    fn size(&self, opened: Option<&Opened>) -> Option<(u32, u32)> {
+        let size = opened.and_then(Opened::size)?;
+        Some(self.result.resize.and_then(|resize| resize.of(size).ok()).unwrap_or(size))
+    }
+
     /// Report of a run, with the frames that are missing.
     fn report(&self, tasks: &Tasks) -> Report {
         let is_listed = tasks.are_several() && !tasks.is_sequence();

@@ -20,6 +20,7 @@ use isophote_finishing::shot::{Options, Shot};
 use isophote_finishing::staging::{MotionArgs, StagingArgs};
 use isophote_finishing::stylize::style::{Setting, Style};
 use isophote_finishing::video::{self, Film};
+use isophote_finishing::writing::{Depth, FileArgs};
 use isophote_loader::Library;
 use isophote_pictures::floats::{self, Layer, Picture, Precision};
 use isophote_pictures::read;
@@ -58,6 +59,8 @@ pub struct RenderArgs {
     json: bool,
     #[command(flatten)]
     quiet: QuietArgs,
+    #[command(flatten)]
+    file: FileArgs,
     /// Options of ffmpeg's encoder for a video, such as "-c:v libx265 -crf 20".
     #[arg(long, value_name = "OPTIONS", allow_hyphen_values = true)]
     encode: Option<String>,
@@ -155,8 +158,10 @@ impl RenderArgs {
                 let picture = shot.draw(number, &mut |done| report.progress(done))?;
                 let made = Made { from: None, to: &file };
                 self.consent().write(made, read::is_whole, |existing| match floats::is_exr(&file) {
-                    true => save_layers(shot, (&file, existing), &picture),
-                    false => floats::save(&file, existing, &picture),
+                    true => save_layers(shot, (&file, existing), &picture, self.file.depth),
+                    false => {
+                        floats::save_png(&file, existing, &picture, self.file.depth == Some(Depth::Sixteen))
+                    }
                 })?
             };
             let outcome = if is_written { Outcome::Written(0) } else { Outcome::Skipped };
@@ -224,7 +229,8 @@ impl RenderArgs {
                     Some(film) => film,
                     None => {
                         let pace = (f64::from(self.fps), 1.0);
-                        film.insert(Film::start(&frame, pace, (&self.out, place), self.encode.as_deref())?)
+                        let encode = self.file.encode(self.encode.as_deref());
+                        film.insert(Film::start(&frame, pace, (&self.out, place), encode)?)
                     }
                 };
                 if !film.put(&frame)? {
@@ -253,6 +259,7 @@ impl RenderArgs {
         if !is_video {
             floats::check_extension(&self.out)?;
         }
+        self.file.check(&self.out)?;
         if self.encode.is_some() && !is_video {
             return Err(Error::input(
                 "--encode",
@@ -322,10 +329,20 @@ const GUIDES: [Guide; 5] = [
 ];
 
 /// Writes a frame with everything that is known of it into one file.
-fn save_layers(shot: &mut Shot, (file, existing): (&Path, Existing), color: &Picture) -> Result<()> {
-    let (names, precision): (&[&str], _) = match color.channels {
+fn save_layers(
+    shot: &mut Shot,
+    (file, existing): (&Path, Existing),
+    color: &Picture,
+    depth: Option<Depth>,
+) -> Result<()> {
+    let (names, usual): (&[&str], _) = match color.channels {
         1 => (&["Y"], Precision::Float),
         _ => (&["R", "G", "B", "A"], Precision::Half),
+    };
+    let precision = match depth {
+        Some(Depth::Half) => Precision::Half,
+        Some(Depth::Float) => Precision::Float,
+        _ => usual,
     };
     let mut guides = Vec::with_capacity(GUIDES.len());
     for (target, names, precision) in GUIDES {

@@ -1,6 +1,6 @@
 //! The work beside the window as a whole: what it is asked for, and what comes of it. Nothing of it holds the window up.
 
-use std::path::Path;
+use std::path::PathBuf;
 use std::sync::Arc;
 
 use egui::ColorImage;
@@ -13,6 +13,7 @@ use super::idle::IdleSearch;
 use super::look_work::LookWork;
 use super::opening::{self, OpenJob, WithFrames};
 use super::reader::Reader;
+use super::reveal::Reveal;
 use super::worker::{Wake, Worker};
 use crate::state::outcome::{Dialog, Outcome};
 use crate::state::preview::order::Task;
@@ -37,6 +38,7 @@ pub struct Background {
     is_start_made: bool,
     dialogs: SystemDialogs,
     export: Exporting,
+    reveal: Reveal,
 }
 
 impl Background {
@@ -56,6 +58,7 @@ impl Background {
             is_start_made: false,
             dialogs: SystemDialogs::new(wake),
             export: Exporting::default(),
+            reveal: Reveal::new(wake),
         })
     }
 
@@ -85,15 +88,16 @@ impl Background {
         let mut outcomes = Vec::new();
         while let Some((dialog, chosen)) = self.dialogs.answer() {
             match chosen {
-                Ok(Some(path)) => {
-                    self.open_chosen(dialog, &path);
-                    outcomes.push(Outcome::Chosen(dialog, path));
+                Ok(paths) if paths.is_empty() => {}
+                Ok(paths) => {
+                    self.open_chosen(dialog, &paths);
+                    outcomes.push(Outcome::Chosen(dialog, paths));
                 }
-                Ok(None) => {}
                 Err(error) => outcomes.push(Outcome::Failed(error)),
             }
         }
         outcomes.extend(self.export.progress());
+        outcomes.extend(self.reveal.problem().map(Outcome::Failed));
         outcomes.extend(self.looks.collect());
         outcomes.extend(self.reducer.answer().map(Outcome::Samples));
         outcomes.extend(self.opener.answer().map(|opened| match opened {
@@ -108,14 +112,15 @@ impl Background {
         outcomes
     }
 
-    /// Opens the file that was chosen in a dialog, where it is one to be opened.
-    fn open_chosen(&mut self, dialog: Dialog, path: &Path) {
-        let (library, path) = (self.library.clone(), path.to_owned());
+    /// Opens the files that were chosen in a dialog, where they are to be opened.
+    fn open_chosen(&mut self, dialog: Dialog, paths: &[PathBuf]) {
+        let Some(path) = paths.first().cloned() else { return };
+        let library = self.library.clone();
         match dialog {
-            Dialog::File => self.opener.ask(OpenJob::Files(library, vec![path])),
+            Dialog::File => self.opener.ask(OpenJob::Files(library, paths.to_vec())),
             Dialog::Look => self.opener.ask(OpenJob::Look(library, path)),
             Dialog::Surroundings => self.opener.ask(OpenJob::Surroundings(path)),
-            Dialog::LookFolder | Dialog::Save | Dialog::Export => {}
+            Dialog::LookFolder | Dialog::Save | Dialog::Export | Dialog::Several | Dialog::SeveralTo => {}
         }
     }
 
@@ -150,6 +155,8 @@ impl Background {
                 }
                 Request::ListLooks => self.looks.list(session),
                 Request::Export => outcomes.extend(self.export.begin(session)),
+                Request::UseOnSeveral => outcomes.extend(self.export.begin_several(session)),
+                Request::Reveal(file) => self.reveal.show(&file),
                 Request::CancelExport => self.export.cancel(),
             }
         }

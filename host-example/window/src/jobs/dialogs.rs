@@ -12,8 +12,8 @@ use crate::state::saving::Saving;
 use crate::state::session::Session;
 use isophote_files::error::{Error, Result};
 
-/// Result of a dialog: its purpose, and what was chosen, if anything was.
-type DialogResult = (Dialog, Result<Option<PathBuf>>);
+/// Result of a dialog: its purpose, and what was chosen; nothing where it was closed.
+type DialogResult = (Dialog, Result<Vec<PathBuf>>);
 
 /// Dialogs, of which one is open at a time.
 pub struct SystemDialogs {
@@ -47,12 +47,14 @@ impl SystemDialogs {
             return Ok(());
         }
         let (folder, name) = proposed(dialog, session);
+        let kind = session.dialogs.plan.as_ref().map(|plan| (plan.format.name, plan.format.extension));
         let (choose, wake) = (self.choose.clone(), Arc::clone(&self.wake));
         let otherwise = otherwise(dialog, session.takes_drops);
         let spawned = std::thread::Builder::new().name("dialog".into()).spawn(move || {
-            let path = shown(|| ask(dialog, folder, &name), otherwise);
+            let asked = Asked { dialog, folder, name, kind };
+            let paths = shown(|| asked.answer(), otherwise).map(Option::unwrap_or_default);
             // The window may be closed by now.
-            let _ = choose.send((dialog, path));
+            let _ = choose.send((dialog, paths));
             wake();
         });
         spawned.map_err(|e| Error::failure(format!("no dialog can be opened: {e}"), otherwise))?;
@@ -64,13 +66,19 @@ impl SystemDialogs {
 /// Folder and name of a file that a dialog begins with.
 fn proposed(dialog: Dialog, session: &Session) -> (Option<PathBuf>, String) {
     let saved = session.dialogs.saving.as_ref().map(Saving::file);
+    let planned = session.dialogs.plan.as_ref().map(|plan| PathBuf::from(&plan.path));
     let folder = match dialog {
         Dialog::Save => saved.as_deref().and_then(Path::parent).map(Path::to_owned),
         Dialog::Look | Dialog::LookFolder => session.settings.look_folder.clone(),
-        Dialog::File | Dialog::Surroundings | Dialog::Export => session.settings.folder.clone(),
+        Dialog::Export => planned.as_deref().and_then(Path::parent).map(Path::to_owned),
+        Dialog::SeveralTo => {
+            let results = session.dialogs.batch.as_ref().map(|batch| PathBuf::from(batch.folder.trim()));
+            results.as_deref().and_then(Path::parent).map(Path::to_owned)
+        }
+        Dialog::File | Dialog::Surroundings | Dialog::Several => session.settings.folder.clone(),
     };
-    let file = match (dialog, &session.dialogs.plan) {
-        (Dialog::Export, Some(plan)) => PathBuf::from(&plan.path),
+    let file = match (dialog, planned) {
+        (Dialog::Export, Some(planned)) => planned,
         _ => saved.unwrap_or_default(),
     };
     (folder, file.file_name().unwrap_or_default().to_string_lossy().into_owned())
@@ -82,31 +90,57 @@ const fn otherwise(dialog: Dialog, takes_drops: bool) -> &'static str {
         Dialog::File | Dialog::Look if takes_drops => {
             "drop the file on the window, or install zenity or xdg-desktop-portal"
         }
-        Dialog::Export => "type where it is to go, or install zenity or xdg-desktop-portal",
+        Dialog::Several if takes_drops => {
+            "drop the files on the window, or install zenity or xdg-desktop-portal"
+        }
+        Dialog::Export | Dialog::SeveralTo => {
+            "type where it is to go, or install zenity or xdg-desktop-portal"
+        }
         _ => "install zenity or xdg-desktop-portal",
     }
 }
 
-/// Shows a dialog of the system and waits for its answer.
-fn ask(dialog: Dialog, folder: Option<PathBuf>, name: &str) -> Option<PathBuf> {
-    let mut shown = rfd::FileDialog::new();
-    if let Some(folder) = folder {
-        shown = shown.set_directory(folder);
-    }
-    match dialog {
-        Dialog::File => shown.set_title("Open").pick_file(),
-        Dialog::Look => shown.set_title("Open a look").add_filter("Looks", &["json"]).pick_file(),
-        Dialog::LookFolder => shown.set_title("Add a folder of looks").pick_folder(),
-        Dialog::Save => {
-            let shown = shown.set_title("Save the look").set_file_name(name).add_filter("Looks", &["json"]);
-            let path = shown.save_file()?;
-            Some(if path.extension().is_some() { path } else { path.with_extension("json") })
+/// A dialog as it is shown.
+struct Asked {
+    dialog: Dialog,
+    folder: Option<PathBuf>,
+    name: String,
+    /// Name and extension of the kind of file that is exported.
+    kind: Option<(&'static str, &'static str)>,
+}
+
+impl Asked {
+    /// Shows it and waits for its answer.
+    fn answer(&self) -> Option<Vec<PathBuf>> {
+        let mut shown = rfd::FileDialog::new();
+        if let Some(folder) = &self.folder {
+            shown = shown.set_directory(folder);
         }
-        Dialog::Export => shown.set_title("Export").set_file_name(name).save_file(),
-        Dialog::Surroundings => shown
-            .set_title("Surroundings")
-            .add_filter("Pictures of the surroundings", &["hdr", "exr"])
-            .pick_file(),
+        match self.dialog {
+            Dialog::File => return shown.set_title("Open").pick_files(),
+            Dialog::Several => return shown.set_title("Use the look on these pictures").pick_files(),
+            Dialog::Look => shown.set_title("Open a look").add_filter("Looks", &["json"]).pick_file(),
+            Dialog::LookFolder => shown.set_title("Add a folder of looks").pick_folder(),
+            Dialog::SeveralTo => shown.set_title("Folder of the results").pick_folder(),
+            Dialog::Save => {
+                let shown = shown.set_title("Save the look").set_file_name(&self.name);
+                let path = shown.add_filter("Looks", &["json"]).save_file()?;
+                Some(if path.extension().is_some() { path } else { path.with_extension("json") })
+            }
+            Dialog::Export => {
+                let shown = shown.set_title("Export").set_file_name(&self.name);
+                let shown = match self.kind {
+                    Some((name, extension)) => shown.add_filter(name, &[extension]),
+                    None => shown,
+                };
+                shown.save_file()
+            }
+            Dialog::Surroundings => shown
+                .set_title("Surroundings")
+                .add_filter("Pictures of the surroundings", &["hdr", "exr"])
+                .pick_file(),
+        }
+        .map(|path| vec![path])
     }
 }
 

@@ -1,4 +1,4 @@
-//! Export of what the window shows into files: a picture, a sequence, a turntable or a video.
+//! Export of what the window shows into files: a picture, a sequence, a turntable or a video; and of its look on other pictures.
 //!
 //! The work is done by another process of this program, by its verbs `apply` and `render` with a preset file. So the window
 //! stays alive whatever becomes of it, and the result is the one that the command line gives.
@@ -18,19 +18,13 @@ use serde_json::Value;
 use crate::state::document::kind::Kind;
 use crate::state::progress::{Progress, State};
 use isophote_files::error::{Error, Result};
-use isophote_files::files::{self, Existing};
-use isophote_files::frames::Pattern;
-use isophote_finishing::apply::square;
-use isophote_finishing::video::{self, Film};
-use isophote_pictures::exr::Selection;
-use isophote_pictures::read;
+use isophote_files::files;
+use isophote_finishing::video;
 
 /// Time between two looks at whether a process has ended that says no more.
 const TICK: Duration = Duration::from_millis(5);
 /// Time that a process has to end and to remove what it has begun.
 const GRACE: Duration = Duration::from_secs(2);
-/// Frames of a sequence on their way into a video.
-const FRAMES: &str = "frame.######.png";
 
 /// An export to be made.
 #[derive(Clone, Debug)]
@@ -39,7 +33,9 @@ pub struct ExportJob {
     pub kind: Kind,
     /// The document's path.
     pub input: PathBuf,
-    /// The picture, the pattern of the pictures or the video.
+    /// More pictures, each by itself, whose results go to a folder as that of the input does.
+    pub more: Vec<PathBuf>,
+    /// The picture, the pattern of the pictures or the video; the folder where there are more.
     pub output: PathBuf,
     /// The look as the text of a preset file, in which paths are absolute; only scenes are something without.
     pub preset: Option<String>,
@@ -61,6 +57,7 @@ impl ExportJob {
         Self {
             kind,
             input: input.to_owned(),
+            more: Vec::new(),
             output: output.to_owned(),
             preset,
             frames: None,
@@ -71,9 +68,15 @@ impl ExportJob {
         }
     }
 
-    /// True where pictures of a sequence are made first, and a video of them.
-    fn is_in_two_steps(&self) -> bool {
-        self.kind == Kind::Sequence && video::becomes_video(&self.output)
+    /// True where several pictures, each by itself, go to a folder.
+    fn is_of_several(&self) -> bool {
+        !self.more.is_empty()
+    }
+
+    /// Removes what a process had begun when it was ended; nobody writes it any more.
+    fn sweep(&self) {
+        let beside = if self.is_of_several() { &self.output.join("picture") } else { &self.output };
+        files::sweep(beside);
     }
 
     /// The process that does it, with its preset and other files in `folder`.
@@ -107,14 +110,22 @@ impl ExportJob {
                 if self.kind != Kind::Video {
                     command.arg("--in-place");
                 }
+                if self.kind == Kind::Sequence && video::becomes_video(&self.output) {
+                    command.arg("--fps").arg(self.rate.to_string());
+                }
             }
         }
         if let Some(frames) = &self.frames {
             command.arg("--frames").arg(frames);
         }
-        let output = if self.is_in_two_steps() { folder.join(FRAMES) } else { self.output.clone() };
+        if self.is_of_several() {
+            command.arg("--to").arg(&self.output);
+        }
         // What is there may go: the dialog has asked.
-        command.args(&self.arguments).args(["--force", "--json", "--"]).arg(&self.input).arg(output);
+        command.args(&self.arguments).args(["--force", "--json", "--"]).arg(&self.input).args(&self.more);
+        if !self.is_of_several() {
+            command.arg(&self.output);
+        }
         Ok(command)
     }
 }
@@ -148,14 +159,18 @@ impl Export {
             let result = own.run(&job);
             let is_cancelled = own.is_cancelled();
             if is_cancelled || result.is_err() {
-                // What the process had begun when it was ended; nobody writes it any more.
-                files::sweep(&job.output);
+                job.sweep();
             }
             own.progress().state = match result {
                 // What was done before it could be ended is done.
                 Ok(()) => State::Done,
                 Err(_) if is_cancelled => State::Cancelled,
-                Err(problem) => State::Failed(problem),
+                Err(Failure { pictures, all, .. })
+                    if job.is_of_several() && (1..all).contains(&pictures.len()) =>
+                {
+                    State::Partly(pictures)
+                }
+                Err(failure) => State::Failed(failure.text()),
             };
         };
         Builder::new()
@@ -207,6 +222,27 @@ fn ask_to_end(child: &mut Child) -> bool {
     child.kill().is_ok()
 }
 
+/// Failure of a process.
+struct Failure {
+    /// Last complaint of the process.
+    last: String,
+    /// Complaints about single pictures.
+    pictures: Vec<String>,
+    /// Number of pictures that were tried.
+    all: usize,
+}
+
+impl Failure {
+    fn of(last: String) -> Self {
+        Self { last, pictures: Vec::new(), all: 0 }
+    }
+
+    fn text(self) -> String {
+        let Self { last, pictures, .. } = self;
+        pictures.first().map_or_else(|| last.clone(), |first| format!("{first} ({last})"))
+    }
+}
+
 impl Drop for Export {
     fn drop(&mut self) {
         self.cancel();
@@ -227,34 +263,31 @@ impl Shared {
     }
 
     /// Does a job, or says why it cannot be done.
-    fn run(&self, job: &ExportJob) -> std::result::Result<(), String> {
-        let folder = tempfile::tempdir().map_err(|e| format!("no folder for the time being: {e}"))?;
-        self.process(job.command(folder.path()).map_err(|e| e.to_string())?)?;
-        if job.is_in_two_steps() {
-            self.film(job, &folder.path().join(FRAMES)).map_err(|e| e.to_string())?;
-        }
-        Ok(())
+    fn run(&self, job: &ExportJob) -> std::result::Result<(), Failure> {
+        let folder =
+            tempfile::tempdir().map_err(|e| Failure::of(format!("no folder for the time being: {e}")))?;
+        self.process(job.command(folder.path()).map_err(|e| Failure::of(e.to_string()))?)
     }
 
     /// Runs a process to its end.
-    fn process(&self, mut command: Command) -> std::result::Result<(), String> {
-        let failed = |e: std::io::Error| format!("the export cannot be started: {e}");
+    fn process(&self, mut command: Command) -> std::result::Result<(), Failure> {
+        let failed = |e: std::io::Error| Failure::of(format!("the export cannot be started: {e}"));
         let mut complaints = tempfile::tempfile().map_err(failed)?;
         command.stdin(Stdio::null()).stdout(Stdio::piped()).stderr(complaints.try_clone().map_err(failed)?);
         let out = {
             // Held so that whoever cancels finds the process, or it is not started.
             let mut child = self.child();
             if self.is_cancelled() {
-                return Err(String::new());
+                return Err(Failure::of(String::new()));
             }
             child.insert(command.spawn().map_err(failed)?).stdout.take()
         };
-        let (mut frames, mut first) = (0, None);
+        let (mut frames, mut pictures) = (0, Vec::new());
         for line in out.into_iter().flat_map(|out| BufReader::new(out).split(b'\n')).map_while(|l| l.ok()) {
             if let Ok(event) = serde_json::from_slice::<Value>(&line) {
                 frames += u32::from(event["event"] == "frame");
                 self.note(&event, frames.into());
-                first = first.or_else(|| event["error"].as_str().map(str::to_owned));
+                pictures.extend(event["error"].as_str().map(str::to_owned));
             }
         }
         let status = loop {
@@ -274,7 +307,7 @@ impl Shared {
         let _ = complaints.rewind().and_then(|()| complaints.read_to_string(&mut text));
         let last = text.lines().rev().find_map(|line| line.strip_prefix("error: "));
         let last = last.map_or_else(|| format!("the export ended early: {status}"), str::to_owned);
-        Err(first.map_or_else(|| last.clone(), |first| format!("{first} ({last})")))
+        Err(Failure { last, pictures, all: frames as usize })
     }
 
     /// Takes over what a process tells when so many frames are over.
@@ -290,35 +323,5 @@ impl Shared {
             }
             _ => {}
         }
-    }
-
-    /// Makes a video of pictures.
-    fn film(&self, job: &ExportJob, pictures: &Path) -> Result<()> {
-        let none =
-            || Error::file(pictures, "has no place for a frame number", "report this mistake in the program");
-        let pattern = Pattern::new(pictures)?.ok_or_else(none)?;
-        let frames = pattern.on_disk()?;
-        files::check_writable(&job.output, Existing::Replace)?;
-        files::write_by_path(&job.output, Existing::Replace, |place| {
-            let mut film = None::<Film<'_>>;
-            for number in frames {
-                if self.is_cancelled() {
-                    return Err(Error::failure("the export was cancelled", "start it again"));
-                }
-                let source = read::read(&pattern.file(number), &Selection::default())?;
-                let Some(picture) = source.pictures.first() else { continue };
-                let film = match &mut film {
-                    Some(film) => film,
-                    None => {
-                        let pace = (job.rate, square::aspect(&picture.meaning));
-                        film.insert(Film::start(&picture.pixels, pace, (&job.output, place), None)?)
-                    }
-                };
-                if !film.put(&picture.pixels)? {
-                    break;
-                }
-            }
-            Film::end(film, &job.output)
-        })
     }
 }

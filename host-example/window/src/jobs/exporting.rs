@@ -3,12 +3,14 @@
 use std::path::Path;
 
 use super::export::{Export, ExportJob};
+use crate::state::batch::Batch;
 use crate::state::command;
+use crate::state::document::kind::Kind;
 use crate::state::outcome::Outcome;
 use crate::state::plan::{Plan, What};
 use crate::state::progress::State;
 use crate::state::session::Session;
-use isophote_files::error::Result;
+use isophote_files::error::{Error, Result};
 use isophote_finishing::stylize::preset;
 
 /// An export, while there is one.
@@ -21,6 +23,13 @@ impl Exporting {
     /// Begins to write what is shown, by another process, where something is planned.
     pub fn begin(&mut self, session: &Session) -> Option<Outcome> {
         let job = job(session, session.dialogs.plan.as_ref()?, session.open.file()?);
+        let begun = job.and_then(Export::start).map(|export| self.export = Some(export));
+        Some(Outcome::ExportBegun(begun))
+    }
+
+    /// Begins to use the look on several pictures, where they are chosen.
+    pub fn begin_several(&mut self, session: &Session) -> Option<Outcome> {
+        let job = several(session, session.dialogs.batch.as_ref()?);
         let begun = job.and_then(Export::start).map(|export| self.export = Some(export));
         Some(Outcome::ExportBegun(begun))
     }
@@ -56,19 +65,11 @@ impl Exporting {
 /// # Errors
 /// [`isophote_files::error::Error::Input`] for looks that no preset can hold.
 fn job(session: &Session, plan: &Plan, file: &Path) -> Result<ExportJob> {
-    let look = session.look();
-    let preset = match look.is_plain() {
-        true => None,
-        false => Some(preset::text(&look.whole()?)?),
-    };
-    let mut job = ExportJob::new(plan.kind, file, Path::new(&plan.path), preset);
+    let mut job = ExportJob::new(plan.kind, file, Path::new(&plan.path), preset_of(session)?);
     let is_turntable = plan.what == What::Turntable;
-    (job.frames, job.turntable) = (plan.frames(), is_turntable);
+    (job.frames, job.turntable, job.rate) = (plan.frames(), is_turntable, plan.rate);
     let mut words: Vec<String> = match session.open.playback() {
-        Some(playback) => {
-            job.rate = playback.rate;
-            command::selection(playback)
-        }
+        Some(playback) => command::selection(playback),
         None => {
             let [width, height] = plan.size;
             let size = ["--size".to_owned(), format!("{width}x{height}")];
@@ -81,6 +82,27 @@ fn job(session: &Session, plan: &Plan, file: &Path) -> Result<ExportJob> {
         What::Picture | What::Turntable | What::Frames => {}
     }
     words.extend(command::precision(session));
+    words.extend(plan.options().words());
     job.arguments = words.into_iter().map(Into::into).collect();
     Ok(job)
+}
+
+/// The look on several pictures.
+///
+/// # Errors
+/// As [`job`]; [`Error::Input`] without a picture.
+fn several(session: &Session, batch: &Batch) -> Result<ExportJob> {
+    let none = || Error::input("the export", "has no pictures", "choose some");
+    let (first, more) = batch.pictures.split_first().ok_or_else(none)?;
+    let mut job = ExportJob::new(Kind::Picture, first, Path::new(batch.folder.trim()), preset_of(session)?);
+    job.more = more.to_vec();
+    let words = [batch.options().words(), command::precision(session)].concat();
+    job.arguments = words.into_iter().map(Into::into).collect();
+    Ok(job)
+}
+
+/// The look that is shown as the text of a preset; nothing where it is none.
+fn preset_of(session: &Session) -> Result<Option<String>> {
+    let look = session.look();
+    if look.is_plain() { Ok(None) } else { preset::text(&look.whole()?).map(Some) }
 }

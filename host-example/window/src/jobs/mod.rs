@@ -12,6 +12,7 @@ mod look_work;
 mod opening;
 pub mod preview;
 mod reader;
+mod reveal;
 pub mod stylizing;
 mod watch;
 pub(crate) mod worker;

@@ -10,6 +10,8 @@ use crate::state::look::EditedLook;
 use crate::state::outcome::Opened;
 use crate::state::samples::Sample;
 use isophote_files::error::Result;
+use isophote_files::frames;
+use isophote_finishing::{naming, video};
 use isophote_loader::Library;
 use isophote_pictures::exr::Selection;
 use isophote_render::background::Background as Surround;
@@ -49,7 +51,7 @@ pub fn open(job: OpenJob) -> Result<WithFrames> {
         OpenJob::Sample(sample, folder) => {
             return pictures(Document::open(&sample.file_in(&folder)?, &Options::default())?);
         }
-        OpenJob::Files(library, files) => return first_of(&library, files),
+        OpenJob::Files(library, files) => return files_or_folder(&library, files),
         OpenJob::Again(path, selection) => {
             let options = Options { selection: *selection, ..Options::default() };
             let document = Document::open(&path, &options)?;
@@ -66,6 +68,35 @@ pub fn open(job: OpenJob) -> Result<WithFrames> {
 
 fn pictures(document: Document) -> Result<WithFrames> {
     Ok((Opened::Pictures(Box::new(document.playback()?)), Some(document)))
+}
+
+/// Opens the first file that can be opened. Where there are several pictures, or a folder of them, the look can be used on all.
+fn files_or_folder(library: &Library, files: Vec<PathBuf>) -> Result<WithFrames> {
+    let folder = files.first().filter(|first| files.len() == 1 && first.is_dir());
+    let (pictures, sequence) = match folder {
+        Some(folder) => (naming::pictures_of(folder).unwrap_or_default(), frames::meant(folder)),
+        None => {
+            let pictures: Vec<PathBuf> = files.iter().filter(|file| is_picture(file)).cloned().collect();
+            let pattern = pictures.first().and_then(|first| frames::sequence_of(first));
+            let is_one = pictures.iter().all(|file| frames::sequence_of(file) == pattern);
+            (pictures, pattern.filter(|_| is_one))
+        }
+    };
+    // A folder that is no sequence is opened at its first picture.
+    let first = match (folder, &sequence, pictures.first()) {
+        (Some(_), None, Some(first)) => vec![first.clone()],
+        _ => files,
+    };
+    let (opened, document) = first_of(library, first)?;
+    let opened = match pictures.len() {
+        ..=1 => opened,
+        _ => Opened::OfSeveral(Box::new(opened), pictures, sequence),
+    };
+    Ok((opened, document))
+}
+
+fn is_picture(file: &Path) -> bool {
+    frames::is_picture(file) && file.is_file() && !video::is_video(file)
 }
 
 /// Opens the first file that can be opened.

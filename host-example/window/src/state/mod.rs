@@ -1,5 +1,6 @@
 //! State of the window: plain values and what may be done with them. Nothing here has a thread or lives on the device.
 
+pub mod batch;
 pub mod browser;
 pub mod chain;
 pub mod command;
@@ -10,6 +11,7 @@ pub mod document;
 pub mod expression;
 pub mod file_steps;
 pub mod folder;
+pub mod formats;
 pub mod histogram;
 pub mod history;
 pub mod leaving;
@@ -25,6 +27,7 @@ pub mod probed;
 pub mod progress;
 pub mod record;
 pub mod resetting;
+pub mod running;
 pub mod samples;
 pub mod saving;
 pub mod scenery;

@@ -1,5 +1,6 @@
 //! Messages of the window: one line at a time, which goes away by itself unless something went wrong.
 
+use std::path::PathBuf;
 use std::time::{Duration, Instant};
 
 use isophote_files::error::Error;
@@ -7,6 +8,8 @@ use isophote_files::output;
 
 /// Time that good news stays.
 const STAYS: Duration = Duration::from_secs(4);
+/// Time that good news stays where something can be done about it.
+const STAYS_LONG: Duration = Duration::from_secs(60);
 /// Most notes at a time.
 const MOST: usize = 3;
 
@@ -35,6 +38,8 @@ pub struct Note {
     subject: Subject,
     /// True once it was shown.
     is_seen: bool,
+    /// File that it tells of, which can be shown in its folder.
+    pub place: Option<PathBuf>,
     since: Instant,
 }
 
@@ -48,6 +53,18 @@ impl Notes {
     /// Adds a note of something that was done.
     pub fn say(&mut self, text: impl Into<String>) {
         self.add(text.into(), false, Subject::Other);
+    }
+
+    /// Adds a note of a file that was made, or of files of which some could not be.
+    pub fn tell_of(&mut self, place: PathBuf, text: String, is_bad: bool) {
+        if is_bad {
+            output::warn(&text);
+        }
+        self.notes.retain(|note| note.place.is_none());
+        self.add(text, is_bad, Subject::Export);
+        if let Some(note) = self.notes.last_mut() {
+            note.place = Some(place);
+        }
     }
 
     /// Adds a note of what went wrong, here and where the program was started.
@@ -66,8 +83,9 @@ impl Notes {
     }
 
     fn add(&mut self, text: String, is_bad: bool, subject: Subject) {
-        self.notes.retain(|note| note.is_bad && note.text != text);
-        self.notes.push(Note { text, is_bad, subject, is_seen: false, since: Instant::now() });
+        self.notes.retain(|note| (note.is_bad || note.place.is_some()) && note.text != text);
+        let since = Instant::now();
+        self.notes.push(Note { text, is_bad, subject, is_seen: false, place: None, since });
         if self.notes.len() > MOST {
             self.notes.remove(0);
         }
@@ -91,7 +109,8 @@ impl Notes {
 
     /// Notes in the order in which they came, which are shown now.
     pub fn present(&mut self) -> &[Note] {
-        self.notes.retain(|note| note.is_bad || note.since.elapsed() < STAYS);
+        let stays = |note: &Note| if note.place.is_some() { STAYS_LONG } else { STAYS };
+        self.notes.retain(|note| note.is_bad || note.since.elapsed() < stays(note));
         self.notes.iter_mut().for_each(|note| note.is_seen = true);
         &self.notes
     }

@@ -22,8 +22,8 @@ use isophote_scene::Scene;
 pub enum Outcome {
     /// Something was opened.
     Opened(Opened),
-    /// This was chosen in a dialog of the system.
-    Chosen(Dialog, PathBuf),
+    /// These files were chosen in a dialog of the system, at least one.
+    Chosen(Dialog, Vec<PathBuf>),
     /// The export that was planned has begun, or cannot.
     ExportBegun(Result<()>),
     /// An export has come so far.
@@ -54,6 +54,8 @@ pub enum Opened {
     Pictures(Box<Playback>),
     /// The document that was open, read in another way.
     Again(Box<Playback>),
+    /// The first of several pictures, which the look can be used on; all of them may be one sequence.
+    OfSeveral(Box<Opened>, Vec<PathBuf>, Option<PathBuf>),
     /// One of several, with what is wrong with others and how many were left.
     Among(Box<Opened>, Vec<Error>, usize),
     /// A look.
@@ -77,6 +79,10 @@ pub enum Dialog {
     Surroundings,
     /// Name the output of an export.
     Export,
+    /// Choose pictures to use the look on.
+    Several,
+    /// Name the folder of their results.
+    SeveralTo,
 }
 
 /// Controls of a look that have no effect.

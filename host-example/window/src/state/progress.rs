@@ -19,6 +19,8 @@ pub enum State {
     Running,
     /// The output is there.
     Done,
+    /// What of it could not be done; the rest is there.
+    Partly(Vec<String>),
     /// The reason why there is none, or not all of it.
     Failed(String),
     /// It was ended; frames of a sequence that were whole stay.

@@ -211,16 +211,21 @@ impl Session {
         }
     }
 
+    /// True where what is shown can be exported.
+    pub fn can_export(&self) -> bool {
+        self.open.file().is_some() && (!self.look().is_plain() || self.open.playback().is_none())
+    }
+
     /// Asks what is to be exported, if anything can be.
     pub fn plan_export(&mut self) {
         let playback = self.open.playback();
-        let can_be = !self.look().is_plain() || playback.is_none();
-        let Some(file) = self.open.file().filter(|_| can_be) else { return };
+        let Some(file) = self.open.file().filter(|_| self.can_export()) else { return };
         let length = self.open.scenery().map_or(0.0, |scenery| scenery.time().1);
         let frames = playback.and_then(Playback::frames).cloned();
         let animated = (length * 24.0).ceil() as u32;
-        let plan = Plan::new(self.open.kind(), file, frames, self.nominal_size(), animated);
-        self.dialogs.plan = Some(plan);
+        let mut plan = Plan::new(self.open.kind(), file, frames, self.nominal_size(), animated);
+        plan.rate = playback.map_or(plan.rate, |playback| playback.rate);
+        (self.dialogs.plan, self.dialogs.batch) = (Some(plan), None);
     }
 
     fn begin(&mut self, open: Open) {
@@ -231,7 +236,7 @@ impl Session {
         if let Some(file) = self.open.file() {
             self.settings.remember(file);
         }
-        self.dialogs.plan = None;
+        (self.dialogs.plan, self.dialogs.batch) = (None, None);
         self.previews.clear();
         self.viewport.fit();
         self.viewport.overlay = Overlay::None;

@@ -3,6 +3,7 @@
 use std::path::PathBuf;
 
 use super::outcome::Dialog;
+use super::running::Running;
 use isophote_pictures::exr::Layer;
 
 /// Request of the controls for work beside the window.
@@ -22,6 +23,10 @@ pub enum Request {
     ListLooks,
     /// Make what is planned.
     Export,
+    /// Use the look on the pictures that are chosen.
+    UseOnSeveral,
+    /// Show where this file lies.
+    Reveal(PathBuf),
     /// End the export.
     CancelExport,
 }
@@ -35,6 +40,8 @@ pub struct Work {
     pub share: Option<f32>,
     /// The share of an export that is done, while there is one.
     pub exported: Option<f32>,
+    /// The export, while there is one.
+    pub running: Option<Running>,
     requests: Vec<Request>,
 }
 

@@ -2,10 +2,12 @@
 //! for the rest by requests; nothing here knows a device.
 
 mod act;
+mod batch;
 mod browser;
 mod canvas;
 mod card;
 mod chain;
+mod choices;
 mod comparison;
 mod control;
 mod details;
@@ -91,6 +93,7 @@ pub fn show(ui: &mut Ui, session: &mut Session) {
     }
     notes::show(ui.ctx(), rect, session);
     export::show(ui.ctx(), session);
+    batch::show(ui.ctx(), session);
     dialogs::show(ui.ctx(), session);
     help::show(ui.ctx(), session);
     session.follow_saving();

@@ -4,10 +4,14 @@ use egui::{Align2, Button, Frame, Id, Margin, Rect, RichText, vec2};
 
 use super::theme;
 use crate::state::session::Session;
+use crate::state::work::Request;
+
+/// Points beside the text for the buttons of a note that tells of a file.
+const BUTTONS: f32 = 170.0;
 
 /// Shows all notes.
 pub fn show(context: &egui::Context, rect: Rect, session: &mut Session) {
-    let mut dismissed = None;
+    let (mut dismissed, mut shown) = (None, None);
     let notes = session.notes.present();
     if notes.is_empty() {
         return;
@@ -23,14 +27,33 @@ pub fn show(context: &egui::Context, rect: Rect, session: &mut Session) {
                     ui.horizontal(|ui| {
                         ui.set_max_width(width);
                         let color = if note.is_bad { theme::BAD } else { theme::TEXT };
-                        ui.add(egui::Label::new(RichText::new(&note.text).color(color)).wrap());
-                        if note.is_bad && ui.add(Button::new("OK").small()).clicked() {
+                        let text = egui::Label::new(RichText::new(&note.text).color(color)).wrap();
+                        match note.place {
+                            Some(_) => {
+                                ui.vertical(|ui| {
+                                    ui.set_max_width((width - BUTTONS).max(80.0));
+                                    ui.add(text)
+                                });
+                            }
+                            None => {
+                                ui.add(text);
+                            }
+                        }
+                        if let Some(place) = &note.place
+                            && ui.add(Button::new("Show in folder").small()).clicked()
+                        {
+                            shown = Some(place.clone());
+                        }
+                        if (note.is_bad || note.place.is_some())
+                            && ui.add(Button::new("OK").small()).clicked()
+                        {
                             dismissed = Some(index);
                         }
                     });
                 });
             }
         });
+    shown.into_iter().for_each(|place| session.work.ask(Request::Reveal(place)));
     if let Some(index) = dismissed {
         session.notes.dismiss(index);
     }

@@ -4,6 +4,7 @@ use egui::{Button, RichText, Slider, Ui, vec2};
 
 use super::number::Number;
 use super::{ends, probe, theme};
+use crate::state::running::Running;
 use crate::state::session::Session;
 use crate::state::work::Request;
 
@@ -16,7 +17,8 @@ pub fn show(ui: &mut Ui, session: &mut Session) {
     };
     ends::show(ui, session, ("bottom", 22.0, right), |ui, session| {
         if let Some(share) = session.work.exported {
-            ui.add(egui::ProgressBar::new(share).desired_width(160.0).text("Exporting"));
+            let text = session.work.running.as_ref().map_or_else(|| "Exporting".to_owned(), Running::words);
+            ui.add(egui::ProgressBar::new(share).desired_width(240.0).text(text));
             if ui.button("Cancel").clicked() {
                 session.work.ask(Request::CancelExport);
             }

@@ -63,7 +63,7 @@ fn file_menu(ui: &mut Ui, session: &mut Session) {
             }
         }
         ui.separator();
-        let can_export = session.open.file().is_some() && (has_look || session.open.scenery().is_some());
+        let can_export = session.can_export();
         let copy = Button::new("Copy the command line").shortcut_text("");
         if ui.add_enabled(session.open.file().is_some(), copy).clicked() {
             ui.ctx().copy_text(command::copied(session));
@@ -73,6 +73,14 @@ fn file_menu(ui: &mut Ui, session: &mut Session) {
             session.plan_export();
             ui.close();
         }
+        item(
+            ui,
+            session,
+            "Use the look on several pictures…",
+            "",
+            Request::Choose(Dialog::Several),
+            has_look,
+        );
         ui.separator();
         let recent = session.settings.recent.clone();
         if !recent.is_empty() {
@@ -195,8 +203,17 @@ fn right(ui: &mut Ui, session: &mut Session) {
     if ui.button("?").on_hover_text("Keys and mouse").clicked() {
         session.dialogs.shows_help = !session.dialogs.shows_help;
     }
+    if !session.open.has_picture() {
+        return;
+    }
+    let export = Button::new("Export").fill(theme::CHOSEN);
+    let export = ui.add_enabled(session.can_export(), export);
+    let export = export.on_hover_text("Writes the picture, its frames or a video (Ctrl+E)");
+    if export.on_disabled_hover_text("Choose a style first").clicked() {
+        session.plan_export();
+    }
     // The menu has the rest, too.
-    if !session.open.has_picture() || ui.ctx().content_rect().width() < WIDE {
+    if ui.ctx().content_rect().width() < WIDE {
         return;
     }
     let copy = ui.add_enabled(session.open.file().is_some(), Button::new("Copy command"));

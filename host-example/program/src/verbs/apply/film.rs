@@ -89,11 +89,13 @@ impl ApplyArgs {
                     .map_or(1.0, |picture| square::aspect(&picture.meaning));
                 let frame = shown(filtered)
                     .ok_or_else(|| Error::file(&task.input, "has no picture", "leave the frame out"))?;
+                let frame = self.result.options().sized(output, frame, &Meaning::display())?;
                 let film = match &mut film {
                     Some(film) => film,
                     None => {
                         let pace = (self.fps.unwrap_or(RATE), aspect);
-                        film.insert(Film::start(&frame, pace, (output, place), self.encode.as_deref())?)
+                        let encode = self.result.file.encode(self.encode.as_deref());
+                        film.insert(Film::start(&frame, pace, (output, place), encode)?)
                     }
                 };
                 if !film.put(&frame)? {

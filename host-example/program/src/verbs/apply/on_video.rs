@@ -25,7 +25,8 @@ impl ApplyArgs {
         if least.is_some_and(|least| *least < 1) {
             return Err(Error::input("--frames", "the first frame of a video is 1", "name frames from 1"));
         }
-        Ok(Numbered { pattern, format, frames: self.frames.as_ref(), consent: self.consent() })
+        let (options, frames) = (self.result.options(), self.frames.as_ref());
+        Ok(Numbered { pattern, format, options, frames, consent: self.consent() })
     }
 
     /// Refuses options that are of no use for a video, or for pictures of one.
@@ -79,6 +80,7 @@ impl ApplyArgs {
         let pictures = pattern.as_ref().map(|pattern| self.numbered(pattern, files)).transpose()?;
         let is_video = pictures.is_none();
         self.check_options(is_video)?;
+        self.result.check(files.input, &files.output)?;
         let choices = self.masks(&self.entries()?);
         if self.is_done(files, pictures.as_ref(), &choices)? {
             return Ok(());
@@ -94,9 +96,10 @@ impl ApplyArgs {
         let masks = self.maps(&choices, &looks)?;
         masks.check(None)?;
         let filter = Filter::new(library, looks, self.backend, self.space, self.threads)?;
-        let mut filter = filter.into_space(self.output_space);
+        let mut filter = filter.into_space(self.output_space).precisely(self.result.is_precise());
         let stop = Stop::on_signals();
-        let (input, output, encode) = (files.input, &*files.output, self.encode.as_deref());
+        let (input, output) = (files.input, &*files.output);
+        let (encode, resize) = (self.result.file.encode(self.encode.as_deref()), self.result.resize);
         let mut run = |existing| {
             let (on_error, json, quiet) = (self.on_error, self.json, self.quiet.quiet);
             let (masks, stop) = (&masks, &stop);
@@ -106,6 +109,7 @@ impl ApplyArgs {
                 pictures,
                 existing,
                 encode,
+                resize,
                 on_error,
                 json,
                 quiet,

@@ -5,12 +5,13 @@ use std::collections::HashMap;
 use std::fs;
 use std::path::{Path, PathBuf};
 
-use super::{ApplyArgs, Files, naming};
+use super::{ApplyArgs, Files};
 use crate::verbs::shared::is_folder;
 use isophote_files::error::{Error, Result};
 use isophote_files::files;
-use isophote_files::frames::{self, Pattern};
+use isophote_files::frames::Pattern;
 use isophote_finishing::apply::tasks::Task;
+use isophote_finishing::naming;
 
 /// Arguments without an option, by their meaning.
 pub struct Named<'a> {
@@ -85,7 +86,7 @@ impl ApplyArgs {
 
     /// The result of a file in a folder. In the file's own, where it would take its place, it has the style in its name.
     fn result(&self, style: &Path, folder: &Path, input: &Path) -> Result<PathBuf> {
-        let result = naming::in_folder(folder, input);
+        let result = naming::in_folder(folder, input, self.result.format);
         if self.to.is_none() && !self.in_place && naming::are_neighbours(&result, input) {
             let beside = naming::beside(style, input)?;
             return Ok(folder.join(beside.file_name().unwrap_or_default()));
@@ -99,7 +100,16 @@ impl ApplyArgs {
     /// [`Error::Input`] for folders without pictures, two results of one name, and options of sequences.
     pub fn pictures(&self) -> Result<Option<Vec<Task>>> {
         let Named { style, inputs, folder, .. } = self.named()?;
-        let Some(folder) = folder else { return Ok(None) };
+        let Some(folder) = folder else {
+            return match self.result.format {
+                Some(_) => Err(Error::input(
+                    "--format",
+                    "is for a folder of results",
+                    "name the result, or a folder by --to",
+                )),
+                None => Ok(None),
+            };
+        };
         if matches!(inputs.as_slice(), [one] if !one.is_dir()) {
             return Ok(None);
         }
@@ -147,23 +157,7 @@ fn no_picture() -> Error {
 /// The files that a path names: the pictures of a folder, the frames of a sequence, or itself.
 fn each(path: &Path) -> Result<Vec<PathBuf>> {
     if path.is_dir() {
-        let unreadable =
-            |e: std::io::Error| Error::file(path, format!("cannot be read: {e}"), "name another folder");
-        let mut found = Vec::new();
-        for entry in fs::read_dir(path).map_err(unreadable)? {
-            let entry = entry.map_err(unreadable)?;
-            // Some systems keep notes on files in hidden ones of the same endings.
-            let is_hidden = entry.file_name().as_encoded_bytes().starts_with(b".");
-            let file = entry.path();
-            if !is_hidden && frames::is_picture(&file) && file.is_file() {
-                found.push(file);
-            }
-        }
-        if found.is_empty() {
-            return Err(Error::file(path, "is a folder without pictures", "name a folder that has some"));
-        }
-        found.sort_unstable();
-        return Ok(found);
+        return naming::pictures_of(path);
     }
     match Pattern::new(path)? {
         Some(pattern) => Ok(pattern.on_disk()?.into_iter().map(|frame| pattern.file(frame)).collect()),

@@ -37,7 +37,7 @@ impl Session {
 
     /// The export has ended, well or not. What went wrong is to be seen, so the window stays open then.
     pub fn end_export(&mut self, is_done: bool) {
-        self.work.exported = None;
+        (self.work.exported, self.work.running) = (None, None);
         if self.dialogs.leaving == Leaving::Waits {
             self.dialogs.leaving = Leaving::Stays;
             if is_done {
@@ -50,6 +50,7 @@ impl Session {
     pub fn has_dialog(&self) -> bool {
         self.dialogs.saving.is_some()
             || self.dialogs.plan.is_some()
+            || self.dialogs.batch.is_some()
             || self.browser.title_edit.is_some()
             || self.browser.deleting.is_some()
     }
@@ -66,7 +67,7 @@ impl Session {
         } else if self.browser.deleting.take().is_some()
             || self.browser.title_edit.take().is_some()
             || self.dialogs.saving.take().is_some()
-            || self.dialogs.plan.take().is_some()
+            || self.dialogs.close_export()
         {
             self.follow_saving();
         } else if self.browser.comparison.is_some() {

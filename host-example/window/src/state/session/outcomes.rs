@@ -5,12 +5,14 @@ use std::path::{Path, PathBuf};
 use std::sync::Arc;
 
 use super::Session;
+use crate::state::batch::Batch;
 use crate::state::notes::Subject;
 use crate::state::outcome::{Dialog, IdleControls, Opened, Outcome};
 use crate::state::progress::{Progress, State};
+use crate::state::running::{Running, failures};
 use crate::state::scenery::{Scenery, Staging};
 use crate::state::work::Request;
-use isophote_files::error::Error;
+use isophote_files::error::{Error, Result};
 use isophote_loader::abi::IsophoteRequest;
 use isophote_scene::{Scene, camera, floor};
 
@@ -19,17 +21,8 @@ impl Session {
     pub fn take_over(&mut self, outcome: Outcome) {
         match outcome {
             Outcome::Opened(opened) => self.open(opened),
-            Outcome::Chosen(dialog, path) => self.take_chosen(dialog, &path),
-            Outcome::ExportBegun(begun) => {
-                self.dialogs.plan = None;
-                match begun {
-                    Ok(()) => {
-                        self.work.exported = Some(0.0);
-                        self.notes.mended(Subject::Export);
-                    }
-                    Err(error) => self.notes.complain_of(Subject::Export, &error),
-                }
-            }
+            Outcome::Chosen(dialog, paths) => self.take_chosen(dialog, paths),
+            Outcome::ExportBegun(begun) => self.begin_export(begun),
             Outcome::Export(progress) => self.follow_export(progress),
             Outcome::Beside(of, files) => {
                 if self.open.file() == Some(&of)
@@ -86,6 +79,11 @@ impl Session {
                     self.notes.say(format!("{files} dropped; the first that opens is shown, {name}"));
                 }
             }
+            Opened::OfSeveral(opened, pictures, sequence) => {
+                self.open(*opened);
+                self.dialogs.plan = None;
+                self.dialogs.batch = Some(Batch::new(pictures, sequence));
+            }
             Opened::Again(playback) => {
                 if self.open.file() == Some(playback.path()) {
                     self.show_again(*playback);
@@ -119,8 +117,10 @@ impl Session {
         self.show_scene(Scenery::new(scene, staging, aspect), file, name);
     }
 
-    /// Takes over the file or folder that was chosen in a dialog. What is to be opened comes later.
-    fn take_chosen(&mut self, dialog: Dialog, path: &Path) {
+    /// Takes over the files or the folder that were chosen in a dialog. What is to be opened comes later.
+    fn take_chosen(&mut self, dialog: Dialog, paths: Vec<PathBuf>) {
+        let Some(path) = paths.first().cloned() else { return };
+        let path = path.as_path();
         match dialog {
             Dialog::File | Dialog::Surroundings => {}
             Dialog::Look => self.settings.look_folder = path.parent().map(Path::to_owned),
@@ -133,21 +133,50 @@ impl Session {
                     saving.place(Some(path));
                 }
             }
-            Dialog::Export => {
-                if let Some(plan) = &mut self.dialogs.plan {
-                    plan.path = path.display().to_string();
+            Dialog::Export => self.dialogs.plan.iter_mut().for_each(|plan| plan.place(path)),
+            Dialog::Several => {
+                self.dialogs.plan = None;
+                self.dialogs.batch = Some(Batch::new(paths, None));
+            }
+            Dialog::SeveralTo => {
+                if let Some(batch) = &mut self.dialogs.batch {
+                    (batch.folder, batch.asks) = (path.display().to_string(), None);
                 }
             }
         }
     }
 
+    /// The export that was asked for has begun, or cannot.
+    fn begin_export(&mut self, begun: Result<()>) {
+        let (plan, batch) = (self.dialogs.plan.take(), self.dialogs.batch.take());
+        let running = match batch {
+            Some(batch) => Running::new(PathBuf::from(batch.folder.trim()), "pictures"),
+            None => Running::new(plan.map(|plan| PathBuf::from(plan.path)).unwrap_or_default(), "frames"),
+        };
+        match begun {
+            Ok(()) => {
+                (self.work.exported, self.work.running) = (Some(0.0), Some(running));
+                self.notes.mended(Subject::Export);
+            }
+            Err(error) => self.notes.complain_of(Subject::Export, &error),
+        }
+    }
+
     /// The export has come so far, which is said when it has ended.
     fn follow_export(&mut self, Progress { done, total, state }: Progress) {
-        self.work.exported = Some((done / total.max(1.0)) as f32);
+        let mut running = self.work.running.take().unwrap_or_else(|| Running::new(PathBuf::new(), "frames"));
+        (running.done, running.total) = (done, total);
+        self.work.exported = Some(running.share());
         let is_done = state == State::Done;
         match state {
-            State::Running => return,
-            State::Done => self.notes.say("Exported"),
+            State::Running => {
+                self.work.running = Some(running);
+                return;
+            }
+            State::Done => self.notes.tell_of(running.place.clone(), running.sentence(), false),
+            State::Partly(failed) => {
+                self.notes.tell_of(running.place.clone(), failures(&failed, total as u64), true);
+            }
             State::Cancelled => self.notes.say("The export was cancelled"),
             State::Failed(problem) => {
                 self.notes.complain_of(Subject::Export, &Error::failure(problem, "export again"));

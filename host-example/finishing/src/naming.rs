@@ -1,19 +1,47 @@
-//! Names of results that the command line leaves out.
+//! Names of results that nobody names: in a folder, or beside what they are made of; and the pictures of a folder.
 
+use std::fs;
 use std::path::{Path, PathBuf};
 
+use crate::stylize::preset;
+use crate::video;
+use crate::writing::FileKind;
 use isophote_files::error::{Error, Result};
-use isophote_files::frames::Pattern;
-use isophote_finishing::stylize::preset;
-use isophote_finishing::video;
+use isophote_files::frames::{self, Pattern};
 use isophote_pictures::write::Format;
 
 /// Word of results whose style has no name: a graph that is written out.
 const NAMELESS: &str = "styled";
 
-/// The result of a file in a folder: of the same name, with another ending where that kind is not written.
-pub fn in_folder(folder: &Path, input: &Path) -> PathBuf {
-    folder.join(of_its_kind(input))
+/// The result of a file in a folder: of the same name, with another ending where that kind is not written or another is asked
+/// for.
+pub fn in_folder(folder: &Path, input: &Path, kind: Option<FileKind>) -> PathBuf {
+    let name = of_its_kind(input);
+    folder.join(kind.map_or_else(|| name.clone(), |kind| name.with_extension(kind.extension())))
+}
+
+/// The pictures of a folder by their names, without those that are hidden.
+///
+/// # Errors
+/// [`Error::Input`] for a folder that cannot be read or has none.
+pub fn pictures_of(folder: &Path) -> Result<Vec<PathBuf>> {
+    let unreadable =
+        |e: std::io::Error| Error::file(folder, format!("cannot be read: {e}"), "name another folder");
+    let mut found = Vec::new();
+    for entry in fs::read_dir(folder).map_err(unreadable)? {
+        let entry = entry.map_err(unreadable)?;
+        // Some systems keep notes on files in hidden ones of the same endings.
+        let is_hidden = entry.file_name().as_encoded_bytes().starts_with(b".");
+        let file = entry.path();
+        if !is_hidden && frames::is_picture(&file) && file.is_file() {
+            found.push(file);
+        }
+    }
+    if found.is_empty() {
+        return Err(Error::file(folder, "is a folder without pictures", "name a folder that has some"));
+    }
+    found.sort_unstable();
+    Ok(found)
 }
 
 /// The result of a file beside it, with the name of the style in its own: `photo.cartoon.png`.
@@ -92,8 +120,12 @@ mod tests {
             ("a.mp4", "out/a.mp4"),
             ("shot.####.exr", "out/shot.####.exr"),
         ] {
-            assert_eq!(in_folder(Path::new("out"), Path::new(input)), Path::new(output));
+            assert_eq!(in_folder(Path::new("out"), Path::new(input), None), Path::new(output));
         }
+        assert_eq!(
+            in_folder(Path::new("o"), Path::new("a/b.tiff"), Some(FileKind::Jpeg)),
+            Path::new("o/b.jpg")
+        );
     }
 
     #[test]
