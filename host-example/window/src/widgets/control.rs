@@ -1,8 +1,11 @@
 //! One parameter: a dot where it differs from its default, its label, its control, and a button that sets it back.
 
-use egui::{Align, Button, Color32, DragValue, Layout, Response, RichText, Sense, Slider, Ui, vec2};
+use std::ops::RangeInclusive;
 
-use super::theme;
+use egui::emath::Numeric;
+use egui::{Align, Button, Color32, DragValue, Layout, Response, RichText, Sense, Ui, vec2};
+
+use super::{keyboard, theme};
 use crate::state::look::Parameter;
 use crate::state::session::Session;
 use isophote_finishing::stylize::value::Value;
@@ -52,7 +55,8 @@ pub fn show(ui: &mut Ui, session: &mut Session, parameter: &Parameter) {
                         parameter.param.label,
                         shown(parameter, &parameter.default)
                     );
-                    reset = ui.add(button).on_hover_text(hint).clicked();
+                    let button = ui.add(button).accessible_name(&hint).on_hover_text(hint);
+                    reset = button.clicked();
                 }
             },
         );
@@ -114,8 +118,7 @@ fn control(ui: &mut Ui, parameter: &Parameter, value: &Value, label: &Response) 
     match (value, &parameter.param.kind) {
         (Value::Float(now), ParamKind::Float { range, slider, .. }) => {
             let (mut value, mut typed) = (*now, *now);
-            let rail = Slider::new(&mut value, slider[0]..=slider[1]).trailing_fill(true);
-            let slid = rail_of(ui, rail, label);
+            let slid = rail_of(ui, &mut value, slider[0]..=slider[1], label);
             let speed = f64::from(slider[1] - slider[0]) / 240.0;
             let field = DragValue::new(&mut typed).range(range[0]..=range[1]).speed(speed).max_decimals(3);
             let written = field_of(ui, field.suffix(unit(parameter)), label);
@@ -123,8 +126,7 @@ fn control(ui: &mut Ui, parameter: &Parameter, value: &Value, label: &Response) 
         }
         (Value::Int(now), ParamKind::Int { range, slider, .. }) => {
             let (mut value, mut typed) = (*now, *now);
-            let rail = Slider::new(&mut value, slider[0]..=slider[1]).trailing_fill(true);
-            let slid = rail_of(ui, rail, label);
+            let slid = rail_of(ui, &mut value, slider[0]..=slider[1], label);
             let field = DragValue::new(&mut typed).range(range[0]..=range[1]).speed(0.1);
             let written = field_of(ui, field.suffix(unit(parameter)), label);
             chosen(slid, value, written, typed).map(Value::Int)
@@ -144,10 +146,12 @@ fn control(ui: &mut Ui, parameter: &Parameter, value: &Value, label: &Response) 
     }
 }
 
-fn rail_of(ui: &mut Ui, slider: Slider<'_>, label: &Response) -> bool {
+fn rail_of<N: Numeric>(ui: &mut Ui, value: &mut N, range: RangeInclusive<N>, label: &Response) -> bool {
     ui.spacing_mut().slider_width = (ui.available_width() - VALUE - 6.0).max(40.0);
-    let slider = slider.show_value(false).clamping(egui::SliderClamping::Never);
-    ui.add(slider).labelled_by(label.id).changed()
+    let rail = keyboard::slider(ui, value, range, |slider| {
+        slider.trailing_fill(true).show_value(false).clamping(egui::SliderClamping::Never)
+    });
+    rail.labelled_by(label.id).changed()
 }
 
 fn field_of(ui: &mut Ui, field: DragValue<'_>, label: &Response) -> bool {

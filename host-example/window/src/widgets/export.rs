@@ -1,8 +1,8 @@
 //! Dialog of exports, in a window of its own.
 
-use egui::{Align2, Button, ComboBox, DragValue, Grid, RichText, TextEdit, Ui};
+use egui::{ComboBox, DragValue, Grid, RichText, TextEdit, Ui};
 
-use super::theme;
+use super::{dialog, theme};
 use crate::state::document::kind::Kind;
 use crate::state::outcome::Dialog;
 use crate::state::plan::{Plan, What};
@@ -14,23 +14,18 @@ pub fn show(context: &egui::Context, session: &mut Session) {
     let Some(mut plan) = session.dialogs.plan.take() else { return };
     let mut open = true;
     let mut request = None;
-    egui::Window::new("Export")
-        .open(&mut open)
-        .collapsible(false)
-        .resizable(false)
-        .anchor(Align2::CENTER_CENTER, [0.0, 0.0])
-        .show(context, |ui| {
-            ui.set_width(460.0);
-            Grid::new("export").num_columns(2).spacing([18.0, 8.0]).show(ui, |ui| {
-                kind(ui, &mut plan);
-                amount(ui, &mut plan, session.open.playback().map(|playback| playback.number()));
-                if place(ui, &mut plan) {
-                    request = Some(Request::Choose(Dialog::Export));
-                }
-            });
-            ui.add_space(10.0);
-            request = end(ui, &plan, session.work.exported.is_some()).or(request.take());
+    dialog::show(context, "Export", Some(&mut open), |ui| {
+        ui.set_width(460.0);
+        Grid::new("export").num_columns(2).spacing([18.0, 8.0]).show(ui, |ui| {
+            kind(ui, &mut plan);
+            amount(ui, &mut plan, session.open.playback().map(|playback| playback.number()));
+            if place(ui, &mut plan) {
+                request = Some(Request::Choose(Dialog::Export));
+            }
         });
+        ui.add_space(10.0);
+        request = end(ui, &plan, session.work.exported.is_some()).or(request.take());
+    });
     if open {
         session.dialogs.plan = Some(plan);
     }
@@ -143,6 +138,5 @@ fn end(ui: &mut Ui, plan: &Plan, is_busy: bool) -> Option<Request> {
         ui.label(RichText::new("#### is the place of the frame's number.").color(theme::FAINT));
     }
     ui.add_space(4.0);
-    let start = ui.add_enabled(problem.is_none(), Button::new("Start the export"));
-    start.clicked().then_some(Request::Export)
+    dialog::confirm(ui, "Start the export", problem.is_none()).then_some(Request::Export)
 }

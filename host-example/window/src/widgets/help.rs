@@ -1,33 +1,28 @@
 //! Keys and mouse, on demand.
 
-use egui::{Align2, Grid, RichText, ScrollArea, Ui};
+use egui::{Grid, RichText, ScrollArea, Ui};
 
-use super::{keys, theme};
+use super::{dialog, keys, theme};
 use crate::state::session::Session;
 
 /// Margin of the list from top to bottom, in points.
-const MARGIN: f32 = 110.0;
+const MARGIN: f32 = 150.0;
 
 /// Shows the help while it is wanted.
 pub fn show(context: &egui::Context, session: &mut Session) {
-    let mut open = session.dialogs.shows_help;
-    egui::Window::new("Keys and mouse")
-        .open(&mut open)
-        .collapsible(false)
-        .resizable(false)
-        .anchor(Align2::CENTER_CENTER, [0.0, 0.0])
-        .show(context, |ui| {
-            ui.add_space(4.0);
-            // Windows may be lower than the list.
-            let height = (ui.ctx().content_rect().height() - MARGIN).max(60.0);
-            ScrollArea::vertical().max_height(height).show(ui, list);
-            ui.add_space(6.0);
-            ui.label(
-                RichText::new("Every label in the panel tells more where the pointer rests on it.")
-                    .color(theme::FAINT),
-            );
-        });
-    session.dialogs.shows_help = open;
+    if !session.dialogs.shows_help {
+        return;
+    }
+    dialog::show(context, "Keys and mouse", Some(&mut session.dialogs.shows_help), |ui| {
+        // Windows may be lower than the list.
+        let height = (ui.ctx().content_rect().height() - MARGIN).max(60.0);
+        ScrollArea::vertical().max_height(height).show(ui, list);
+        ui.add_space(6.0);
+        ui.label(
+            RichText::new("Every label in the panel tells more where the pointer rests on it.")
+                .color(theme::FAINT),
+        );
+    });
 }
 
 fn list(ui: &mut Ui) {

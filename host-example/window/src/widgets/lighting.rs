@@ -1,8 +1,8 @@
 //! The scene's camera and light.
 
-use egui::{Button, RichText, Slider, Ui};
+use egui::{Button, RichText, Ui};
 
-use super::theme;
+use super::{keyboard, theme};
 use crate::state::outcome::Dialog;
 use crate::state::session::Session;
 use crate::state::work::Request;
@@ -25,7 +25,9 @@ pub fn show(ui: &mut Ui, session: &mut Session) {
         (1, "Sun height", -10.0..=90.0, "How high the sun is above the horizon."),
     ] {
         let changed = row(ui, label, doc, |ui| {
-            Slider::new(&mut degrees[index], range).suffix("°").max_decimals(0).ui_in(ui)
+            keyboard::slider(ui, &mut degrees[index], range, |slider| {
+                slider.suffix("°").max_decimals(0).trailing_fill(true)
+            })
         });
         if changed {
             let [azimuth, elevation] = degrees.map(f32::to_radians);
@@ -34,7 +36,10 @@ pub fn show(ui: &mut Ui, session: &mut Session) {
     }
     let mut exposure = session.open.scenery().map_or(0.0, |scenery| scenery.lighting.exposure);
     let doc = "Brightness of the scene in stops, before looks are put on it.";
-    if row(ui, "Exposure", doc, |ui| Slider::new(&mut exposure, -4.0..=4.0).max_decimals(2).ui_in(ui)) {
+    let slider = |ui: &mut Ui| {
+        keyboard::slider(ui, &mut exposure, -4.0..=4.0, |slider| slider.max_decimals(2).trailing_fill(true))
+    };
+    if row(ui, "Exposure", doc, slider) {
         session.relight("exposure", |light| light.exposure = exposure);
     }
     background(ui, session);
@@ -58,17 +63,6 @@ fn row(ui: &mut Ui, label: &str, doc: &str, slider: impl FnOnce(&mut Ui) -> egui
         slider(ui).labelled_by(label.id).changed()
     })
     .inner
-}
-
-/// Sliders as widgets of a closure.
-trait InUi {
-    fn ui_in(self, ui: &mut Ui) -> egui::Response;
-}
-
-impl InUi for Slider<'_> {
-    fn ui_in(self, ui: &mut Ui) -> egui::Response {
-        ui.add(self.trailing_fill(true))
-    }
 }
 
 fn camera(ui: &mut Ui, session: &mut Session) {

@@ -23,7 +23,8 @@ pub fn show(context: &egui::Context, rect: Rect, session: &mut Session) {
                     ui.horizontal(|ui| {
                         ui.set_max_width(width);
                         let color = if note.is_bad { theme::BAD } else { theme::TEXT };
-                        ui.add(egui::Label::new(RichText::new(&note.text).color(color)).wrap());
+                        let said = ui.add(egui::Label::new(RichText::new(&note.text).color(color)).wrap());
+                        announce(context, said.id, note.is_bad);
                         if note.is_bad && ui.add(Button::new("OK").small()).clicked() {
                             dismissed = Some(index);
                         }
@@ -36,4 +37,11 @@ pub fn show(context: &egui::Context, rect: Rect, session: &mut Session) {
     }
     // What goes away by itself must be seen to go.
     context.request_repaint_after(std::time::Duration::from_secs(1));
+}
+
+/// Lets programs that read the window aloud say a message when it comes.
+fn announce(context: &egui::Context, label: Id, is_bad: bool) {
+    use egui::accesskit::Live;
+    let live = if is_bad { Live::Assertive } else { Live::Polite };
+    context.accesskit_node_builder(label, |node| node.set_live(live));
 }

@@ -1,8 +1,8 @@
 //! The bar at the bottom: time, what is under the pointer, magnification and brightness.
 
-use egui::{Button, DragValue, Label, RichText, Slider, Ui};
+use egui::{Button, DragValue, Label, RichText, Ui};
 
-use super::theme;
+use super::{keyboard, order, theme};
 use crate::state::session::Session;
 use crate::state::work::Request;
 
@@ -25,11 +25,9 @@ pub fn show(ui: &mut Ui, session: &mut Session) {
         } else {
             ui.label(RichText::new(&session.record.adapter).small().color(theme::FAINT));
         }
-        ui.with_layout(egui::Layout::right_to_left(egui::Align::Center), |ui| {
-            if session.open.has_picture() {
-                magnification(ui, session);
-            }
-        });
+        if session.open.has_picture() {
+            order::at_right(ui, "magnification", |ui| magnification(ui, session));
+        }
     });
 }
 
@@ -41,12 +39,14 @@ fn timeline(ui: &mut Ui, session: &mut Session) {
     }
     let text = if scenery.playing { "⏸" } else { "▶" };
     let hint = if scenery.playing { "Pause (Space)" } else { "Play (Space)" };
-    if ui.add(Button::new(text)).on_hover_text(hint).clicked() {
+    let play = ui.add(Button::new(text)).accessible_name(if scenery.playing { "Pause" } else { "Play" });
+    if play.on_hover_text(hint).clicked() {
         scenery.toggle_playing();
     }
     let mut now = time;
     ui.spacing_mut().slider_width = 220.0;
-    let slider = ui.add(Slider::new(&mut now, 0.0..=length).show_value(false)).on_hover_text("Time");
+    let slider = keyboard::slider(ui, &mut now, 0.0..=length, |slider| slider.show_value(false));
+    let slider = slider.on_hover_text("Time");
     slider.widget_info(|| egui::WidgetInfo::slider(true, f64::from(time), "Time"));
     if slider.changed() {
         scenery.seek(now);
@@ -68,18 +68,22 @@ fn frames(ui: &mut Ui, session: &mut Session) {
         return;
     };
     let text = if playback.playing { "⏸" } else { "▶" };
-    if ui.add(Button::new(text)).on_hover_text("Play and pause (Space)").clicked() {
+    let play = ui.add(Button::new(text)).accessible_name(if playback.playing { "Pause" } else { "Play" });
+    if play.on_hover_text("Play and pause (Space)").clicked() {
         playback.toggle_playing();
     }
-    for (text, hint, by) in [("⏴", "The frame before (←)", -1), ("⏵", "The next frame (→)", 1)] {
-        if ui.add(Button::new(text)).on_hover_text(hint).clicked() {
+    for (text, name, key, by) in [("⏴", "The frame before", "←", -1), ("⏵", "The next frame", "→", 1)]
+    {
+        let button = ui.add(Button::new(text)).accessible_name(name);
+        if button.on_hover_text(format!("{name} ({key})")).clicked() {
             playback.step(by);
         }
     }
     let mut number = playback.number();
     ui.spacing_mut().slider_width = 220.0;
-    let rail = Slider::new(&mut number, frames.first()..=frames.last()).show_value(false);
-    let rail = ui.add(rail).on_hover_text("Frame");
+    let range = frames.first()..=frames.last();
+    let rail = keyboard::slider(ui, &mut number, range, |slider| slider.show_value(false));
+    let rail = rail.on_hover_text("Frame");
     rail.widget_info(|| egui::WidgetInfo::slider(true, number as f64, "Frame"));
     if rail.changed() {
         playback.seek(number);
@@ -102,19 +106,19 @@ fn probe(ui: &mut Ui, session: &Session) {
 }
 
 fn magnification(ui: &mut Ui, session: &mut Session) {
-    if !session.browser.is_open {
-        size(ui, session);
-        ui.add_space(8.0);
-    }
+    let label = ui.label(RichText::new("Exposure").color(theme::FAINT));
     let stops =
         DragValue::new(&mut session.viewport.exposure).range(-10.0..=10.0).speed(0.02).max_decimals(2);
-    let label = ui.label(RichText::new("Exposure").color(theme::FAINT));
     let stops = ui.add(stops.suffix(" stops")).labelled_by(label.id);
     if stops
         .on_hover_text("Brightness of what is shown, not of what is saved; a double click sets it back")
         .double_clicked()
     {
         session.viewport.exposure = 0.0;
+    }
+    if !session.browser.is_open {
+        ui.add_space(8.0);
+        size(ui, session);
     }
 }
 

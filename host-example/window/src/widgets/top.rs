@@ -2,7 +2,7 @@
 
 use egui::{Button, RichText, Ui};
 
-use super::theme;
+use super::{order, theme};
 use crate::state::command;
 use crate::state::outcome::Dialog;
 use crate::state::session::Session;
@@ -183,20 +183,20 @@ fn overlays(ui: &mut Ui, session: &mut Session) {
 fn right(ui: &mut Ui, session: &mut Session) {
     // The menu has it all.
     let is_narrow = ui.available_width() < 260.0;
-    ui.with_layout(egui::Layout::right_to_left(egui::Align::Center), |ui| {
-        if ui.button("?").on_hover_text("Keys and mouse").clicked() {
+    order::at_right(ui, "top", |ui| {
+        if session.open.has_picture() && !is_narrow {
+            let has_look = !session.look().is_plain();
+            if ui.add_enabled(has_look, Button::new("Save look")).on_hover_text("Ctrl+S").clicked() {
+                session.save_look(false);
+            }
+            let copy = ui.add_enabled(session.open.file().is_some(), Button::new("Copy command"));
+            if copy.on_hover_text("The command line that gives this picture").clicked() {
+                ui.ctx().copy_text(command::copied(session));
+            }
+        }
+        let help = ui.button("?").accessible_name("Keys and mouse").on_hover_text("Keys and mouse");
+        if help.clicked() {
             session.dialogs.shows_help = !session.dialogs.shows_help;
-        }
-        if !session.open.has_picture() || is_narrow {
-            return;
-        }
-        let copy = ui.add_enabled(session.open.file().is_some(), Button::new("Copy command"));
-        if copy.on_hover_text("The command line that gives this picture").clicked() {
-            ui.ctx().copy_text(command::copied(session));
-        }
-        let has_look = !session.look().is_plain();
-        if ui.add_enabled(has_look, Button::new("Save look")).on_hover_text("Ctrl+S").clicked() {
-            session.save_look(false);
         }
     });
 }

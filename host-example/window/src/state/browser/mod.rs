@@ -33,6 +33,10 @@ pub struct Browser {
     pub columns: usize,
     /// True where the selected card is to be scrolled to.
     pub scrolls: bool,
+    /// True where the selected card is to have the focus.
+    pub takes_focus: bool,
+    /// True where the field that looks are searched by is to have the focus.
+    pub searches: bool,
     /// True where the looks are to be read anew.
     pub is_outdated: bool,
     /// A name and tags that are being changed.
@@ -155,7 +159,13 @@ impl Browser {
             (Some((_, y)), Step::Right) => at(0, y + 1),
         };
         if let Some(next) = next.copied() {
-            (self.selected, self.scrolls) = (Some(next), true);
+            (self.selected, self.scrolls, self.takes_focus) = (Some(next), true, true);
         }
+    }
+
+    /// Adds what was typed to what is searched for.
+    pub fn search(&mut self, text: &str) {
+        self.filter.text += text;
+        self.searches = true;
     }
 }
