@@ -24,6 +24,29 @@ const STATES: [(u32, &str); 8] = [
     (23, "selected"),
 ];
 
+/// Numbers of roles, as AT-SPI has them.
+const ROLES: [(u32, &str); 19] = [
+    (7, "check box"),
+    (11, "combo box"),
+    (16, "dialog"),
+    (23, "window"),
+    (27, "image"),
+    (29, "label"),
+    (31, "list"),
+    (33, "menu"),
+    (35, "menu item"),
+    (39, "panel"),
+    (42, "progress bar"),
+    (43, "button"),
+    (51, "slider"),
+    (52, "spin button"),
+    (54, "status"),
+    (62, "toggle button"),
+    (75, "application"),
+    (79, "entry"),
+    (88, "link"),
+];
+
 /// A session bus on which programs ask windows what they show.
 pub struct Bus {
     _daemon: Running,
@@ -142,7 +165,9 @@ impl Bus {
             self.ask(object, ACCESSIBLE, "GetChildren", &()).unwrap_or_default();
         for (bus, path) in children {
             let child = (bus.as_str(), &*path);
-            let Some(role) = self.ask::<String>(child, ACCESSIBLE, "GetRoleName", &()) else { continue };
+            let Some(number) = self.ask::<u32>(child, ACCESSIBLE, "GetRole", &()) else { continue };
+            let role = ROLES.iter().find(|(known, _)| *known == number);
+            let role = role.map_or_else(|| format!("role {number}"), |(_, name)| (*name).to_owned());
             let name = self.property(child, ACCESSIBLE, "Name").and_then(|name| name.try_into().ok());
             let bits: Vec<u32> = self.ask(child, ACCESSIBLE, "GetState", &()).unwrap_or_default();
             let is_set =
@@ -211,8 +236,8 @@ impl Bus {
         [x, y, x + width, y + height]
     }
 
-    /// The control that has the focus.
+    /// The control that has the focus; the window has it where none does.
     pub fn focused(&self) -> Option<Control> {
-        self.controls().into_iter().find(|control| control.is("focused"))
+        self.controls().into_iter().find(|control| control.is("focused") && control.role != "window")
     }
 }

@@ -3,7 +3,8 @@
 use std::sync::Arc;
 
 use egui::{
-    Align2, Button, FontId, Id, Key, Rect, RichText, ScrollArea, Sense, TextEdit, Ui, UiBuilder, pos2, vec2,
+    Align2, Button, FontId, Id, Key, Rect, RichText, ScrollArea, Sense, TextEdit, Ui, UiBuilder, Vec2, pos2,
+    vec2,
 };
 
 use super::act::{Act, perform};
@@ -222,6 +223,10 @@ fn grid(ui: &mut Ui, viewport: Rect, session: &mut Session) {
         let at = rect.translate(corner).expand(GAP);
         ui.scroll_to_rect_animation(at, None, egui::style::ScrollAnimation::none());
     }
+    // A card that is out of sight does not take the focus when somebody scrolls to it.
+    if ui.input(|input| input.smooth_scroll_delta() != Vec2::ZERO) {
+        session.browser.takes_focus = false;
+    }
     if let Some(act) = act {
         perform(ui, session, act);
     }
@@ -229,7 +234,7 @@ fn grid(ui: &mut Ui, viewport: Rect, session: &mut Session) {
 
 /// Goes from card to card by the arrows, while one of them has the focus.
 fn walk(ui: &Ui, session: &mut Session) {
-    let card = session.browser.selected.map(card::id);
+    let card = session.browser.stop().map(card::id);
     let Some(card) = card.filter(|card| ui.memory(|memory| memory.has_focus(*card))) else { return };
     keyboard::keep_arrows(ui, card);
     for (key, step) in [
@@ -239,6 +244,9 @@ fn walk(ui: &Ui, session: &mut Session) {
         (Key::ArrowDown, Step::Down),
     ] {
         let presses = ui.input(|input| input.num_presses(key));
+        if presses > 0 {
+            keyboard::stay(ui);
+        }
         (0..presses).for_each(|_| session.browser.step(step));
     }
 }

@@ -7,7 +7,7 @@ use egui::{
 use std::sync::Arc;
 
 use super::act::Act;
-use super::theme;
+use super::{keyboard, theme};
 use crate::state::browser::entry::{Content, Entry};
 use crate::state::preview::order::{FINENESS, Order};
 use crate::state::preview::picture::Picture;
@@ -54,16 +54,18 @@ pub fn id(entry: u64) -> Id {
     Id::unique(("card", entry))
 }
 
-/// Shows a card; returns what is asked for. Of all cards Tab goes to the one that is selected, from which arrows go on.
+/// Shows a card; returns what is asked for. Of all cards Tab goes to one alone, from which arrows go on.
 pub fn show(ui: &mut Ui, rect: Rect, session: &mut Session, entry: &Arc<Entry>) -> Option<Act> {
     want(ui, rect.size(), session, entry);
     let is_selected = session.browser.selected == Some(entry.id);
-    let sense = if is_selected { Sense::click() } else { Sense::CLICK };
+    let is_stop = session.browser.stop() == Some(entry.id);
+    let sense = if is_stop { Sense::click() } else { Sense::CLICK };
     let response = ui.interact(rect, id(entry.id), sense);
     response.widget_info(|| egui::WidgetInfo::labeled(egui::Role::Button, true, &entry.name));
     ui.ctx().accesskit_node_builder(response.id, |node| node.set_selected(is_selected));
-    if is_selected && std::mem::take(&mut session.browser.takes_focus) {
+    if is_stop && std::mem::take(&mut session.browser.takes_focus) {
         response.request_focus();
+        keyboard::stay(ui);
     }
     let fill = if response.hovered() || is_selected { theme::CARD_ABOVE } else { theme::CARD };
     ui.painter().rect_filled(rect, 7.0, fill);

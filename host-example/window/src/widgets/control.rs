@@ -178,6 +178,7 @@ fn choice(ui: &mut Ui, options: &[Choice], now: &str, label: &Response, name: &s
         }
     });
     let now = option_label(options, now).to_owned();
+    keyboard::tell(&shown.response, &now);
     shown.response.labelled_by(label.id).widget_info(|| {
         let mut info = egui::WidgetInfo::labeled(egui::Role::ComboBox, true, name);
         info.current_text_value = Some(now.clone());

@@ -2,7 +2,7 @@
 
 use egui::{ComboBox, DragValue, Grid, RichText, TextEdit, Ui};
 
-use super::{dialog, theme};
+use super::{dialog, keyboard, theme};
 use crate::state::document::kind::Kind;
 use crate::state::outcome::Dialog;
 use crate::state::plan::{Plan, What};
@@ -54,6 +54,7 @@ fn kind(ui: &mut Ui, plan: &mut Plan) {
             ui.selectable_value(&mut plan.format, known, format(known));
         }
     });
+    keyboard::tell(&shown.response, &format(before));
     shown.response.labelled_by(label.id);
     if plan.format != before {
         plan.rename();

@@ -3,7 +3,7 @@
 use std::ops::RangeInclusive;
 
 use egui::emath::Numeric;
-use egui::{Context, Event, EventFilter, Id, Key, Response, Slider, Stroke, StrokeKind, Ui};
+use egui::{Context, Event, EventFilter, FocusDirection, Id, Key, Response, Slider, Stroke, StrokeKind, Ui};
 
 use super::theme;
 
@@ -40,6 +40,11 @@ pub fn belongs_to_controls(key: &winit::keyboard::Key) -> bool {
 pub fn keep_arrows(ui: &Ui, id: Id) {
     let filter = EventFilter { horizontal_arrows: true, vertical_arrows: true, ..EventFilter::default() };
     ui.memory_mut(|memory| memory.set_focus_lock_filter(id, filter));
+}
+
+/// Takes an arrow that was pressed in this frame away from the search for another control.
+pub fn stay(ui: &Ui) {
+    ui.memory_mut(|memory| memory.move_focus(FocusDirection::None));
 }
 
 /// A slider that takes all keys by which sliders are moved.
@@ -95,7 +100,18 @@ pub fn moved(
             now = Some(((to / unit).round() * unit).clamp(least, most));
         }
     });
+    if now.is_some() {
+        stay(ui);
+    }
     now
+}
+
+/// Tells programs that read the window aloud what is chosen in a list. On Linux values of lists are not passed on, descriptions
+/// are.
+pub fn tell(list: &Response, chosen: &str) {
+    if cfg!(target_os = "linux") {
+        list.ctx.accesskit_node_builder(list.id, |node| node.set_description(chosen));
+    }
 }
 
 /// Scrolls to the control that has just been given the focus, where it is cut off; called within what scrolls.

@@ -86,6 +86,7 @@ fn camera(ui: &mut Ui, session: &mut Session) {
                 }
             }
         });
+        keyboard::tell(&shown.response, name);
         shown.response.labelled_by(label.id);
     });
 }
@@ -116,6 +117,7 @@ fn background(ui: &mut Ui, session: &mut Session) {
                 session.work.ask(Request::Choose(Dialog::Surroundings));
             }
         });
+        keyboard::tell(&shown.response, name);
         shown.response.labelled_by(label.id);
     });
     if matches!(session.open.scenery().map(|s| &s.lighting.background), Some(Background::Environment(_))) {

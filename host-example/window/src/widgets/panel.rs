@@ -62,6 +62,7 @@ fn chooser(ui: &mut Ui, session: &mut Session) {
                     }
                 }
             });
+        keyboard::tell(&response.response, &session.look().name);
         response.response.accessible_name("Look").on_hover_text("The look. n shows the next one");
         if let Some(index) = chosen {
             session.choose(index);

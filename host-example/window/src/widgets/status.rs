@@ -133,7 +133,9 @@ fn size(ui: &mut Ui, session: &mut Session) {
         session.viewport.fit();
     }
     let percent = format!("{:.0} %", scale * 100.0);
-    if ui.add(Button::new(percent)).on_hover_text("Pixels as large as the screen's (z)").clicked() {
+    let name = format!("Magnification {percent}");
+    let button = ui.add(Button::new(percent)).accessible_name(name);
+    if button.on_hover_text("Pixels as large as the screen's (z)").clicked() {
         session.viewport.toggle_actual();
     }
 }

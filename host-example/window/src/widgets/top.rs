@@ -2,7 +2,7 @@
 
 use egui::{Button, RichText, Ui};
 
-use super::{order, theme};
+use super::{keyboard, order, theme};
 use crate::state::command;
 use crate::state::outcome::Dialog;
 use crate::state::session::Session;
@@ -132,8 +132,8 @@ fn compare(ui: &mut Ui, session: &mut Session) {
         return;
     }
     let mut chosen = None;
-    let name = session.looks.compared.as_ref().map_or("Original", |look| look.name.as_str());
-    egui::ComboBox::from_id_salt("compared")
+    let name = session.looks.compared.as_ref().map_or("Original", |look| look.name.as_str()).to_owned();
+    let list = egui::ComboBox::from_id_salt("compared")
         .selected_text(format!("with {name}"))
         .width(130.0)
         .show_ui(ui, |ui| {
@@ -152,8 +152,9 @@ fn compare(ui: &mut Ui, session: &mut Session) {
                 }
             }
         })
-        .response
-        .on_hover_text("What the look is compared with");
+        .response;
+    keyboard::tell(&list, &name);
+    list.accessible_name("Compare with").on_hover_text("What the look is compared with");
     if chosen.is_some() {
         session.looks.compared = chosen;
     }
@@ -165,7 +166,7 @@ fn overlays(ui: &mut Ui, session: &mut Session) {
         .find(|(overlay, _)| *overlay == session.viewport.overlay)
         .map_or("", |(_, name)| name);
     let shown = if session.viewport.overlay == Overlay::None { "Show" } else { now };
-    egui::ComboBox::from_id_salt("overlay")
+    let list = egui::ComboBox::from_id_salt("overlay")
         .selected_text(shown)
         .width(70.0)
         .show_ui(ui, |ui| {
@@ -176,8 +177,10 @@ fn overlays(ui: &mut Ui, session: &mut Session) {
                 ui.selectable_value(&mut session.viewport.overlay, overlay, name);
             }
         })
-        .response
-        .on_hover_text("What the look is made of: what is known of the picture, and what is found in it");
+        .response;
+    keyboard::tell(&list, now);
+    let hint = "What the look is made of: what is known of the picture, and what is found in it";
+    list.accessible_name("Show").on_hover_text(hint);
 }
 
 fn right(ui: &mut Ui, session: &mut Session) {

@@ -136,6 +136,12 @@ impl Browser {
         true
     }
 
+    /// The card that Tab goes to: the one that is selected, or the first where that is not shown.
+    pub fn stop(&self) -> Option<u64> {
+        let shown = || self.entries.iter().filter(|entry| self.filter.takes(entry)).map(|entry| entry.id);
+        shown().find(|id| Some(*id) == self.selected).or_else(|| shown().next())
+    }
+
     /// Selects the card beside the selected one, or the first.
     pub fn step(&mut self, step: Step) {
         let columns = self.columns.max(1);
