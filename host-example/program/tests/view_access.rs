@@ -177,6 +177,28 @@ fn every_control_is_told_with_name_role_and_value_and_can_be_acted_on() {
     assert_eq!(window.said(), "");
 }
 
+/// A slider is moved by keys, at last to its end.
+fn moves(window: &mut Window<'_>, bus: &Bus, sigma: &Control) {
+    bus.focus(sigma);
+    becomes(window, bus, ("slider", "Sigma"), "focused");
+    let [least, _, most] = bus.value(sigma);
+    let mut moved = |key: &str, by: f64| {
+        let before = bus.value(sigma)[1];
+        window.key(key);
+        window.wait_for(key, |_| bus.value(sigma)[1] != before);
+        let changed = bus.value(sigma)[1] - before;
+        assert!((changed - by).abs() < by.abs() * 0.51 + 1e-6, "{key}: {changed}, not {by}");
+    };
+    let step = (most - least) / 100.0;
+    for (key, by) in [("Right", step), ("Up", step), ("shift+Left", -step / 10.0), ("Down", -step)] {
+        moved(key, by);
+    }
+    for (key, end) in [("Home", least), ("End", most)] {
+        window.key(key);
+        window.wait_for(key, |_| bus.value(sigma)[1] == end);
+    }
+}
+
 #[test]
 fn keys_walk_the_controls_move_sliders_and_stay_within_dialogs() {
     let Some(display) = Display::open("1100x700") else { return };
@@ -194,29 +216,10 @@ fn keys_walk_the_controls_move_sliders_and_stay_within_dialogs() {
         bus.controls().iter().filter(|c| c.is("focusable") && c.is("enabled")).map(Control::line).collect();
     assert_eq!(there, can_be);
     let mut back = walk(&mut window, &bus, "shift+Tab");
-    back.rotate_right(1);
     back.reverse();
     assert_eq!(there, back);
-    // A slider.
-    bus.focus(&sigma);
-    becomes(&mut window, &bus, ("slider", "Sigma"), "focused");
-    let [least, now, most] = bus.value(&sigma);
-    let mut moved = |key: &str, by: f64| {
-        let before = bus.value(&sigma)[1];
-        window.key(key);
-        window.wait_for(key, |_| bus.value(&sigma)[1] != before);
-        let changed = bus.value(&sigma)[1] - before;
-        assert!((changed - by).abs() < by.abs() * 0.51 + 1e-6, "{key}: {changed}, not {by}");
-    };
-    let step = (most - least) / 100.0;
-    for (key, by) in [("Right", step), ("Up", step), ("shift+Left", -step / 10.0), ("Down", -step)] {
-        moved(key, by);
-    }
-    for (key, end) in [("Home", least), ("End", most)] {
-        window.key(key);
-        window.wait_for(key, |_| bus.value(&sigma)[1] == end);
-    }
-    assert!(window.title().contains("- gaussian"), "{now} {}", window.title());
+    moves(&mut window, &bus, &sigma);
+    let most = bus.value(&sigma)[1];
     // The focus goes into a dialog, does not leave it, and returns; other keys do nothing behind it.
     window.key("ctrl+e");
     becomes(&mut window, &bus, (BUTTON, "Start the export"), "focused");
@@ -285,7 +288,7 @@ fn letters_among_the_looks_search_and_arrows_walk() {
     window.key("Down");
     becomes(&mut window, &bus, (BUTTON, "Copperplate"), "focused");
     window.key("Return");
-    window.shows("photo.png", "copperplate");
+    window.shows("photo.png", "look:copperplate");
     window.close();
     assert_eq!(window.said(), "");
 }

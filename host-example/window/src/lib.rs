@@ -5,7 +5,7 @@
 //!
 //! | floor | what | where |
 //! |---|---|---|
-//! | `app` | the window's events, and when a frame is drawn | `keys`, `opening`, `clicks`, `pace` |
+//! | `app` | the window's events, and when a frame is drawn | `keys`, `opening`, `clicks`, `pace`, `access` |
 //! | `widgets` | the controls | one file each |
 //! | `drawing` | what lives on the device | `stage`, `shown`, `made`, `screen`, `sources`, `source`, `pictures`, `snapshot`, `live_look`, `canvas`, `probe`, `panel` |
 //! | `jobs` | work beside the window | `background`, `worker`, `opening`, `dialogs`, `document`, `reader`, `exporting`, `export`, `look_work`, `listing`, `preview`, `watch`, `idle` |
