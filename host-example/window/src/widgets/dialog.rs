@@ -1,9 +1,12 @@
 //! Dialogs within the window: nothing behind one takes keys or clicks, Enter does what it is for, and the focus begins within it
 //! and returns to where it was.
 
-use egui::{Align2, Button, Context, FocusDirection, Frame, Id, Key, Layout, Margin, Modal, RichText, Ui};
+use egui::{Button, Context, FocusDirection, Frame, Id, Key, Layout, Margin, Modal, RichText, Ui};
 
 use super::theme;
+
+/// Width in points at which lines are broken at the latest.
+const WIDEST: f32 = 760.0;
 
 /// A dialog that is open.
 #[derive(Clone, Copy, Debug)]
@@ -43,7 +46,8 @@ pub fn show<R>(
     let id = Id::unique(("dialog", title));
     begin(context, id);
     let frame = Frame::popup(&context.global_style()).inner_margin(Margin::same(18));
-    let area = Modal::default_area(id).anchor(Align2::CENTER_CENTER, [0.0, 0.0]).accessible_name(title);
+    let width = (context.content_rect().width() - 60.0).clamp(100.0, WIDEST);
+    let area = Modal::default_area(id).default_width(width).accessible_name(title);
     let shown = Modal::new(id).area(area).frame(frame).show(context, |ui| {
         let heading = ui.label(RichText::new(title).size(17.0).color(theme::BRIGHT));
         ui.add_space(8.0);
