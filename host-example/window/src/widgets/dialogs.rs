@@ -8,6 +8,8 @@ use crate::state::outcome::Dialog;
 use crate::state::session::Session;
 use crate::state::work::Request;
 
+/// Width of windows with text fields in points.
+const WIDTH: f32 = 460.0;
 /// Width of text fields in points.
 const FIELD: f32 = 340.0;
 
@@ -38,6 +40,7 @@ fn saving(context: &Context, session: &mut Session) {
     let (mut open, mut closes, mut done, mut chooses) = (true, false, false, false);
     let title = if saving.is_present { "Save the look" } else { "Save a copy" };
     dialog::show(context, title, Some(&mut open), |ui| {
+        ui.set_width(WIDTH);
         Grid::new("saving").num_columns(2).spacing([18.0, 8.0]).show(ui, |ui| {
             if fields(ui, &mut saving.words) {
                 saving.rename();
@@ -83,6 +86,7 @@ fn title_edit(context: &Context, session: &mut Session) {
     let Some(mut title_edit) = session.browser.title_edit.take() else { return };
     let (mut open, mut closes, mut done) = (true, false, false);
     dialog::show(context, "Name and tags", Some(&mut open), |ui| {
+        ui.set_width(WIDTH);
         Grid::new("title_edit").num_columns(2).spacing([18.0, 8.0]).show(ui, |ui| {
             fields(ui, &mut title_edit.words);
         });

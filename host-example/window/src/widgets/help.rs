@@ -1,6 +1,6 @@
 //! Keys and mouse, on demand.
 
-use egui::{Grid, Key, RichText, ScrollArea, Ui, vec2};
+use egui::{Frame, Grid, Key, Margin, RichText, ScrollArea, Ui, vec2};
 
 use super::{dialog, keys, theme};
 use crate::state::session::Session;
@@ -22,7 +22,8 @@ pub fn show(context: &egui::Context, session: &mut Session) {
         let height = (ui.ctx().content_rect().height() - MARGIN).max(60.0);
         ScrollArea::vertical().max_height(height).show(ui, |ui| {
             scroll(ui, height);
-            list(ui);
+            // The bar at the side stands on what it scrolls.
+            Frame::new().inner_margin(Margin { right: 14, ..Margin::ZERO }).show(ui, list);
         });
         ui.add_space(6.0);
         ui.label(

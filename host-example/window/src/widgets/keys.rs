@@ -17,7 +17,7 @@ pub const KEYS: [(&str, &str); 34] = [
     ("n, Shift+n", "show the next style, and the one before"),
     ("Tab, Shift+Tab", "go to the next control, and to the one before"),
     ("Enter, Space", "press the control that has the focus"),
-    ("arrows", "move the slider that has the focus by a step, with Shift by a tenth of one"),
+    ("arrows", "move the slider that has the focus; with Shift less"),
     ("Home, End", "move it to its ends"),
     ("l", "shows all looks as they make this picture, and the picture again"),
     ("arrows, Enter", "among the looks: go from card to card; take one"),
