@@ -138,12 +138,14 @@ pub const BLENDER: Need = Need {
 pub const FFMPEG: Need =
     Need { what: "ffmpeg", present: || program("ffmpeg") && program("ffprobe"), packages: &["ffmpeg"] };
 
-/// A display without a screen, and what winit loads to open a window on it.
+/// A display without a screen, what winit loads to open a window on it, and what windows are read aloud by.
 pub const XVFB: Need = Need {
-    what: "Xvfb and the X11 libraries",
+    what: "Xvfb, the X11 libraries, D-Bus and AT-SPI",
     present: || {
         program("Xvfb")
             && program("xdotool")
+            && program("dbus-daemon")
+            && Path::new("/usr/share/dbus-1/services/org.a11y.Bus.service").exists()
             && [
                 "libX11.so.6",
                 "libX11-xcb.so.1",
@@ -159,6 +161,8 @@ pub const XVFB: Need = Need {
         "xvfb",
         "xauth",
         "xdotool",
+        "dbus-daemon",
+        "at-spi2-core",
         "libx11-6",
         "libx11-xcb1",
         "libxcursor1",

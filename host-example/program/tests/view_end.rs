@@ -14,9 +14,11 @@ use egui_kittest::Harness;
 use egui_kittest::kittest::Queryable;
 use isophote_finishing::stylize::value::Value;
 use isophote_loader::Library;
+use isophote_scene::Scene;
 use isophote_window::jobs::document::{Document, Options};
 use isophote_window::state::leaving::Leaving;
 use isophote_window::state::look::EditedLook;
+use isophote_window::state::scenery::{Scenery, Staging};
 use isophote_window::state::session::Session;
 use isophote_window::state::settings::Settings;
 use isophote_window::widgets;
@@ -24,7 +26,7 @@ use winit::keyboard::{Key, NamedKey};
 
 use support::others;
 use support::places::places;
-use support::window::{Display, Part, Window, view};
+use support::window::{Display, Part, Window, screen, view};
 use support::{folder, listing, picture};
 
 const SIZE: (u32, u32) = (700, 420);
@@ -32,6 +34,8 @@ const SIZE: (u32, u32) = (700, 420);
 const CANVAS: Part = [0, 60, 350, 290];
 /// The middle, where dialogs are.
 const MIDDLE: Part = [150, 150, 500, 300];
+/// The menu, which is darker behind a dialog.
+const MENU: Part = [0, 0, 60, 24];
 /// Time in which a dialog that has begun to be shown is whole; one with a cursor never stays the same.
 const PAUSE: Duration = Duration::from_millis(700);
 /// More of it than anybody presses.
@@ -195,12 +199,14 @@ fn exporting<'d>(display: &'d Display, folder: &Path) -> Window<'d> {
     asking.plan_export();
     let start = places(asking, SIZE)("Start the export", Role::Button).center();
     let before = window.settled(MIDDLE);
+    let bright = screen(display.folder(), MENU);
     window.key("ctrl+e");
     window.changes("the question what to export", MIDDLE, &before);
     sleep(PAUSE);
     window.click([start.x as i32, start.y as i32]);
     window.wait_for("the export", |_| !processes(folder).is_empty());
     signal(folder, "-STOP");
+    window.becomes("the window without the question", MENU, &bright);
     window
 }
 
@@ -321,6 +327,33 @@ fn what_is_taken_back_is_lost_no_more_and_what_was_saved_before_is_again() {
     assert!(session.looks.unsaved().is_empty());
     session.undo();
     assert_eq!(session.looks.unsaved(), [0]);
+}
+
+#[test]
+fn the_camera_and_the_light_of_a_scene_are_asked_about_until_their_command_line_is_copied() {
+    let folder = folder();
+    prepare(folder.path());
+    let mut session = session(&["cartoon".as_ref()], &folder.path().join("photo.png"));
+    let file = support::cube(folder.path());
+    let scene = Scene::load(&file, None).unwrap();
+    session.show_scene(Scenery::new(scene, Staging::default(), 1.5), Some(file), "cube".into());
+    session.advance();
+    session.leave();
+    assert_eq!(session.dialogs.leaving, Leaving::Closes, "nothing was changed");
+    session.dialogs.leaving = Leaving::Stays;
+    session.open.scenery_mut().unwrap().orbit().rotate(0.4, 0.1);
+    session.leave();
+    let mut harness = shown(session);
+    assert!(harness.query_by_label_contains("The camera or the light of the scene was changed.").is_some());
+    click(&mut harness, "Copy the command line");
+    assert_eq!(harness.state().dialogs.leaving, Leaving::Stays);
+    let session = harness.state_mut();
+    session.leave();
+    assert_eq!(session.dialogs.leaving, Leaving::Closes, "it is kept");
+    session.dialogs.leaving = Leaving::Stays;
+    session.relight("exposure", |light| light.exposure = 1.0);
+    session.leave();
+    assert_eq!(session.dialogs.leaving, Leaving::Asks);
 }
 
 /// Frames of large pictures take seconds where the processor draws them.

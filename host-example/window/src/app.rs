@@ -1,5 +1,6 @@
 //! The window: its events, and when a frame is drawn.
 
+mod access;
 mod clicks;
 mod desktop;
 mod keys;
@@ -311,15 +312,15 @@ impl ApplicationHandler<Event> for App {
             return self.handle(event_loop, landed);
         }
         self.due = Some(Instant::now());
-        if let (Event::Access(event), Some(input)) = (event, &mut self.input)
-            && let egui_winit::accesskit_winit::WindowEvent::ActionRequested(request) = event.window_event
-        {
-            input.on_accesskit_action_request(request);
+        if let Event::Access(event) = event {
+            self.access(event.window_event);
         }
     }
 
     fn window_event(&mut self, event_loop: &ActiveEventLoop, _: WindowId, event: WindowEvent) {
-        self.pass_on(&event);
+        if !self.is_taken(&event) {
+            self.pass_on(&event);
+        }
         let result = match event {
             WindowEvent::CloseRequested => {
                 self.leave();

@@ -5,7 +5,7 @@
 //!
 //! | floor | what | where |
 //! |---|---|---|
-//! | `app` | the window's events, and when a frame is drawn | `keys`, `opening`, `clicks`, `desktop`, `pace` |
+//! | `app` | the window's events, and when a frame is drawn | `keys`, `opening`, `clicks`, `desktop`, `pace`, `access` |
 //! | `widgets` | the controls | one file each |
 //! | `drawing` | what lives on the device | `stage`, `shown`, `made`, `screen`, `sources`, `source`, `pictures`, `snapshot`, `origin`, `scene_frames`, `live_look`, `processed`, `canvas`, `counter`, `probe`, `panel` |
 //! | `jobs` | work beside the window | `background`, `worker`, `opening`, `dialogs`, `document`, `reader`, `exporting`, `export`, `reveal`, `look_work`, `folder`, `listing`, `preview`, `stylizing`, `watch`, `idle` |

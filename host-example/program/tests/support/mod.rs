@@ -3,6 +3,8 @@
 #![allow(dead_code, reason = "no test file needs all of it")]
 
 #[cfg(target_os = "linux")]
+pub mod access;
+#[cfg(target_os = "linux")]
 pub mod others;
 pub mod places;
 pub mod video;

@@ -103,10 +103,14 @@ pub struct Window<'d> {
 impl<'d> Window<'d> {
     /// Opens it on a display by a command, which is `isophote view` with what else is asked for.
     pub fn open(display: &'d Display, command: &mut Command) -> Self {
+        Self::open_beside(display, command.env_remove("DBUS_SESSION_BUS_ADDRESS"))
+    }
+
+    /// The same, on the session bus that the command names.
+    pub fn open_beside(display: &'d Display, command: &mut Command) -> Self {
         let child = command
             .env("DISPLAY", &display.name)
             .env_remove("WAYLAND_DISPLAY")
-            .env_remove("DBUS_SESSION_BUS_ADDRESS")
             .stdout(Stdio::piped())
             .stderr(Stdio::piped())
             .spawn();

@@ -22,7 +22,7 @@ impl App {
         let pressed = event.state == ElementState::Pressed;
         let session = &mut self.session;
         if key == Key::Character("\\") {
-            session.viewport.peek = pressed && !session.dialogs.leaving.is_shown();
+            session.viewport.peek = pressed && !session.dialogs.leaving.is_shown() && !session.has_dialog();
             return;
         }
         if !pressed {
@@ -35,7 +35,9 @@ impl App {
         let session = &mut self.session;
         match key {
             Key::Character("q" | "Q") => self.leave(),
-            _ if session.dialogs.leaving.is_shown() => {}
+            _ if session.dialogs.leaving.is_shown() || session.has_dialog() => {}
+            Key::Character("m") => widgets::keys::mark(session),
+            Key::Named(NamedKey::Enter) => widgets::keys::compare(session),
             Key::Character("z") if !self.modifiers.shift_key() => session.undo(),
             Key::Character("z" | "Z" | "y") => session.redo(),
             Key::Character("e") => session.plan_export(),
@@ -62,27 +64,31 @@ impl App {
         self.modifiers.control_key() || self.modifiers.super_key()
     }
 
-    /// True for a key that is not for the field that is being typed in, or for the menu that is open. Those that
-    /// close the window or a dialog are for the window in fields, too.
+    /// True for a key that is not for the control that has the focus, for the field that is being typed in, or for the menu that
+    /// is open. Those that close the window or a dialog are for the window in fields, too.
     fn is_for_window(&self, key: &Key) -> bool {
         let Some(context) = self.input.as_ref().map(State::egui_ctx) else { return true };
         let closes = self.is_command() && matches!(key.as_ref(), Key::Character("q" | "Q"));
         let closes_dialog = *key == Key::Named(NamedKey::Escape) && self.session.has_dialog();
         let is_typing = context.text_edit_focused() && !closes_dialog;
-        closes || self.session.dialogs.leaving.is_shown() || !egui::Popup::is_any_open(context) && !is_typing
+        let has_focus = context.memory(|memory| memory.focused()).is_some();
+        let is_control_s = has_focus && !self.is_command() && widgets::keyboard::belongs_to_controls(key);
+        closes
+            || self.session.dialogs.leaving.is_shown()
+            || !egui::Popup::is_any_open(context) && !is_typing && !is_control_s
     }
 
-    /// Lets the controls see an event first.
+    /// True for a letter that the window takes: a field that the same letter opens does not see it.
+    pub(super) fn is_taken(&self, event: &WindowEvent) -> bool {
+        let WindowEvent::KeyboardInput { event, .. } = event else { return false };
+        let is_letter =
+            matches!(event.logical_key, Key::Character(_)) && event.state == ElementState::Pressed;
+        is_letter && !self.is_command() && self.is_for_window(&event.logical_key)
+    }
+
+    /// Lets the controls see an event.
     pub(super) fn pass_on(&mut self, event: &WindowEvent) {
         let (Some(window), Some(input)) = (&self.window, &mut self.input) else { return };
-        let tab = matches!(event, WindowEvent::KeyboardInput { event, .. }
-            if event.logical_key == Key::Named(NamedKey::Tab));
-        // Tab goes from style to style, unless nothing is open or something is being typed, asked or chosen.
-        let session = &self.session;
-        let is_asked = session.is_covered() || session.has_dialog() || session.dialogs.leaving.is_shown();
-        if tab && session.open.has_picture() && !is_asked && !input.egui_ctx().text_edit_focused() {
-            return;
-        }
         if input.on_window_event(window, event).repaint && !matches!(event, WindowEvent::RedrawRequested) {
             self.due = Some(Instant::now());
         }

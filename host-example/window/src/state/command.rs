@@ -45,7 +45,12 @@ pub fn line(session: &Session) -> String {
 /// The command line as it is put on the clipboard, of which the window tells.
 pub fn copied(session: &mut Session) -> String {
     session.notes.say("Copied the command line of this picture");
-    line(session)
+    let line = line(session);
+    // It has camera and light.
+    if let Some(scenery) = session.open.scenery_mut() {
+        scenery.keep();
+    }
+    line
 }
 
 /// The option for a precision that is not the usual one.

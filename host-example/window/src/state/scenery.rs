@@ -97,6 +97,8 @@ pub struct Scenery {
     viewpoint: Viewpoint,
     /// Node of the one that a key looks through.
     file_camera: Option<usize>,
+    /// Camera and light that nobody would miss.
+    kept: (Orbit, Lighting),
     time: f32,
     ticked: Instant,
 }
@@ -113,6 +115,7 @@ impl Scenery {
             animation: 0,
             light: Light::default(),
             file_camera: camera.or_else(|| camera::file_camera(&scene)),
+            kept: (viewpoint.orbit, lighting.clone()),
             first_view,
             framing,
             viewpoint,
@@ -186,6 +189,18 @@ impl Scenery {
     pub fn frame_all(&mut self, aspect: f32) {
         let orbit = Orbit::framing(&self.scene, aspect, self.framing);
         self.viewpoint = Viewpoint { node: None, orbit };
+        self.kept.0 = orbit;
+    }
+
+    /// True where the light, or the camera that the mouse turns, is not as the scene was opened or framed, nor as it was kept.
+    pub fn is_changed(&self) -> bool {
+        let is_turned = self.viewpoint.node.is_none() && self.viewpoint.orbit != self.kept.0;
+        is_turned || self.lighting != self.kept.1
+    }
+
+    /// Camera and light are kept elsewhere as they are now.
+    pub fn keep(&mut self) {
+        self.kept = (self.viewpoint.orbit, self.lighting.clone());
     }
 
     /// Nodes of the cameras of the file, with their names.

@@ -1,9 +1,9 @@
 //! Dialog of one look on several pictures, in a window of its own.
 
-use egui::{Align2, Button, ComboBox, RichText, TextEdit, Ui};
+use egui::{ComboBox, RichText, TextEdit, Ui};
 
 use super::choices::{self, Answer};
-use super::theme;
+use super::{dialog, keyboard, theme};
 use crate::state::batch::Batch;
 use crate::state::formats::{PICTURES, Replaced};
 use crate::state::outcome::Dialog;
@@ -23,16 +23,10 @@ pub fn show(context: &egui::Context, session: &mut Session) {
     let Some(mut batch) = session.dialogs.batch.take() else { return };
     let (mut open, mut act) = (true, None);
     let title = format!("Use this look on {} pictures", batch.pictures.len());
-    egui::Window::new(title)
-        .id(egui::Id::unique("batch"))
-        .open(&mut open)
-        .collapsible(false)
-        .resizable(false)
-        .anchor(Align2::CENTER_CENTER, [0.0, 0.0])
-        .show(context, |ui| {
-            ui.set_width(480.0);
-            content(ui, &mut batch, session, &mut act);
-        });
+    dialog::show(context, &title, Some(&mut open), |ui| {
+        ui.set_width(480.0);
+        content(ui, &mut batch, session, &mut act);
+    });
     match act {
         Some(Act::Ask(request)) => session.work.ask(request),
         Some(Act::OpenSequence) => {
@@ -99,6 +93,7 @@ fn kind(ui: &mut Ui, batch: &mut Batch) {
             ui.selectable_value(&mut batch.kind, Some(kind), name);
         }
     });
+    keyboard::tell(&shown.response, name);
     shown.response.labelled_by(label.id);
     ui.end_row();
 }
@@ -134,8 +129,7 @@ fn end(ui: &mut Ui, batch: &mut Batch, session: &Session, act: &mut Option<Act>)
     };
     ui.add_space(4.0);
     ui.horizontal(|ui| {
-        let start = Button::new("Use the look on all").fill(theme::CHOSEN);
-        if ui.add_enabled(problem.is_none(), start).clicked() && batch.may_begin() {
+        if dialog::confirm(ui, "Use the look on all", problem.is_none()) && batch.may_begin() {
             *act = Some(Act::Ask(Request::UseOnSeveral));
         }
         if ui.button("Cancel").clicked() {

@@ -3,12 +3,12 @@
 use std::sync::Arc;
 
 use egui::{
-    Align, Align2, Button, FontId, Id, Layout, Rect, RichText, ScrollArea, Sense, TextEdit, Ui, UiBuilder,
-    pos2, vec2,
+    Align2, Button, FontId, Id, Key, Rect, RichText, ScrollArea, Sense, TextEdit, Ui, UiBuilder, Vec2, pos2,
+    vec2,
 };
 
 use super::act::{Act, perform};
-use super::{card, star, theme};
+use super::{card, keyboard, order, star, theme};
 use crate::state::browser::Step;
 use crate::state::browser::entry::{Entry, Group};
 use crate::state::browser::filter::{Filter, tags};
@@ -62,7 +62,7 @@ fn strip(ui: &mut Ui, session: &mut Session) {
         ui.add_space(8.0);
         search(ui, session);
         if !is_narrow {
-            ui.with_layout(Layout::right_to_left(Align::Center), |ui| buttons(ui, session));
+            order::at_right(ui, "browser", |ui| buttons(ui, session));
         }
     });
     if is_narrow {
@@ -72,12 +72,18 @@ fn strip(ui: &mut Ui, session: &mut Session) {
 
 fn search(ui: &mut Ui, session: &mut Session) {
     let width = ui.available_width().min(220.0);
+    let id = Id::unique("search looks");
+    if std::mem::take(&mut session.browser.searches) {
+        begin_typing(ui, id, session.browser.filter.text.chars().count());
+    }
     let field = TextEdit::singleline(&mut session.browser.filter.text)
+        .id(id)
         .hint_text("Search names, tags and styles")
         .desired_width(width);
     let field = ui.add(field);
     field.widget_info(|| egui::WidgetInfo::labeled(egui::Role::TextInput, true, "Search looks"));
-    if field.lost_focus() && ui.input(|i| i.key_pressed(egui::Key::Enter)) {
+    let is_entered = field.lost_focus() && ui.input(|i| i.key_pressed(Key::Enter));
+    if is_entered || field.has_focus() && ui.input(|i| i.key_pressed(Key::ArrowDown)) {
         session.browser.selected = None;
         session.browser.step(Step::Down);
     }
@@ -86,27 +92,37 @@ fn search(ui: &mut Ui, session: &mut Session) {
     }
 }
 
+/// Gives a field the focus, with the cursor after so many letters.
+fn begin_typing(ui: &Ui, id: Id, letters: usize) {
+    ui.memory_mut(|memory| memory.request_focus(id));
+    let mut state = egui::text_edit::TextEditState::load(ui.ctx(), id).unwrap_or_default();
+    let end = egui::text::CCursor::new(letters);
+    state.cursor.set_char_range(Some(egui::text::CCursorRange::one(end)));
+    state.store(ui.ctx(), id);
+}
+
 fn buttons(ui: &mut Ui, session: &mut Session) {
-    if ui.button("Back to the picture").on_hover_text("Esc").clicked() {
-        session.browser.is_open = false;
-    }
-    let hint = "Offer the looks of a folder and of those within it";
-    if ui.button("Add a folder…").on_hover_text(hint).clicked() {
-        session.work.ask(Request::Choose(Dialog::LookFolder));
-    }
     let marked = session.browser.marked.len();
+    if marked > 0 && ui.button("Clear marks").clicked() {
+        session.browser.marked.clear();
+    }
     let text = if marked > 0 { format!("Compare {marked}") } else { "Compare".to_owned() };
     let mut button = Button::new(text);
     if marked > 1 {
         button = button.fill(theme::CHOSEN);
     }
-    let button =
-        ui.add_enabled(marked > 1, button).on_hover_text("See the marked looks beside each other (c)");
+    let button = ui
+        .add_enabled(marked > 1, button)
+        .on_hover_text("See the marked looks beside each other (Ctrl+Enter)");
     if button.on_disabled_hover_text("Mark two to six looks to see them beside each other").clicked() {
         session.compare_marked();
     }
-    if marked > 0 && ui.button("Clear marks").clicked() {
-        session.browser.marked.clear();
+    let hint = "Offer the looks of a folder and of those within it";
+    if ui.button("Add a folder…").on_hover_text(hint).clicked() {
+        session.work.ask(Request::Choose(Dialog::LookFolder));
+    }
+    if ui.button("Back to the picture").on_hover_text("Esc").clicked() {
+        session.browser.is_open = false;
     }
 }
 
@@ -184,6 +200,7 @@ fn grid(ui: &mut Ui, viewport: Rect, session: &mut Session) {
     }
     let mut act = None;
     ask_plain(ui, session, &items);
+    walk(ui, session);
     let (seen, unseen): (Vec<_>, Vec<_>) = items.into_iter().partition(|(rect, _)| rect.intersects(viewport));
     for (rect, item) in &seen {
         let rect = rect.translate(corner);
@@ -213,8 +230,31 @@ fn grid(ui: &mut Ui, viewport: Rect, session: &mut Session) {
         let at = rect.translate(corner).expand2(vec2(GAP, HEADING));
         ui.scroll_to_rect_animation(at, None, egui::style::ScrollAnimation::none());
     }
+    // A card that is out of sight does not take the focus when somebody scrolls to it.
+    if ui.input(|input| input.smooth_scroll_delta() != Vec2::ZERO) {
+        session.browser.takes_focus = false;
+    }
     if let Some(act) = act {
         perform(ui, session, act);
+    }
+}
+
+/// Goes from card to card by the arrows, while one of them has the focus.
+fn walk(ui: &Ui, session: &mut Session) {
+    let card = session.browser.stop().map(card::id);
+    let Some(card) = card.filter(|card| ui.memory(|memory| memory.has_focus(*card))) else { return };
+    keyboard::keep_arrows(ui, card);
+    for (key, step) in [
+        (Key::ArrowLeft, Step::Left),
+        (Key::ArrowRight, Step::Right),
+        (Key::ArrowUp, Step::Up),
+        (Key::ArrowDown, Step::Down),
+    ] {
+        let presses = ui.input(|input| input.num_presses(key));
+        if presses > 0 {
+            keyboard::stay(ui);
+        }
+        (0..presses).for_each(|_| session.browser.step(step));
     }
 }
 

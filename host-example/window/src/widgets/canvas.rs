@@ -4,7 +4,7 @@ use egui::{
     Align2, Color32, CursorIcon, FontId, Id, PointerButton, Pos2, Rect, Sense, Stroke, Ui, pos2, vec2,
 };
 
-use super::theme;
+use super::{keyboard, theme};
 use crate::state::session::{Session, Which};
 use crate::state::viewport::Compare;
 
@@ -19,7 +19,9 @@ const NOTCH: f32 = 40.0;
 
 /// Lets the pointer at the picture and draws on it.
 pub fn show(ui: &mut Ui, rect: Rect, session: &mut Session) {
-    let response = ui.interact(rect, Id::unique("canvas"), Sense::click_and_drag());
+    // There is nothing in it that keys do.
+    let response = ui.interact(rect, Id::unique("canvas"), Sense::CLICK | Sense::DRAG);
+    response.widget_info(|| egui::WidgetInfo::labeled(egui::Role::Image, true, described(session)));
     let pointer = response.hover_pos().or_else(|| response.interact_pointer_pos());
     drag(ui, &response, session);
     if response.hovered() {
@@ -31,14 +33,21 @@ pub fn show(ui: &mut Ui, rect: Rect, session: &mut Session) {
     }
     names(ui, rect, session);
     if let Some(doing) = session.work.busy {
-        tag(
-            ui,
-            rect.center_bottom() + vec2(0.0, -26.0),
-            Align2::CENTER_CENTER,
-            &busy(doing, session.work.share),
-        );
+        let at = rect.center_bottom() + vec2(0.0, -26.0);
+        tag(ui, at, Align2::CENTER_CENTER, &busy(doing, session.work.share));
+        // How much is done would be read aloud at every turn.
+        let doing = busy(doing, None);
+        let state = ui.interact(rect, Id::unique("state"), Sense::hover());
+        state.widget_info(|| egui::WidgetInfo::labeled(egui::Role::Status, true, &doing));
+        ui.ctx().accesskit_node_builder(state.id, |node| node.set_live(egui::accesskit::Live::Polite));
         ui.ctx().request_repaint_after(std::time::Duration::from_millis(200));
     }
+}
+
+/// Name of the picture for people who do not see it.
+fn described(session: &Session) -> String {
+    let (name, look) = (session.open.name(), session.look());
+    if look.is_plain() { format!("{name}, as it is") } else { format!("{name} in the look {}", look.name) }
 }
 
 /// A place in pixels of the window.
@@ -108,7 +117,15 @@ fn wipe(ui: &Ui, rect: Rect, session: &mut Session) {
         session.viewport.wipe = ((at.x - rect.left()) / rect.width().max(1.0)).clamp(0.0, 1.0);
     }
     let response = response.on_hover_and_drag_cursor(CursorIcon::ResizeHorizontal);
-    response.widget_info(|| egui::WidgetInfo::labeled(egui::Role::Slider, true, "Wipe"));
+    let place = f64::from(session.viewport.wipe);
+    response.widget_info(|| egui::WidgetInfo::slider(true, place, "Wipe"));
+    ui.ctx().accesskit_node_builder(response.id, |node| {
+        node.set_min_numeric_value(0.0);
+        node.set_max_numeric_value(1.0);
+    });
+    if let Some(moved) = keyboard::moved(ui, &response, place, 0.0..=1.0, (0.02, false)) {
+        session.viewport.wipe = moved as f32;
+    }
     let painter = ui.painter_at(rect);
     let light = Color32::from_white_alpha(if response.hovered() || response.dragged() { 255 } else { 200 });
     painter.vline(x, rect.y_range(), Stroke::new(3.0, Color32::from_black_alpha(90)));

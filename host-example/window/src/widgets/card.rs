@@ -7,7 +7,7 @@ use egui::{
 use std::sync::Arc;
 
 use super::act::Act;
-use super::{star, theme};
+use super::{keyboard, star, theme};
 use crate::state::browser::entry::{Content, Entry};
 use crate::state::preview::order::{FINENESS, Order};
 use crate::state::preview::picture::Picture;
@@ -49,12 +49,24 @@ pub fn want(ui: &Ui, size: egui::Vec2, session: &mut Session, entry: &Entry) -> 
     width as usize * height as usize * 4
 }
 
-/// Shows a card; returns what is asked for.
+/// Control of a card, which can have the focus.
+pub fn id(entry: u64) -> Id {
+    Id::unique(("card", entry))
+}
+
+/// Shows a card; returns what is asked for. Of all cards Tab goes to one alone, from which arrows go on.
 pub fn show(ui: &mut Ui, rect: Rect, session: &mut Session, entry: &Arc<Entry>) -> Option<Act> {
     want(ui, rect.size(), session, entry);
-    let response = ui.interact(rect, Id::unique(("card", entry.id)), Sense::click());
     let is_selected = session.browser.selected == Some(entry.id);
-    response.widget_info(|| egui::WidgetInfo::selected(egui::Role::Button, true, is_selected, &entry.name));
+    let is_stop = session.browser.stop() == Some(entry.id);
+    let sense = if is_stop { Sense::click() } else { Sense::CLICK };
+    let response = ui.interact(rect, id(entry.id), sense);
+    response.widget_info(|| egui::WidgetInfo::labeled(egui::Role::Button, true, &entry.name));
+    ui.ctx().accesskit_node_builder(response.id, |node| node.set_selected(is_selected));
+    if is_stop && std::mem::take(&mut session.browser.takes_focus) {
+        response.request_focus();
+        keyboard::stay(ui);
+    }
     let fill = if response.hovered() || is_selected { theme::CARD_ABOVE } else { theme::CARD };
     ui.painter().rect_filled(rect, 7.0, fill);
     picture(ui, place(rect), session, entry);
@@ -75,6 +87,9 @@ pub fn show(ui: &mut Ui, rect: Rect, session: &mut Session, entry: &Arc<Entry>) 
         () if starred => Some(Act::Star(entry.id)),
         () if act.is_some() => act,
         () if response.double_clicked() => Some(Act::ApplyAndClose(entry.id)),
+        () if response.has_focus() && ui.input(|input| input.key_pressed(egui::Key::Enter)) => {
+            Some(Act::ApplyAndClose(entry.id))
+        }
         () if response.clicked() => Some(Act::Apply(entry.id)),
         () => None,
     }
@@ -171,12 +186,12 @@ fn mark(ui: &Ui, place: Rect, session: &Session, entry: &Entry, card: &Response)
     }
     let number = session.browser.marked.iter().position(|marked| *marked == entry.id);
     let rect = Rect::from_min_size(place.min + vec2(6.0, 6.0), vec2(20.0, 20.0));
-    let response = ui.interact(rect, Id::unique(("mark", entry.id)), Sense::click());
+    let response = ui.interact(rect, Id::unique(("mark", entry.id)), Sense::CLICK);
     response.widget_info(|| {
         let name = format!("Compare {}", entry.name);
         egui::WidgetInfo::selected(egui::Role::CheckBox, true, number.is_some(), name)
     });
-    let hint = "Mark it, to see it beside other looks (up to six)";
+    let hint = "Mark it, to see it beside other looks, up to six (Ctrl+M)";
     let response = response.on_hover_text(hint);
     let is_seen =
         number.is_some() || card.hovered() || response.hovered() || !session.browser.marked.is_empty();

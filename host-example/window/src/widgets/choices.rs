@@ -1,8 +1,8 @@
 //! Controls for files that are written: size, quality and bit depth, and the question whether files may be replaced.
 
-use egui::{Button, ComboBox, DragValue, Grid, RichText, Slider, Ui};
+use egui::{Button, ComboBox, DragValue, Grid, RichText, Ui};
 
-use super::theme;
+use super::{keyboard, theme};
 use crate::state::formats::{FileChoices, Replaced, Scaling};
 use isophote_finishing::writing::Depth;
 use isophote_pictures::write::Format;
@@ -27,6 +27,7 @@ pub fn scaling(ui: &mut Ui, choices: &mut FileChoices) {
                 ui.selectable_value(&mut choices.scaling, scaling, name);
             }
         });
+        keyboard::tell(&shown.response, name);
         shown.response.labelled_by(label.id);
         if matches!(choices.scaling, Scaling::Width | Scaling::Height) {
             let side = DragValue::new(&mut choices.side).range(1..=16384);
@@ -41,8 +42,10 @@ pub fn scaling(ui: &mut Ui, choices: &mut FileChoices) {
 pub fn samples(ui: &mut Ui, choices: &mut FileChoices, format: Format) {
     if format == Format::Jpeg {
         let label = ui.label("Quality");
-        let slider = ui.add(Slider::new(&mut choices.quality, 1..=100)).labelled_by(label.id);
-        slider.on_hover_text("Higher is better and larger; 95 looks as the picture does");
+        let slider = keyboard::slider(ui, &mut choices.quality, 1..=100, |slider| slider);
+        slider
+            .labelled_by(label.id)
+            .on_hover_text("Higher is better and larger; 95 looks as the picture does");
         ui.end_row();
     }
     if format.depths().len() < 2 {
@@ -57,6 +60,7 @@ pub fn samples(ui: &mut Ui, choices: &mut FileChoices, format: Format) {
             ui.selectable_value(&mut choices.depth, Some(depth), depth.name());
         }
     });
+    keyboard::tell(&shown.response, name);
     shown.response.labelled_by(label.id);
     ui.end_row();
 }

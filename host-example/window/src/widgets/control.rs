@@ -6,7 +6,7 @@ use egui::{Align, Layout, Response, RichText, Sense, Ui, vec2};
 
 use super::number::Number;
 use super::scale::Scale;
-use super::{hex, theme};
+use super::{hex, keyboard, theme};
 use crate::state::look::Parameter;
 use crate::state::resetting::Goal;
 use crate::state::session::Session;
@@ -186,6 +186,7 @@ fn choice(ui: &mut Ui, options: &[Choice], now: &str, label: &Response, name: &s
         }
     });
     let now = option_label(options, now).to_owned();
+    keyboard::tell(&shown.response, &now);
     shown.response.labelled_by(label.id).widget_info(|| {
         let mut info = egui::WidgetInfo::labeled(egui::Role::ComboBox, true, name);
         info.current_text_value = Some(now.clone());

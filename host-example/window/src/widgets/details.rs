@@ -5,7 +5,7 @@ use std::sync::Arc;
 use egui::{Color32, Label, RichText, ScrollArea, Sense, Ui, vec2};
 
 use super::act::perform;
-use super::{card, theme};
+use super::{card, keyboard, theme};
 use crate::state::browser::entry::Content;
 use crate::state::look::EditedLook;
 use crate::state::preview::Place;
@@ -48,6 +48,7 @@ pub fn show(ui: &mut Ui, session: &mut Session) {
             ui.add(Label::new(RichText::new(file.display().to_string()).small()).wrap());
         }
         ui.add_space(16.0);
+        keyboard::follow(ui);
     });
 }
 

@@ -1,13 +1,15 @@
 //! Windows of the browser: a look is saved, its name and tags are changed, its file is deleted.
 
-use egui::{Align2, Button, Context, Grid, RichText, TextEdit, Ui};
+use egui::{Context, Grid, RichText, TextEdit, Ui};
 
-use super::theme;
+use super::{dialog, theme};
 use crate::state::browser::title_edit::Words;
 use crate::state::outcome::Dialog;
 use crate::state::session::Session;
 use crate::state::work::Request;
 
+/// Width of windows with text fields in points.
+const WIDTH: f32 = 460.0;
 /// Width of text fields in points.
 const FIELD: f32 = 340.0;
 
@@ -16,19 +18,6 @@ pub fn show(context: &Context, session: &mut Session) {
     saving(context, session);
     title_edit(context, session);
     deleting(context, session);
-}
-
-/// A window in the middle; `open` turns false when it is closed.
-fn window(context: &Context, title: &str, open: &mut bool, content: impl FnOnce(&mut Ui)) {
-    egui::Window::new(title)
-        .open(open)
-        .collapsible(false)
-        .resizable(false)
-        .anchor(Align2::CENTER_CENTER, [0.0, 0.0])
-        .show(context, |ui| {
-            ui.add_space(4.0);
-            content(ui);
-        });
 }
 
 /// Fields for name, description and tags; says whether the name was changed.
@@ -50,7 +39,8 @@ fn saving(context: &Context, session: &mut Session) {
     let Some(mut saving) = session.dialogs.saving.take() else { return };
     let (mut open, mut closes, mut done, mut chooses) = (true, false, false, false);
     let title = if saving.is_present { "Save the look" } else { "Save a copy" };
-    window(context, title, &mut open, |ui| {
+    dialog::show(context, title, Some(&mut open), |ui| {
+        ui.set_width(WIDTH);
         Grid::new("saving").num_columns(2).spacing([18.0, 8.0]).show(ui, |ui| {
             if fields(ui, &mut saving.words) {
                 saving.rename();
@@ -76,7 +66,7 @@ fn saving(context: &Context, session: &mut Session) {
         ui.add_space(4.0);
         ui.horizontal(|ui| {
             let text = if saving.asks { "Replace the file" } else { "Save" };
-            done = ui.add(Button::new(text).fill(theme::CHOSEN)).clicked();
+            done = dialog::confirm(ui, text, true);
             closes = ui.button("Cancel").clicked();
         });
     });
@@ -95,13 +85,14 @@ fn saving(context: &Context, session: &mut Session) {
 fn title_edit(context: &Context, session: &mut Session) {
     let Some(mut title_edit) = session.browser.title_edit.take() else { return };
     let (mut open, mut closes, mut done) = (true, false, false);
-    window(context, "Name and tags", &mut open, |ui| {
+    dialog::show(context, "Name and tags", Some(&mut open), |ui| {
+        ui.set_width(WIDTH);
         Grid::new("title_edit").num_columns(2).spacing([18.0, 8.0]).show(ui, |ui| {
             fields(ui, &mut title_edit.words);
         });
         file(ui, &title_edit.file);
         ui.horizontal(|ui| {
-            done = ui.add(Button::new("Save").fill(theme::CHOSEN)).clicked();
+            done = dialog::confirm(ui, "Save", true);
             closes = ui.button("Cancel").clicked();
         });
     });
@@ -117,13 +108,16 @@ fn title_edit(context: &Context, session: &mut Session) {
 fn deleting(context: &Context, session: &mut Session) {
     let Some(path) = session.browser.deleting.take() else { return };
     let (mut open, mut closes, mut done) = (true, false, false);
-    window(context, "Delete this look?", &mut open, |ui| {
+    dialog::show(context, "Delete this look?", Some(&mut open), |ui| {
         ui.set_max_width(FIELD + 90.0);
         ui.label("The file is deleted from the disk. Undo brings it back until the window is closed.");
         file(ui, &path);
         ui.horizontal(|ui| {
             done = ui.button(RichText::new("Delete the file").color(theme::BAD)).clicked();
-            closes = ui.button("Keep it").clicked();
+            let keep = ui.button("Keep it");
+            // Enter must not delete anything that nobody has gone to.
+            dialog::begin_with(&keep);
+            closes = keep.clicked();
         });
     });
     if open && !closes {

@@ -1,7 +1,8 @@
 //! Bars with two ends: what is at the left one scrolls where there is no room for it beside what is at the right one.
 
-use egui::{Align, Id, Label, Layout, RichText, ScrollArea, Ui, vec2};
+use egui::{Align, Label, Layout, RichText, ScrollArea, Ui, vec2};
 
+use super::order;
 use crate::state::session::Session;
 
 /// Content of the right end.
@@ -14,25 +15,17 @@ pub fn show(
     (name, height, right): (&'static str, f32, End),
     left: impl FnOnce(&mut Ui, &mut Session),
 ) {
-    let id = Id::unique(("ends", name));
-    // Both ends are laid out in the order in which they are read; the width of the right one is that of the frame before.
-    let known = ui.data(|data| data.get_temp::<f32>(id));
     ui.horizontal(|ui| {
         ui.set_min_height(height);
-        let room = ui.available_width() - known.unwrap_or_default() - ui.spacing().item_spacing.x;
-        ScrollArea::horizontal().id_salt(id).max_width(room.max(0.0)).show(ui, |ui| {
+        // Both ends are laid out in the order in which they are read.
+        let taken = order::width_at_right(ui, name) + ui.spacing().item_spacing.x;
+        let room = ui.available_width() - taken;
+        ScrollArea::horizontal().id_salt(name).max_width(room.max(0.0)).show(ui, |ui| {
             let size = vec2(ui.available_width(), height);
             let row = Layout::left_to_right(Align::Center);
             ui.allocate_ui_with_layout(size, row, |ui| left(ui, session));
         });
-        ui.with_layout(Layout::right_to_left(Align::Center), |ui| {
-            right(ui, session);
-            let width = ui.min_rect().width();
-            if known != Some(width) {
-                ui.data_mut(|data| data.insert_temp(id, width));
-                ui.ctx().request_repaint();
-            }
-        });
+        order::at_right(ui, name, |ui| right(ui, session));
     });
 }
 

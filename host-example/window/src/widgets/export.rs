@@ -1,9 +1,9 @@
 //! Dialog of exports, in a window of its own.
 
-use egui::{Align2, Button, ComboBox, DragValue, RichText, TextEdit, Ui};
+use egui::{ComboBox, DragValue, RichText, TextEdit, Ui};
 
 use super::choices::{self, Answer};
-use super::theme;
+use super::{dialog, keyboard, theme};
 use crate::state::document::kind::Kind;
 use crate::state::formats::Replaced;
 use crate::state::outcome::Dialog;
@@ -16,27 +16,22 @@ pub fn show(context: &egui::Context, session: &mut Session) {
     let Some(mut plan) = session.dialogs.plan.take() else { return };
     let (mut open, mut closes) = (true, false);
     let mut request = None;
-    egui::Window::new("Export")
-        .open(&mut open)
-        .collapsible(false)
-        .resizable(false)
-        .anchor(Align2::CENTER_CENTER, [0.0, 0.0])
-        .show(context, |ui| {
-            ui.set_width(460.0);
-            choices::table(ui, "export", |ui| {
-                kind(ui, &mut plan);
-                size(ui, &mut plan);
-                amount(ui, &mut plan, session.open.playback().map(|playback| playback.number()));
-                if place(ui, &mut plan) {
-                    request = Some(Request::Choose(Dialog::Export));
-                }
-            });
-            ui.add_space(10.0);
-            let (name, is_busy) = (session.open.name(), session.work.exported.is_some());
-            let ended = end(ui, &mut plan, name, is_busy);
-            closes = ended == Some(Act::Cancel);
-            request = (ended == Some(Act::Start)).then_some(Request::Export).or(request.take());
+    dialog::show(context, "Export", Some(&mut open), |ui| {
+        ui.set_width(460.0);
+        choices::table(ui, "export", |ui| {
+            kind(ui, &mut plan);
+            size(ui, &mut plan);
+            amount(ui, &mut plan, session.open.playback().map(|playback| playback.number()));
+            if place(ui, &mut plan) {
+                request = Some(Request::Choose(Dialog::Export));
+            }
         });
+        ui.add_space(10.0);
+        let (name, is_busy) = (session.open.name(), session.work.exported.is_some());
+        let ended = end(ui, &mut plan, name, is_busy);
+        closes = ended == Some(Act::Cancel);
+        request = (ended == Some(Act::Start)).then_some(Request::Export).or(request.take());
+    });
     if open && !closes {
         session.dialogs.plan = Some(plan);
     }
@@ -67,6 +62,7 @@ fn kind(ui: &mut Ui, plan: &mut Plan) {
             ui.selectable_value(&mut plan.format, known, name);
         }
     });
+    keyboard::tell(&shown.response, &plan.name_of(before));
     shown.response.labelled_by(label.id);
     if plan.format != before {
         plan.rename();
@@ -180,8 +176,7 @@ fn end(ui: &mut Ui, plan: &mut Plan, name: &str, is_busy: bool) -> Option<Act> {
     }
     ui.add_space(4.0);
     ui.horizontal(|ui| {
-        let start = Button::new("Start the export").fill(theme::CHOSEN);
-        if ui.add_enabled(problem.is_none(), start).clicked() && plan.may_begin() {
+        if dialog::confirm(ui, "Start the export", problem.is_none()) && plan.may_begin() {
             return Some(Act::Start);
         }
         ui.button("Cancel").clicked().then_some(Act::Cancel)

@@ -7,7 +7,7 @@ use crate::state::session::Session;
 use crate::state::viewport::Compare;
 
 /// Keys and what they do, for the help of the program and of the window.
-pub const KEYS: [(&str, &str); 34] = [
+pub const KEYS: [(&str, &str); 40] = [
     ("drag", "turns the scene; moves a picture"),
     ("Shift+drag", "pans, as other buttons do"),
     ("wheel", "zooms"),
@@ -16,11 +16,17 @@ pub const KEYS: [(&str, &str); 34] = [
     ("Ctrl+wheel", "magnifies the pixels under the pointer"),
     ("Ctrl+drag", "moves what is magnified"),
     ("1, 2, ...", "show the style of that number"),
-    ("Tab", "shows the next style"),
+    ("n, Shift+n", "show the next style, and the one before"),
+    ("Tab, Shift+Tab", "go to the next control, and to the one before"),
+    ("Enter, Space", "press the control that has the focus"),
+    ("arrows", "move the slider that has the focus; with Shift less"),
+    ("Home, End", "move it to its ends"),
     ("l", "shows all looks as they make this picture, and the picture again"),
     ("arrows, Enter", "among the looks: go from card to card; take one"),
-    ("m, c", "among the looks: marks one; compares those that are marked"),
+    ("letters", "among the looks: search"),
     ("*", "among the looks: makes one a favourite, or no more"),
+    ("Ctrl+M", "among the looks: marks one to be compared, or no more"),
+    ("Ctrl+Enter", "among the looks: compares those that are marked"),
     ("\\ (hold)", "shows the original while it is held"),
     ("w", "compares by a wipe"),
     ("e", "compares side by side"),
@@ -49,23 +55,26 @@ pub fn press(session: &mut Session, key: &Key) {
     if *key == Key::Named(NamedKey::Escape) {
         return session.close_front();
     }
+    let is_help = matches!(key.as_ref(), Key::Named(NamedKey::F1) | Key::Character("?"));
+    if is_help && !session.dialogs.leaving.is_shown() && (session.dialogs.shows_help || !session.has_dialog())
+    {
+        session.dialogs.shows_help = !session.dialogs.shows_help;
+        return;
+    }
     let is_elsewhere = session.dialogs.leaving.is_shown() || session.has_dialog();
-    if is_elsewhere || session.is_covered() && cover(session, key) {
+    if is_elsewhere || session.is_covered() && !cover(session, key) {
         return;
     }
     let toggled = |now: Compare, wanted: Compare| if now == wanted { Compare::Off } else { wanted };
     match key.as_ref() {
         Key::Named(NamedKey::Space) => session.open.toggle_playing(),
-        // Before anything is open it goes from control to control.
-        Key::Named(NamedKey::Tab) if session.open.has_picture() => session.choose_next(),
         Key::Named(key @ (NamedKey::ArrowLeft | NamedKey::ArrowRight)) => {
             if let Some(playback) = session.open.playback_mut() {
                 playback.step(if key == NamedKey::ArrowLeft { -1 } else { 1 });
             }
         }
-        Key::Named(NamedKey::F1) | Key::Character("?") => {
-            session.dialogs.shows_help = !session.dialogs.shows_help
-        }
+        Key::Character("n") if session.open.has_picture() => session.choose_next(),
+        Key::Character("N") if session.open.has_picture() => session.choose_before(),
         Key::Character("l") => session.toggle_browser(),
         Key::Character("f") => session.frame_all(),
         Key::Character("c") => {
@@ -94,15 +103,12 @@ pub fn press(session: &mut Session, key: &Key) {
     }
 }
 
-/// Handles a key where looks are shown instead of the picture; says whether it does anything there.
+/// Handles a key where looks are shown instead of the picture; says whether it is left to do what it does on the picture.
 fn cover(session: &mut Session, key: &Key) -> bool {
-    if session.dialogs.shows_help {
-        return false;
+    if session.browser.comparison.is_some() {
+        return matches!(key.as_ref(), Key::Character("l" | "z" | "0"));
     }
     match key.as_ref() {
-        Key::Named(NamedKey::Tab) => {}
-        Key::Character("c") if session.browser.comparison.is_none() => session.compare_marked(),
-        _ if session.browser.comparison.is_some() => return false,
         Key::Named(NamedKey::ArrowLeft) => session.browser.step(Step::Left),
         Key::Named(NamedKey::ArrowRight) => session.browser.step(Step::Right),
         Key::Named(NamedKey::ArrowUp) => session.browser.step(Step::Up),
@@ -112,17 +118,27 @@ fn cover(session: &mut Session, key: &Key) -> bool {
                 session.apply(id, true);
             }
         }
-        Key::Character("m") => {
-            if let Some(id) = session.browser.selected {
-                session.mark(id);
-            }
-        }
         Key::Character("*") => {
             if let Some(id) = session.browser.selected {
                 session.star(id);
             }
         }
-        _ => return false,
+        Key::Character(text) if text.chars().all(char::is_alphanumeric) => session.browser.search(text),
+        _ => {}
     }
-    true
+    false
+}
+
+/// Marks the selected look to be compared, or no more.
+pub fn mark(session: &mut Session) {
+    if let Some(id) = session.browser.selected.filter(|_| session.browser.is_open) {
+        session.mark(id);
+    }
+}
+
+/// Compares the looks that are marked.
+pub fn compare(session: &mut Session) {
+    if session.browser.is_open {
+        session.compare_marked();
+    }
 }

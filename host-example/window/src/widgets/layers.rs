@@ -2,7 +2,7 @@
 
 use egui::{ComboBox, RichText, Ui};
 
-use super::theme;
+use super::{keyboard, theme};
 use crate::state::session::Session;
 use crate::state::work::Request;
 use isophote_pictures::exr::{Guide, Layer};
@@ -66,11 +66,13 @@ fn views<'l>(layers: &'l [Layer], layer: &str) -> &'l [String] {
 }
 
 /// A labelled list.
-fn row(ui: &mut Ui, label: &str, id: &str, shown: &str, list: impl FnOnce(&mut Ui)) {
+fn row(ui: &mut Ui, label: &str, id: &str, chosen: &str, list: impl FnOnce(&mut Ui)) {
     ui.horizontal(|ui| {
         ui.add_space(12.0);
         let label = ui.label(label);
-        let shown = ComboBox::from_id_salt(id).selected_text(shown).width(200.0).truncate().show_ui(ui, list);
+        let shown =
+            ComboBox::from_id_salt(id).selected_text(chosen).width(200.0).truncate().show_ui(ui, list);
+        keyboard::tell(&shown.response, chosen);
         shown.response.labelled_by(label.id);
     });
 }

@@ -1,8 +1,9 @@
 //! The question whether the window may be closed, in front of everything, while something would be lost.
 
-use egui::{Button, Context, Frame, Id, Margin, Modal, RichText, Ui};
+use egui::{Button, Context, RichText, Ui};
 
-use super::theme;
+use super::{dialog, theme};
+use crate::state::command;
 use crate::state::leaving::Leaving;
 use crate::state::session::Session;
 
@@ -15,6 +16,7 @@ const MOST: usize = 4;
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 enum Choice {
     Save,
+    Copy,
     Wait,
     Close,
     Cancel,
@@ -26,17 +28,18 @@ pub fn show(context: &Context, session: &mut Session) {
         return;
     }
     egui::Popup::close_all(context);
-    let frame = Frame::popup(&context.global_style()).inner_margin(Margin::same(18));
-    let shown = Modal::new(Id::unique("leaving")).frame(frame).show(context, |ui| {
+    let choice = dialog::show(context, "Close the window?", None, |ui| {
         ui.set_width(WIDTH.min(context.content_rect().width() - 60.0));
-        ui.label(RichText::new("Close the window?").size(17.0).color(theme::BRIGHT));
-        ui.add_space(8.0);
         reasons(ui, session);
         ui.add_space(12.0);
         ui.horizontal_wrapped(|ui| choices(ui, session)).inner
     });
-    match shown.inner {
+    match choice {
         Some(Choice::Save) => session.save_and_leave(),
+        Some(Choice::Copy) => {
+            context.copy_text(command::copied(session));
+            session.dialogs.leaving = Leaving::Stays;
+        }
         Some(Choice::Wait) => session.dialogs.leaving = Leaving::Waits,
         Some(Choice::Close) => session.dialogs.leaving = Leaving::Closes,
         Some(Choice::Cancel) => session.dialogs.leaving = Leaving::Stays,
@@ -68,11 +71,15 @@ fn reasons(ui: &mut Ui, session: &Session) {
     let names = unsaved.iter().take(MOST).map(|index| format!("“{}”", session.looks.list()[*index].name));
     let names = names.collect::<Vec<_>>().join(", ");
     match unsaved.len() {
-        0 if percent.is_none() => drop(say("Nothing would be lost.".into())),
+        0 if percent.is_none() && !session.has_changed_scene() => drop(say("Nothing would be lost.".into())),
         0 => {}
         1 => drop(say(format!("The look {names} is not saved."))),
         count if count <= MOST => drop(say(format!("{count} looks are not saved: {names}."))),
         count => drop(say(format!("{count} looks are not saved: {names} and {} more.", count - MOST))),
+    }
+    if session.has_changed_scene() {
+        let text = "The camera or the light of the scene was changed. Only its command line keeps them.";
+        ui.add(egui::Label::new(text).wrap());
     }
     if session.work.exported.is_some() {
         ui.ctx().request_repaint_after(std::time::Duration::from_millis(200));
@@ -83,7 +90,8 @@ fn reasons(ui: &mut Ui, session: &Session) {
 fn choices(ui: &mut Ui, session: &Session) -> Option<Choice> {
     let unsaved = session.looks.unsaved().len();
     let is_exporting = session.work.exported.is_some();
-    let close = match (unsaved > 0, is_exporting) {
+    let is_changed = session.has_changed_scene();
+    let close = match (unsaved > 0 || is_changed && !is_exporting, is_exporting) {
         (true, _) => "Discard and close",
         (false, true) => "End the export and close",
         (false, false) => "Close",
@@ -97,12 +105,15 @@ fn choices(ui: &mut Ui, session: &Session) -> Option<Choice> {
         _ if is_exporting => {
             &[(Choice::Wait, "Close when it is done"), (Choice::Close, close), (Choice::Cancel, "Cancel")]
         }
+        _ if is_changed => {
+            &[(Choice::Copy, "Copy the command line"), (Choice::Close, close), (Choice::Cancel, "Cancel")]
+        }
         _ => &[(Choice::Close, close), (Choice::Cancel, "Cancel")],
     };
     let mut choice = None;
     let mut buttons = Vec::new();
     for (index, (means, text)) in offered.iter().enumerate() {
-        let loses = *means == Choice::Close && (unsaved > 0 || is_exporting);
+        let loses = *means == Choice::Close && (unsaved > 0 || is_exporting || is_changed);
         let text = RichText::new(*text);
         let button = Button::new(if loses { text.color(theme::BAD) } else { text });
         let button = ui.add(if index == 0 { button.fill(theme::CHOSEN) } else { button });

@@ -4,7 +4,7 @@ use egui::{Button, RichText, Ui};
 
 use super::number::Number;
 use super::scale::Scale;
-use super::theme;
+use super::{keyboard, theme};
 use crate::state::outcome::Dialog;
 use crate::state::session::Session;
 use crate::state::work::Request;
@@ -90,6 +90,7 @@ fn camera(ui: &mut Ui, session: &mut Session) {
                 }
             }
         });
+        keyboard::tell(&shown.response, name);
         shown.response.labelled_by(label.id);
     });
 }
@@ -121,6 +122,7 @@ fn background(ui: &mut Ui, session: &mut Session) {
                 session.work.ask(Request::Choose(Dialog::Surroundings));
             }
         });
+        keyboard::tell(&shown.response, name);
         shown.response.labelled_by(label.id);
     });
     if matches!(session.open.scenery().map(|s| &s.lighting.background), Some(Background::Environment(_))) {

@@ -28,17 +28,17 @@ pub fn show(context: &egui::Context, rect: Rect, session: &mut Session) {
                         ui.set_max_width(width);
                         let color = if note.is_bad { theme::BAD } else { theme::TEXT };
                         let text = egui::Label::new(RichText::new(&note.text).color(color)).wrap();
-                        match note.place {
+                        let said = match note.place {
                             Some(_) => {
-                                ui.vertical(|ui| {
+                                let beside = ui.vertical(|ui| {
                                     ui.set_max_width((width - BUTTONS).max(80.0));
                                     ui.add(text)
                                 });
+                                beside.inner
                             }
-                            None => {
-                                ui.add(text);
-                            }
-                        }
+                            None => ui.add(text),
+                        };
+                        announce(context, said.id, note.is_bad);
                         if let Some(place) = &note.place
                             && ui.add(Button::new("Show in folder").small()).clicked()
                         {
@@ -59,4 +59,11 @@ pub fn show(context: &egui::Context, rect: Rect, session: &mut Session) {
     }
     // What goes away by itself must be seen to go.
     context.request_repaint_after(std::time::Duration::from_secs(1));
+}
+
+/// Lets programs that read the window aloud say a message when it comes.
+fn announce(context: &egui::Context, label: Id, is_bad: bool) {
+    use egui::accesskit::Live;
+    let live = if is_bad { Live::Assertive } else { Live::Polite };
+    context.accesskit_node_builder(label, |node| node.set_live(live));
 }

@@ -4,7 +4,7 @@ use std::sync::Arc;
 
 use egui::{CollapsingHeader, RichText, ScrollArea, Ui};
 
-use super::{chain, control, hint, histogram, layers, lighting, theme};
+use super::{chain, control, hint, histogram, keyboard, layers, lighting, theme};
 use crate::state::look::Parameter;
 use crate::state::resetting::Goal;
 use crate::state::session::{Session, TURNS};
@@ -24,7 +24,7 @@ pub fn show(ui: &mut Ui, session: &mut Session) {
         let parameters = Arc::clone(session.looks.parameters());
         if session.look().is_plain() {
             ui.label(
-                RichText::new("The picture as it is. Choose a look above, or press Tab.").color(theme::FAINT),
+                RichText::new("The picture as it is. Choose a look above, or press n.").color(theme::FAINT),
             );
         }
         chain::show(ui, session);
@@ -43,6 +43,7 @@ pub fn show(ui: &mut Ui, session: &mut Session) {
             });
         }
         ui.add_space(16.0);
+        keyboard::follow(ui);
     });
     if session.is_wheeled() {
         // What was turned is let go of then.
@@ -69,7 +70,8 @@ fn chooser(ui: &mut Ui, session: &mut Session) {
                     }
                 }
             });
-        response.response.on_hover_text("The look. Tab shows the next one");
+        keyboard::tell(&response.response, &session.look().name);
+        response.response.accessible_name("Look").on_hover_text("The look. n shows the next one");
         if let Some(index) = chosen {
             session.choose(index);
         }

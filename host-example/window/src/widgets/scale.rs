@@ -4,6 +4,7 @@ use std::time::Instant;
 
 use egui::{Response, Slider, Ui, vec2};
 
+use super::keyboard;
 use super::number::Number;
 use super::wheel::Turned;
 
@@ -33,12 +34,14 @@ impl Scale<'_> {
         let slider = slider.clamping(egui::SliderClamping::Never);
         let slider = if is_whole { slider.integer() } else { slider };
         let rail = ui.add(slider).labelled_by(label.id);
+        let step = if is_whole { 1.0 } else { (most - least) / keyboard::STEPS };
+        let keyed = keyboard::moved(ui, &rail, self.number.value, least..=most, (step, is_whole));
         let turned = Turned { value: self.number.value, ends: self.ends, is_whole }.by_wheel(ui, &rail);
         let (field, typed) = self.number.show(ui, vec2(FIELD, HEIGHT));
         field.labelled_by(label.id);
         if turned.is_some() {
             *wheeled = Some(Instant::now());
         }
-        rail.changed().then_some(slid).or(turned).or(typed)
+        keyed.or(rail.changed().then_some(slid)).or(turned).or(typed)
     }
 }

@@ -1,7 +1,10 @@
 //! The panel's place at the side, and its edge, by which it is made wider.
 
-use egui::{CursorIcon, EventFilter, Frame, Id, Key, Margin, Modifiers, Panel, Rect, Sense, Stroke, Ui};
+use egui::{
+    Context, CursorIcon, EventFilter, Frame, Id, Key, Margin, Modifiers, Panel, Rect, Sense, Stroke, Ui,
+};
 
+use super::order::{self, Room};
 use super::theme;
 use crate::state::session::Session;
 
@@ -16,19 +19,22 @@ const STEP: f32 = 16.0;
 /// Width on both sides of the edge where it can be grasped.
 const GRIP: f32 = 4.0;
 
-/// Shows the panel; returns where it lies, and the most of its width.
-pub fn show(ui: &mut Ui, session: &mut Session, content: impl FnOnce(&mut Ui, &mut Session)) -> (Rect, f32) {
-    let most = (ui.available_width() - PICTURE).clamp(WIDTHS[0], WIDTHS[1]);
-    let width = session.settings.panel_width.unwrap_or(USUAL).clamp(WIDTHS[0], most);
-    let margin = Margin { left: 12, right: 4, top: 10, bottom: 0 };
-    let frame = Frame::new().fill(theme::PANEL).inner_margin(margin);
-    let panel = Panel::right("look").frame(frame).resizable(false).exact_size(width);
-    let shown = panel.show(ui, |ui| content(ui, session));
-    (shown.response.rect, most)
+/// The most of the panel's width in a window as wide as its content.
+fn most(context: &Context) -> f32 {
+    (context.content_rect().width() - PICTURE).clamp(WIDTHS[0], WIDTHS[1])
 }
 
-/// Lets the edge of a panel be dragged, or moved by keys; a double click sets it back. It lies above what is beside it.
-pub fn edge(ui: &mut Ui, session: &mut Session, panel: Rect, most: f32) {
+/// Room of the panel, to be filled later.
+pub fn reserve(ui: &mut Ui, session: &Session) -> Room {
+    let width = session.settings.panel_width.unwrap_or(USUAL).clamp(WIDTHS[0], most(ui.ctx()));
+    let margin = Margin { left: 12, right: 4, top: 10, bottom: 0 };
+    let frame = Frame::new().fill(theme::PANEL).inner_margin(margin);
+    order::reserve(ui, Panel::right("look").frame(frame).resizable(false).exact_size(width), None)
+}
+
+/// Lets the edge of the panel be dragged, or moved by keys; a double click sets it back. It lies above what is beside it.
+pub fn edge(ui: &mut Ui, session: &mut Session, panel: Rect) {
+    let most = most(ui.ctx());
     let id = Id::unique("edge of the panel");
     let x = panel.left();
     let grip = Rect::from_x_y_ranges(x - GRIP..=x + GRIP, panel.y_range());

@@ -1,9 +1,9 @@
 //! The bar at the bottom: time, what is under the pointer, magnification and brightness.
 
-use egui::{Button, RichText, Slider, Ui, vec2};
+use egui::{Button, RichText, Ui, vec2};
 
 use super::number::Number;
-use super::{ends, probe, theme};
+use super::{ends, keyboard, probe, theme};
 use crate::state::running::Running;
 use crate::state::session::Session;
 use crate::state::work::Request;
@@ -61,12 +61,14 @@ fn timeline(ui: &mut Ui, session: &mut Session) {
     }
     let text = if scenery.playing { "⏸" } else { "▶" };
     let hint = if scenery.playing { "Pause (Space)" } else { "Play (Space)" };
-    if ui.add(Button::new(text)).on_hover_text(hint).clicked() {
+    let play = ui.add(Button::new(text)).accessible_name(if scenery.playing { "Pause" } else { "Play" });
+    if play.on_hover_text(hint).clicked() {
         scenery.toggle_playing();
     }
     let mut now = time;
     ui.spacing_mut().slider_width = 220.0;
-    let slider = ui.add(Slider::new(&mut now, 0.0..=length).show_value(false)).on_hover_text("Time");
+    let slider = keyboard::slider(ui, &mut now, 0.0..=length, |slider| slider.show_value(false));
+    let slider = slider.on_hover_text("Time");
     slider.widget_info(|| egui::WidgetInfo::slider(true, f64::from(time), "Time"));
     if slider.changed() {
         scenery.seek(now);
@@ -88,18 +90,22 @@ fn frames(ui: &mut Ui, session: &mut Session) {
         return;
     };
     let text = if playback.playing { "⏸" } else { "▶" };
-    if ui.add(Button::new(text)).on_hover_text("Play and pause (Space)").clicked() {
+    let play = ui.add(Button::new(text)).accessible_name(if playback.playing { "Pause" } else { "Play" });
+    if play.on_hover_text("Play and pause (Space)").clicked() {
         playback.toggle_playing();
     }
-    for (text, hint, by) in [("⏴", "The frame before (←)", -1), ("⏵", "The next frame (→)", 1)] {
-        if ui.add(Button::new(text)).on_hover_text(hint).clicked() {
+    for (text, name, key, by) in [("⏴", "The frame before", "←", -1), ("⏵", "The next frame", "→", 1)]
+    {
+        let button = ui.add(Button::new(text)).accessible_name(name);
+        if button.on_hover_text(format!("{name} ({key})")).clicked() {
             playback.step(by);
         }
     }
     let mut number = playback.number();
     ui.spacing_mut().slider_width = 220.0;
-    let rail = Slider::new(&mut number, frames.first()..=frames.last()).show_value(false);
-    let rail = ui.add(rail).on_hover_text("Frame");
+    let range = frames.first()..=frames.last();
+    let rail = keyboard::slider(ui, &mut number, range, |slider| slider.show_value(false));
+    let rail = rail.on_hover_text("Frame");
     rail.widget_info(|| egui::WidgetInfo::slider(true, number as f64, "Frame"));
     if rail.changed() {
         playback.seek(number);
@@ -115,13 +121,9 @@ fn frames(ui: &mut Ui, session: &mut Session) {
 }
 
 fn magnification(ui: &mut Ui, session: &mut Session) {
-    if !session.browser.is_open {
-        size(ui, session);
-        ui.add_space(8.0);
-    }
+    let label = ui.label(RichText::new("Exposure").color(theme::FAINT));
     let value = f64::from(session.viewport.exposure);
     let number = Number { value, range: [-10.0, 10.0], speed: 0.02, decimals: 2, unit: " stops" };
-    let label = ui.label(RichText::new("Exposure").color(theme::FAINT));
     let (stops, given) = number.show(ui, vec2(82.0, 20.0));
     if let Some(given) = given {
         session.viewport.exposure = given as f32;
@@ -132,6 +134,10 @@ fn magnification(ui: &mut Ui, session: &mut Session) {
         .double_clicked()
     {
         session.viewport.exposure = 0.0;
+    }
+    if !session.browser.is_open {
+        ui.add_space(8.0);
+        size(ui, session);
     }
 }
 
@@ -146,7 +152,9 @@ fn size(ui: &mut Ui, session: &mut Session) {
         session.viewport.fit();
     }
     let percent = format!("{:.0} %", scale * 100.0);
-    if ui.add(Button::new(percent)).on_hover_text("Pixels as large as the screen's (z)").clicked() {
+    let name = format!("Magnification {percent}");
+    let button = ui.add(Button::new(percent)).accessible_name(name);
+    if button.on_hover_text("Pixels as large as the screen's (z)").clicked() {
         session.viewport.toggle_actual();
     }
 }

@@ -4,6 +4,8 @@ use egui::{Color32, CornerRadius, FontFamily, FontId, Margin, Stroke, TextStyle,
 
 /// Colour of what is switched on or chosen.
 pub const ACCENT: Color32 = Color32::from_rgb(112, 152, 196);
+/// Ring around the control that has the focus.
+pub const FOCUS: Color32 = Color32::from_rgb(158, 200, 246);
 /// Text that matters less.
 pub const FAINT: Color32 = Color32::from_gray(138);
 /// Text that matters.

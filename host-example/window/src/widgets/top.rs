@@ -2,7 +2,7 @@
 
 use egui::{Button, DragValue, RichText, Ui};
 
-use super::{ends, theme};
+use super::{ends, keyboard, theme};
 use crate::state::command;
 use crate::state::outcome::Dialog;
 use crate::state::session::Session;
@@ -151,8 +151,8 @@ fn compare(ui: &mut Ui, session: &mut Session) {
         });
     }
     let mut chosen = None;
-    let name = session.looks.compared.as_ref().map_or("Original", |look| look.name.as_str());
-    egui::ComboBox::from_id_salt("compared")
+    let name = session.looks.compared.as_ref().map_or("Original", |look| look.name.as_str()).to_owned();
+    let list = egui::ComboBox::from_id_salt("compared")
         .selected_text(format!("with {name}"))
         .width(130.0)
         .show_ui(ui, |ui| {
@@ -171,8 +171,9 @@ fn compare(ui: &mut Ui, session: &mut Session) {
                 }
             }
         })
-        .response
-        .on_hover_text("What the look is compared with");
+        .response;
+    keyboard::tell(&list, &name);
+    list.accessible_name("Compare with").on_hover_text("What the look is compared with");
     if chosen.is_some() {
         session.looks.compared = chosen;
     }
@@ -184,7 +185,7 @@ fn overlays(ui: &mut Ui, session: &mut Session) {
         .find(|(overlay, _)| *overlay == session.viewport.overlay)
         .map_or("", |(_, name)| name);
     let shown = if session.viewport.overlay == Overlay::None { "Show" } else { now };
-    egui::ComboBox::from_id_salt("overlay")
+    let list = egui::ComboBox::from_id_salt("overlay")
         .selected_text(shown)
         .width(70.0)
         .show_ui(ui, |ui| {
@@ -195,33 +196,34 @@ fn overlays(ui: &mut Ui, session: &mut Session) {
                 ui.selectable_value(&mut session.viewport.overlay, overlay, name);
             }
         })
-        .response
-        .on_hover_text("What the look is made of: what is known of the picture, and what is found in it");
+        .response;
+    keyboard::tell(&list, now);
+    let hint = "What the look is made of: what is known of the picture, and what is found in it";
+    list.accessible_name("Show").on_hover_text(hint);
 }
 
 fn right(ui: &mut Ui, session: &mut Session) {
-    if ui.button("?").on_hover_text("Keys and mouse").clicked() {
+    if session.open.has_picture() {
+        // The menu has the rest, too.
+        if ui.ctx().content_rect().width() >= WIDE {
+            let has_look = !session.look().is_plain();
+            if ui.add_enabled(has_look, Button::new("Save look")).on_hover_text("Ctrl+S").clicked() {
+                session.save_look(false);
+            }
+            let copy = ui.add_enabled(session.open.file().is_some(), Button::new("Copy command"));
+            if copy.on_hover_text("The command line that gives this picture").clicked() {
+                ui.ctx().copy_text(command::copied(session));
+            }
+        }
+        let export = Button::new("Export").fill(theme::CHOSEN);
+        let export = ui.add_enabled(session.can_export(), export);
+        let export = export.on_hover_text("Writes the picture, its frames or a video (Ctrl+E)");
+        if export.on_disabled_hover_text("Choose a style first").clicked() {
+            session.plan_export();
+        }
+    }
+    let help = ui.button("?").accessible_name("Keys and mouse").on_hover_text("Keys and mouse");
+    if help.clicked() {
         session.dialogs.shows_help = !session.dialogs.shows_help;
-    }
-    if !session.open.has_picture() {
-        return;
-    }
-    let export = Button::new("Export").fill(theme::CHOSEN);
-    let export = ui.add_enabled(session.can_export(), export);
-    let export = export.on_hover_text("Writes the picture, its frames or a video (Ctrl+E)");
-    if export.on_disabled_hover_text("Choose a style first").clicked() {
-        session.plan_export();
-    }
-    // The menu has the rest, too.
-    if ui.ctx().content_rect().width() < WIDE {
-        return;
-    }
-    let copy = ui.add_enabled(session.open.file().is_some(), Button::new("Copy command"));
-    if copy.on_hover_text("The command line that gives this picture").clicked() {
-        ui.ctx().copy_text(command::copied(session));
-    }
-    let has_look = !session.look().is_plain();
-    if ui.add_enabled(has_look, Button::new("Save look")).on_hover_text("Ctrl+S").clicked() {
-        session.save_look(false);
     }
 }

@@ -35,6 +35,10 @@ pub struct Browser {
     pub columns: usize,
     /// True where the selected card is to be scrolled to.
     pub scrolls: bool,
+    /// True where the selected card is to have the focus.
+    pub takes_focus: bool,
+    /// True where the field that looks are searched by is to have the focus.
+    pub searches: bool,
     /// True where the looks are to be read anew.
     pub is_outdated: bool,
     /// A name and tags that are being changed.
@@ -149,6 +153,12 @@ impl Browser {
         true
     }
 
+    /// The card that Tab goes to: the one that is selected, or the first where that is not shown.
+    pub fn stop(&self) -> Option<u64> {
+        let shown = || self.entries.iter().filter(|entry| self.filter.takes(entry)).map(|entry| entry.id);
+        shown().find(|id| Some(*id) == self.selected).or_else(|| shown().next())
+    }
+
     /// Selects the card beside the selected one, or the first.
     pub fn step(&mut self, step: Step) {
         let columns = self.columns.max(1);
@@ -172,7 +182,13 @@ impl Browser {
             (Some((_, y)), Step::Right) => at(0, y + 1),
         };
         if let Some(next) = next.copied() {
-            (self.selected, self.scrolls) = (Some(next), true);
+            (self.selected, self.scrolls, self.takes_focus) = (Some(next), true, true);
         }
+    }
+
+    /// Adds what was typed to what is searched for.
+    pub fn search(&mut self, text: &str) {
+        self.filter.text += text;
+        self.searches = true;
     }
 }

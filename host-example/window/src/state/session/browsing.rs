@@ -29,7 +29,7 @@ impl Session {
             self.browser.is_open = false;
         } else if self.open.has_picture() {
             self.end_comparison();
-            (self.browser.is_open, self.browser.is_outdated) = (true, true);
+            (self.browser.is_open, self.browser.is_outdated, self.browser.takes_focus) = (true, true, true);
             self.select_present();
         }
     }
@@ -51,7 +51,7 @@ impl Session {
 
     /// Shows the look of a card, and closes the browser if that is wanted.
     pub fn apply(&mut self, id: u64, closes: bool) {
-        self.browser.selected = Some(id);
+        (self.browser.selected, self.browser.takes_focus) = (Some(id), true);
         match self.browser.entry(id).map(|entry| &entry.content) {
             Some(Content::Look(look)) => {
                 let look = Arc::clone(look);

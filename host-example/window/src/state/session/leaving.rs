@@ -2,14 +2,21 @@
 
 use super::Session;
 use crate::state::leaving::Leaving;
+use crate::state::scenery::Scenery;
 
 impl Session {
     /// Closes the window, or asks before if something would be lost.
     pub fn leave(&mut self) {
         if self.dialogs.leaving != Leaving::Closes {
-            let loses_nothing = self.looks.unsaved().is_empty() && self.work.exported.is_none();
+            let loses_nothing =
+                self.looks.unsaved().is_empty() && self.work.exported.is_none() && !self.has_changed_scene();
             self.dialogs.leaving = if loses_nothing { Leaving::Closes } else { Leaving::Asks };
         }
+    }
+
+    /// True where the camera or the light of a scene's file was changed, which only its command line keeps.
+    pub fn has_changed_scene(&self) -> bool {
+        self.open.file().is_some() && self.open.scenery().is_some_and(Scenery::is_changed)
     }
 
     /// Saves the first look that would be lost, and then goes on as [`Session::leave`]. A dialog for it may be open already.
@@ -48,7 +55,8 @@ impl Session {
 
     /// True where a dialog of the window is open, which keys belong to then.
     pub fn has_dialog(&self) -> bool {
-        self.dialogs.saving.is_some()
+        self.dialogs.shows_help
+            || self.dialogs.saving.is_some()
             || self.dialogs.plan.is_some()
             || self.dialogs.batch.is_some()
             || self.browser.title_edit.is_some()

@@ -102,6 +102,12 @@ impl Session {
         self.choose((self.looks.current() + 1) % self.looks.list().len());
     }
 
+    /// Shows the look before.
+    pub fn choose_before(&mut self) {
+        let count = self.looks.list().len();
+        self.choose((self.looks.current() + count - 1) % count);
+    }
+
     /// Shows a look that may be new here, as one step. A look that was opened as the same is replaced.
     pub fn take(&mut self, look: Arc<EditedLook>) {
         self.let_go();

@@ -1,0 +1,67 @@
+//! Order of controls: Tab and programs that read the window aloud go from one to the next as they are seen, from left to right
+//! and from above to below.
+
+use egui::{Id, Panel, Rect, Ui, UiBuilder, vec2};
+
+/// Controls that end at the right of a row, in the order in which they are seen. Their width is that of the frame before, so
+/// the first one is laid out twice.
+pub fn at_right(ui: &mut Ui, salt: &str, content: impl FnOnce(&mut Ui)) {
+    let known = width_at_right(ui, salt);
+    let room = ui.available_rect_before_wrap();
+    let left = (room.right() - known).max(room.left());
+    let place = Rect::from_min_max(egui::pos2(left, room.top()), room.max);
+    let row = UiBuilder::new()
+        .id_salt(salt)
+        .max_rect(place)
+        .layout(egui::Layout::left_to_right(egui::Align::Center));
+    let width = ui.scope_builder(row, |ui| {
+        content(ui);
+        ui.min_rect().width()
+    });
+    if (width.inner - known).abs() > 0.5 {
+        ui.data_mut(|data| data.insert_temp(id_of(salt), width.inner));
+        ui.ctx().request_discard("controls at the right have another width");
+    }
+}
+
+/// Width of the controls at the right of a row in the frame before.
+pub fn width_at_right(ui: &Ui, salt: &str) -> f32 {
+    ui.data(|data| data.get_temp(id_of(salt))).unwrap_or(0.0)
+}
+
+fn id_of(salt: &str) -> Id {
+    Id::unique(("width at the right", salt))
+}
+
+/// Room of a panel.
+#[derive(Clone, Copy, Debug)]
+pub struct Room {
+    /// Place of what is in it.
+    pub inner: Rect,
+    /// Place of all of it.
+    pub outer: Rect,
+}
+
+/// Room that a panel takes from what surrounds it, all of its height where none is given, to be filled later: panels at the
+/// borders are laid out before what is between them, and read after it.
+pub fn reserve(ui: &mut Ui, panel: Panel, height: Option<f32>) -> Room {
+    let reserved = panel.show(ui, |ui| {
+        let size = vec2(ui.available_width(), height.unwrap_or_else(|| ui.available_height()));
+        let (rect, _) = ui.allocate_exact_size(size, egui::Sense::hover());
+        rect
+    });
+    Room { inner: reserved.inner, outer: reserved.response.rect }
+}
+
+/// Fills such a room.
+pub fn fill(ui: &mut Ui, rect: Rect, name: &str, content: impl FnOnce(&mut Ui)) {
+    let place = UiBuilder::new()
+        .id_salt(name)
+        .max_rect(rect)
+        .layout(egui::Layout::top_down(egui::Align::Min))
+        .accessibility_role(egui::accesskit::Role::Pane)
+        .accessibility_label(name);
+    let mut inner = ui.new_child(place);
+    inner.set_clip_rect(rect.expand2(vec2(12.0, 6.0)).intersect(ui.clip_rect()));
+    content(&mut inner);
+}
