@@ -7,6 +7,7 @@
 
 use super::clips::guides;
 use super::colours::{AS_IS, SPACES};
+use super::mask::MASK_OPTIONS;
 use super::motion::{MOTION_OPTIONS, estimate};
 use isophote::engine::Support;
 use isophote::frames::Frames;
@@ -26,6 +27,8 @@ const PREFIX: &str = "org.isophote.";
 pub const WORKING_SPACE: &CStr = c"working_space";
 pub const PROCESS_ALPHA: &str = "process_alpha";
 pub const MASK_APPLY: &str = "mask_apply";
+pub const MASK_FROM: &str = "mask_from";
+pub const MASK_INVERT: &str = "mask_invert";
 pub const REFERENCE_HEIGHT: &str = "reference_height";
 pub const LINES_OUTPUT: &str = "lines_output";
 pub const MOTION_FROM: &str = "motion_from";
@@ -60,6 +63,10 @@ pub enum Target {
     ReferenceHeight,
     /// Use of a connected mask. For hosts that call every clip connected.
     MaskApply,
+    /// Part of the mask's pixels that counts.
+    MaskFrom,
+    /// Use of the mask the other way round.
+    MaskInvert,
     /// Source of motion between frames.
     MotionFrom,
     /// Meaning of the vectors of a connected clip.
@@ -69,7 +76,10 @@ pub enum Target {
 impl Target {
     /// True where it decides nothing where there is no clip but the source.
     pub fn is_of_clips(&self) -> bool {
-        matches!(self, Self::MaskApply | Self::MotionFrom | Self::MotionConvention)
+        matches!(
+            self,
+            Self::MaskApply | Self::MaskFrom | Self::MaskInvert | Self::MotionFrom | Self::MotionConvention
+        )
     }
 }
 
@@ -245,6 +255,8 @@ impl Effect {
         self.add(REFERENCE_HEIGHT, "Reference height", HEIGHT_HINT, "output", Target::ReferenceHeight);
         self.add(PROCESS_ALPHA, "Process alpha", ALPHA_HINT, "output", Target::ProcessAlpha);
         self.add(MASK_APPLY, "Apply mask", MASK_HINT, "output", Target::MaskApply);
+        self.add(MASK_FROM, "Mask from", MASK_FROM_HINT, "output", Target::MaskFrom);
+        self.add(MASK_INVERT, "Invert mask", MASK_INVERT_HINT, "output", Target::MaskInvert);
         // Under one heading, controls follow one another.
         self.controls.sort_by_key(|c| c.group);
     }
@@ -257,6 +269,7 @@ impl Effect {
             Target::WorkingSpace => {
                 SPACES.iter().map(|space| text(space.map_or(AS_IS, Space::label))).collect()
             }
+            Target::MaskFrom => MASK_OPTIONS.map(CStr::to_owned).to_vec(),
             Target::MotionFrom => MOTION_OPTIONS.map(CStr::to_owned).to_vec(),
             Target::MotionConvention => Convention::PRESETS.iter().map(|c| text(c.label)).collect(),
             _ => Vec::new(),
@@ -314,9 +327,14 @@ const SPACE_HINT: &str = "What the numbers of the pixels mean. Filters are tuned
                           pictures are encoded on the way in and decoded on the way out. 'As is' changes nothing.";
 const HEIGHT_HINT: &str = "Height of pictures, in pixels, at which lengths are meant: with 1080 pictures of all sizes get the \
                            same look. 0: lengths are pixels of the full-size picture.";
+
+/// The reference height of new instances, as the other faces have it.
+pub const USUAL_REFERENCE: u32 = 1080;
 const ALPHA_HINT: &str =
     "Filters alpha together with the colour. Off, the result has the alpha of the source.";
 const MASK_HINT: &str = "Lets the mask decide where the effect shows.";
+const MASK_FROM_HINT: &str = "What of the mask's picture says where the effect shows.";
+const MASK_INVERT_HINT: &str = "Shows the effect where the mask is dark or transparent.";
 const MOTION_HINT: &str = "Where the motion between frames comes from, along which they are steadied: the clips Motion \
                            and Motion forward, or an estimate from the pictures.";
 const CONVENTION_HINT: &str = "What the vectors of the clips Motion and Motion forward mean. One of the clips is enough: \
