@@ -106,6 +106,8 @@ strings! {
     kOfxImageComponentRGBA = c"OfxImageComponentRGBA";
     kOfxImageComponentRGB = c"OfxImageComponentRGB";
     kOfxImageComponentAlpha = c"OfxImageComponentAlpha";
+    kOfxImageEffectFrameVarying = c"OfxImageEffectFrameVarying";
+    kOfxImageEffectPropRenderQualityDraft = c"OfxImageEffectPropRenderQualityDraft";
     kOfxImageEffectPropPreMultiplication = c"OfxImageEffectPropPreMultiplication";
     kOfxImageOpaque = c"OfxImageOpaque";
     kOfxImagePreMultiplied = c"OfxImageAlphaPremultiplied";

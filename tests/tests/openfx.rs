@@ -6,16 +6,22 @@
 
 #[path = "openfx/aspect.rs"]
 mod aspect;
+#[path = "openfx/clips.rs"]
+mod clips;
 #[path = "openfx/colours.rs"]
 mod colours;
 #[path = "openfx/controls.rs"]
 mod controls;
 #[path = "openfx/describe.rs"]
 mod describe;
+#[path = "openfx/draft.rs"]
+mod draft;
 #[path = "openfx/film.rs"]
 mod film;
 #[path = "openfx/memory.rs"]
 mod memory;
+#[path = "openfx/preferences.rs"]
+mod preferences;
 #[path = "openfx/quirks.rs"]
 mod quirks;
 #[path = "openfx/reference.rs"]
@@ -52,6 +58,11 @@ type OfAnEffect = (&'static str, fn(&Binary, Expected));
 /// Tests of the binary, whatever its effects.
 const OF_THE_BINARY: &[OfTheBinary] = named! {
     regions::a_bounding_box_shows_the_marks_of_the_project,
+    clips::an_output_that_nobody_takes_is_rendered,
+    clips::pixels_that_cannot_be_read_are_told_of,
+    clips::a_mask_may_be_any_part_of_its_picture,
+    clips::an_inverted_mask_shows_the_effect_beside_its_picture,
+    preferences::lengths_are_meant_at_1080_lines,
     colours::other_spaces_are_changed_once,
     colours::the_same_picture_comes_of_every_space,
     colours::neighbours_and_tiles_have_the_colours_of_the_frame,
@@ -89,6 +100,9 @@ const OF_EVERY_EFFECT: &[OfAnEffect] = named! {
     aspect::oblong_pixels_show_what_square_ones_show,
     aspect::guides_have_oblong_pixels_too,
     aspect::alpha_and_masks_are_those_of_the_hosts_pixels,
+    clips::guides_and_masks_of_unknown_formats_count_as_none,
+    draft::drafts_look_like_the_frame_and_their_tiles_are_parts_of_them,
+    preferences::marks_that_move_by_themselves_vary_from_frame_to_frame,
     controls::what_is_grey_has_no_effect,
     controls::controls_become_usable_with_what_they_need,
     describe::descriptors_say_what_the_standard_asks_for,

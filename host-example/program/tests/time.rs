@@ -108,6 +108,41 @@ fn motion_comes_from_files_of_its_own_too() {
     assert_ne!(bytes(at, "o.0004.exr"), bytes(at, "r.0004.exr"));
 }
 
+/// Writes a frame anew without the layer of a name.
+fn without_layer(from: &Path, to: &Path, layer: &str) {
+    let mut image = exr::prelude::read_first_flat_layer_from_file(from).expect("a picture");
+    let channels = &mut image.layer_data.channel_data.list;
+    channels.retain(|channel| !channel.name.to_string().starts_with(layer));
+    exr::prelude::WritableImage::write(&image).to_file(to).expect("the folder is writable");
+}
+
+#[test]
+fn vectors_of_one_way_stand_for_the_other_reversed() {
+    let folder = folder();
+    let at = folder.path();
+    shot(at, INPUT, "96x64");
+    for frame in 3..=7 {
+        for (to, layer) in [("back", "forward."), ("fore", "backward.")] {
+            let [from, to] = ["in", to].map(|stem| at.join(format!("{stem}.{frame:04}.exr")));
+            without_layer(&from, &to, layer);
+        }
+    }
+    let run = |input: &str, out: &str, more: &[&str]| {
+        let fixed = ["cartoon", input, out, "--frames", "5", "--steadiness", "0.5"];
+        succeeds(&mut apply(at, &[&fixed[..], more].concat()));
+        pixels(&at.join(out.replace("####", "0005")))
+    };
+    let both = run(INPUT, "both.####.exr", &[]);
+    // The layer that is read for both ways, as the convention has it.
+    let read = run(INPUT, "read.####.exr", &["--motion-convention", "isophote,direction=backward"]);
+    let back = run("back.####.exr", "a.####.exr", &[]);
+    assert!(back == read, "the layer to the frame before does not stand for the way to the frame after");
+    assert!(back == run(INPUT, "b.####.exr", &["--motion", "back.####.exr", "--guide", "motion=backward"]));
+    let fore = run("fore.####.exr", "c.####.exr", &[]);
+    let alone = run("back.####.exr", "d.####.exr", &["--guide", "motion_forward=none"]);
+    assert!(alone != back && fore != alone && fore != both);
+}
+
 #[test]
 fn motion_is_estimated_where_nobody_knows_it() {
     let folder = folder();

@@ -157,7 +157,7 @@ fn controls_can_be_used_by_programs_that_read_windows_aloud() {
     harness.get_by_label("Wipe").click();
     harness.run_ok();
     assert_eq!(harness.query_all_by_label("Wipe").count(), 2, "the line of the wipe has a name, too");
-    harness.get_by_role_and_label(egui::accesskit::Role::Button, "Keys and mouse").click();
+    harness.get_by_role_and_label(Role::Button, "Keys and mouse").click();
     harness.run_ok();
     assert!(harness.query_by_label_contains("original while it is held").is_some());
 }

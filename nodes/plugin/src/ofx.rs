@@ -17,6 +17,7 @@ mod image;
 mod inputs;
 mod instance;
 mod known;
+mod mask;
 mod motion;
 mod needed;
 mod prepared;

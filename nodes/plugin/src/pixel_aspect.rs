@@ -127,6 +127,11 @@ impl SquarePixels {
         Self::new(size, ratio, (ratio[0] * ratio[1]).sqrt())
     }
 
+    /// Pixels of twice the side of the finer of the picture's own, for drafts.
+    pub fn halved(size: [u32; 2], ratio: [f64; 2]) -> Self {
+        Self::new(size, ratio, ratio[0].max(ratio[1]) / 2.0)
+    }
+
     fn new(size: [u32; 2], ratio: [f64; 2], density: f64) -> Self {
         let size = size.map(f64::from);
         let side = |i: usize| size[i] * density / ratio[i];

@@ -67,7 +67,8 @@ impl<'h> Described<'h> {
         effect
     }
 
-    /// An instance with default values.
+    /// An instance with default values, but with lengths in pixels: those of pictures as small as in tests come to nothing
+    /// where they are meant at 1080 lines.
     ///
     /// # Panics
     /// When it cannot be created.
@@ -75,16 +76,19 @@ impl<'h> Described<'h> {
         self.saved_instance(context, &[])
     }
 
-    /// An instance as a project saved it: with values that it has before it is created, by their names.
+    /// An instance as a project saved it: with values that it has before it is created, by their names; lengths are in
+    /// pixels as in [`Described::instance`].
     ///
     /// # Panics
     /// When it cannot be created.
     pub fn saved_instance(&self, context: &CStr, saved: &[(&str, Value)]) -> Instance<'h> {
         let described = self.in_context(context);
+        let in_pixels = [("reference_height", Value::from(0))];
         let effect = Effect::new(&self.host.inner, true);
         effect.set.put(kOfxImageEffectPropContext, vec![context.into()]);
         for param in lock(&described.params).iter() {
-            let saved = saved.iter().find(|(name, _)| *name == param.name.to_string_lossy());
+            let saved =
+                saved.iter().chain(&in_pixels).find(|(name, _)| *name == param.name.to_string_lossy());
             let value = saved.map_or_else(|| param.set.get(kOfxParamPropDefault), |(_, v)| vec![v.clone()]);
             let mut new = Box::new(Param {
                 magic: MAGIC,
@@ -153,12 +157,14 @@ pub struct Wanted {
     pub field: &'static CStr,
     /// Time.
     pub time: f64,
+    /// True for a draft.
+    pub draft: bool,
 }
 
 impl Wanted {
     /// A window at full size.
     pub fn new(window: [i32; 4]) -> Self {
-        Self { window, scale: 1.0, squeeze: 1.0, field: kOfxImageFieldNone, time: 0.0 }
+        Self { window, scale: 1.0, squeeze: 1.0, field: kOfxImageFieldNone, time: 0.0, draft: false }
     }
 }
 
@@ -289,11 +295,19 @@ impl Instance<'_> {
     pub fn try_render(&self, layout: Layout, size: [i32; 2], wanted: &Wanted) -> (OfxStatus, Picture) {
         self.connect("Output", Picture::new(layout, size[0], size[1]));
         let status = self.render_connected(wanted);
-        let clips = lock(&self.effect.clips);
-        let clip = clips.iter().find(|c| c.name.as_c_str() == c"Output").expect("an output");
-        let picture = lock(&clip.picture).take().expect("the picture that was connected");
+        let picture = self.take_output();
         assert_eq!(picture.touched_outside(wanted.window), 0, "{}", self.plugin.identifier());
         (status, picture)
+    }
+
+    /// Takes the picture away that is connected to the output.
+    ///
+    /// # Panics
+    /// When there is none.
+    pub fn take_output(&self) -> Picture {
+        let clips = lock(&self.effect.clips);
+        let clip = clips.iter().find(|c| c.name.as_c_str() == c"Output").expect("an output");
+        lock(&clip.picture).take().expect("the picture that was connected")
     }
 
     /// Renders into what is connected.
@@ -309,6 +323,7 @@ impl Instance<'_> {
             vec![(wanted.scale * wanted.squeeze).into(), wanted.scale.into()],
         );
         args.put(kOfxImageEffectPropFieldToRender, vec![wanted.field.into()]);
+        args.put(kOfxImageEffectPropRenderQualityDraft, vec![i32::from(wanted.draft).into()]);
         self.hold_stills(wanted.time);
         state::render_at(Some(wanted.time));
         let status = self.act(kOfxImageEffectActionRender, Some(&args), None);

@@ -149,7 +149,13 @@ pub fn controls_are_the_parameters_of_the_nodes(binary: &Binary, effect: Expecte
         };
         let mut names: BTreeSet<String> =
             ["working_space", "process_alpha", "reference_height"].map(str::to_owned).into_iter().collect();
-        names.extend(general.then(|| "mask_apply".to_owned()));
+        names.extend(
+            general
+                .then(|| ["mask_apply", "mask_from", "mask_invert"])
+                .into_iter()
+                .flatten()
+                .map(str::to_owned),
+        );
         if general && effect.node.is_steady() {
             names.extend(["motion_from", "motion_convention"].map(str::to_owned));
         }

@@ -293,7 +293,26 @@ fn sources(
     }
     // Channels with fewer samples than pixels guide nothing.
     sources.retain(|s| s.channels.iter().all(|c| exr.parts()[s.part].channels[*c].sampling == (1, 1)));
+    sources.extend(other_way(&sources, selection));
     Ok(sources)
+}
+
+/// Vectors of the way that has none, where those of the other way are there and stand for it, reversed.
+fn other_way(sources: &[GuideSource], selection: &Selection) -> Option<GuideSource> {
+    let of = |guide| sources.iter().find(|source| source.guide == guide);
+    let (there, missing) = match (of(Guide::Motion), of(Guide::MotionForward)) {
+        (Some(there), None) => (there, Guide::MotionForward),
+        (None, Some(there)) => (there, Guide::Motion),
+        _ => return None,
+    };
+    let is_unwanted =
+        selection.guides.iter().rev().find(|c| c.guide == missing).is_some_and(|c| c.layer.is_none());
+    let Meaning::Vectors(rule) = there.meaning else { return None };
+    (selection.wanted.contains(&missing) && !is_unwanted).then(|| GuideSource {
+        guide: missing,
+        meaning: Meaning::Vectors(rule.reversed()),
+        ..there.clone()
+    })
 }
 
 /// Error of a file that lacks the layer or channel that was asked for as a guide.
@@ -363,6 +382,7 @@ pub fn motion(exr: &File, selection: &Selection) -> Result<Vec<GuideSource>, Fau
             fix: "name it by --guide motion=LAYER, or its renderer by --motion-convention".into(),
         });
     }
+    found.extend(other_way(&found, selection));
     Ok(found)
 }
 

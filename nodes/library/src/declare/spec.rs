@@ -115,6 +115,13 @@ pub(crate) const HOLD: Param = Param::int("hold", "Hold", 0, [0, 1000])
     .group("time")
     .hint("Frames that grain and strokes last: 1 draws them anew in each frame, 0 keeps them for ever.");
 
+/// True for a parameter that decides whether frames of one and the same picture differ ([`Graph::is_animated`]).
+///
+/// [`Graph::is_animated`]: crate::Graph::is_animated
+pub fn animates_marks(param: &Param) -> bool {
+    [HOLD.id, STEADINESS.id, RENEWAL.id].contains(&param.id)
+}
+
 /// `steadiness` of nodes that carry what they have found from frame to frame.
 pub(crate) const STEADINESS: Param = Param::float("steadiness", "Steadiness", 0.0, [0.0, 1.0])
     .structural()
@@ -250,6 +257,12 @@ impl NodeSpec {
             }
             _ => 0,
         }
+    }
+
+    /// True for a node of these values whose marks are drawn anew as time goes by.
+    pub(crate) fn redraws(&self, values: &[Value]) -> bool {
+        let hold = self.param(HOLD.id).map(|(index, _)| values[index]);
+        matches!(hold, Some(Value::Int(hold)) if hold > 0)
     }
 
     /// True for filters, which smooth the light of a picture beyond its coverage as a picture of its own. What other

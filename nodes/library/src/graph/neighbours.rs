@@ -1,7 +1,7 @@
 //! Number of frames around its own that a frame of a graph depends on.
 
 use crate::frames::{Frames, MOST_FRAMES};
-use crate::graph::{Graph, GraphInput, Upstream};
+use crate::graph::{Graph, GraphInput, Node, Upstream};
 
 impl Graph {
     /// Frames before and after its own that a frame of the graph's output depends on, where all are known; [0, 0] for
@@ -14,6 +14,15 @@ impl Graph {
             need.map(|[first, last]| [(window.max(node.marks()) - first) as u32, (window + last) as u32])
         });
         windows.fold([0, 0], |[a, b], [c, d]| [a.max(c), b.max(d)]).map(|n| n.min(MOST_FRAMES))
+    }
+
+    /// True where frames that are given the same pictures may differ: marks are drawn anew as time goes by, or are carried
+    /// along motion and begin anew.
+    pub fn is_animated(&self) -> bool {
+        let mut needs = Vec::new();
+        needs_of(self, &Frames::NONE, &mut needs);
+        let is_animated = |node: &Node| node.marks() > 0 || node.spec.redraws(&node.values);
+        self.nodes().iter().zip(&needs).any(|(node, need)| need.is_some() && is_animated(node))
     }
 
     /// Of these, the frames before and after its own whose `input` it reads.

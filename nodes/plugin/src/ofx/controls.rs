@@ -99,6 +99,9 @@ fn refresh(effect: &Effect, host: &Host, instance: Handle, time: f64, tiles: boo
             }),
             Target::ProcessAlpha => has_alpha(host, instance),
             Target::MaskApply => is_connected(host, instance, MASK),
+            Target::MaskFrom | Target::MaskInvert => {
+                settings.mask.is_some() && is_connected(host, instance, MASK)
+            }
             // Where nothing moves, steadiness is grey until this is another.
             Target::MotionFrom => {
                 host.temporal && (settings.graph.frames() != [0, 0] || scene.frames == Frames::NONE)

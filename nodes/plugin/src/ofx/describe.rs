@@ -2,16 +2,18 @@
 
 use super::clips::{MASK, OUTPUT, SOURCE, guide_clip, guide_label};
 use super::colours::SPACES;
-use super::effects::{Control, Effect, Target, WORKING_SPACE};
+use super::effects::{Control, Effect, Target, USUAL_REFERENCE};
 use super::host::{Host, Outcome, Properties};
 use isophote::Value;
-use isophote::spec::{ImageKind, Param, Unit};
+use isophote::spec::{ImageKind, Param, Unit, animates_marks};
 use isophote::value::decimal;
 use isophote_abi::openfx::*;
 use std::ffi::{CStr, c_int};
 use std::ptr::null_mut;
 
 const COMPONENTS: [&CStr; 3] = [kOfxImageComponentRGBA, kOfxImageComponentRGB, kOfxImageComponentAlpha];
+/// Alpha first: hosts that give a mask one channel give it the first that is named.
+const MASK_COMPONENTS: [&CStr; 3] = [kOfxImageComponentAlpha, kOfxImageComponentRGBA, kOfxImageComponentRGB];
 
 /// Describes what does not depend on a context.
 ///
@@ -61,12 +63,21 @@ pub fn describe(effect: &'static Effect, host: &Host, descriptor: Handle) -> Out
         (kOfxImageEffectPropNoSpatialAwareness, c"false"),
         (kOfxImageEffectPropColourManagementStyle, kOfxImageEffectColourManagementBasic),
         (kOfxImageEffectPropColourManagementAvailableConfigs, COLOURSPACES),
-        // It decides which colour space is asked for.
-        (kOfxImageEffectPropClipPreferencesSlaveParam, WORKING_SPACE),
     ] {
         set.set_string(name, 0, value);
     }
+    set_strings(set, kOfxImageEffectPropClipPreferencesSlaveParam, &preference_controls(effect));
     Ok(kOfxStatOK)
+}
+
+/// The controls that decide about clip preferences: which colour space is asked for, and whether marks move by themselves.
+fn preference_controls(effect: &'static Effect) -> Vec<&'static CStr> {
+    let decides = |control: &&Control| match control.target {
+        Target::WorkingSpace => true,
+        Target::Param(_, param) => animates_marks(param),
+        _ => false,
+    };
+    effect.controls.iter().filter(decides).map(|control| control.name.as_c_str()).collect()
 }
 
 const VERSION: &CStr = match CStr::from_bytes_with_nul(concat!(env!("CARGO_PKG_VERSION"), "\0").as_bytes()) {
@@ -140,7 +151,7 @@ fn clips(effect: &Effect, general: bool) -> Vec<Described> {
     };
     let mut clips = vec![Described { temporal: true, ..clip(SOURCE) }, clip(OUTPUT)];
     if general {
-        clips.push(Described { components: &COMPONENTS[2..], mask: true, optional: true, ..clip(MASK) });
+        clips.push(Described { components: &MASK_COMPONENTS, mask: true, optional: true, ..clip(MASK) });
         clips.extend(effect.guides.iter().filter_map(|guide| {
             let name = guide_clip(*guide)?;
             let components: &[&CStr] = match guide.kind() {
@@ -207,7 +218,7 @@ fn define_control(
             Value::Choice(default) => choice(define(kOfxParamTypeChoice)?, control, default),
             Value::Color(_) => colour(define(kOfxParamTypeRGBA)?, param),
         },
-        Target::LinesOutput | Target::MotionFrom | Target::MotionConvention => {
+        Target::LinesOutput | Target::MaskFrom | Target::MotionFrom | Target::MotionConvention => {
             choice(define(kOfxParamTypeChoice)?, control, 0)
         }
         Target::WorkingSpace => {
@@ -217,7 +228,7 @@ fn define_control(
         Target::ReferenceHeight => {
             let set = define(kOfxParamTypeInteger)?;
             for (name, value) in [
-                (kOfxParamPropDefault, 0),
+                (kOfxParamPropDefault, USUAL_REFERENCE as c_int),
                 (kOfxParamPropMin, 0),
                 (kOfxParamPropMax, MOST_HEIGHT),
                 (kOfxParamPropDisplayMin, 0),
@@ -228,7 +239,7 @@ fn define_control(
             }
             set
         }
-        Target::ProcessAlpha => switch(define(kOfxParamTypeBoolean)?, false),
+        Target::ProcessAlpha | Target::MaskInvert => switch(define(kOfxParamTypeBoolean)?, false),
         Target::MaskApply => switch(define(kOfxParamTypeBoolean)?, !host.quirks.all_connected),
     };
     labels(set, &control.label);

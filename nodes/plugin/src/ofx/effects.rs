@@ -7,6 +7,7 @@
 
 use super::clips::guides;
 use super::colours::{AS_IS, SPACES};
+use super::mask::MASK_OPTIONS;
 use super::motion::{MOTION_OPTIONS, estimate};
 use isophote::engine::Support;
 use isophote::frames::Frames;
@@ -26,6 +27,8 @@ const PREFIX: &str = "org.isophote.";
 pub const WORKING_SPACE: &CStr = c"working_space";
 pub const PROCESS_ALPHA: &str = "process_alpha";
 pub const MASK_APPLY: &str = "mask_apply";
+pub const MASK_FROM: &str = "mask_from";
+pub const MASK_INVERT: &str = "mask_invert";
 pub const REFERENCE_HEIGHT: &str = "reference_height";
 pub const LINES_OUTPUT: &str = "lines_output";
 pub const MOTION_FROM: &str = "motion_from";
@@ -60,6 +63,10 @@ pub enum Target {
     ReferenceHeight,
     /// Use of a connected mask. For hosts that call every clip connected.
     MaskApply,
+    /// Part of the mask's pixels that counts.
+    MaskFrom,
+    /// Use of the mask the other way round.
+    MaskInvert,
     /// Source of motion between frames.
     MotionFrom,
     /// Meaning of the vectors of a connected clip.
@@ -69,7 +76,10 @@ pub enum Target {
 impl Target {
     /// True where it decides nothing where there is no clip but the source.
     pub fn is_of_clips(&self) -> bool {
-        matches!(self, Self::MaskApply | Self::MotionFrom | Self::MotionConvention)
+        matches!(
+            self,
+            Self::MaskApply | Self::MaskFrom | Self::MaskInvert | Self::MotionFrom | Self::MotionConvention
+        )
     }
 }
 
@@ -268,6 +278,8 @@ impl Effect {
         self.add(REFERENCE_HEIGHT, "Reference height", HEIGHT_HINT, "output", Target::ReferenceHeight);
         self.add(PROCESS_ALPHA, "Process alpha", ALPHA_HINT, "output", Target::ProcessAlpha);
         self.add(MASK_APPLY, "Apply mask", MASK_HINT, "output", Target::MaskApply);
+        self.add(MASK_FROM, "Mask from", MASK_FROM_HINT, "output", Target::MaskFrom);
+        self.add(MASK_INVERT, "Invert mask", MASK_INVERT_HINT, "output", Target::MaskInvert);
         for (index, node) in self.nodes.clone().into_iter().enumerate().filter(|(_, node)| node.has_mix()) {
             let name = if index == 0 { MIX.id.to_owned() } else { format!("lines_{}", MIX.id) };
             if let Some((_, param)) = node.param(MIX.id) {
@@ -286,6 +298,7 @@ impl Effect {
             Target::WorkingSpace => {
                 SPACES.iter().map(|space| text(space.map_or(AS_IS, Space::label))).collect()
             }
+            Target::MaskFrom => MASK_OPTIONS.map(CStr::to_owned).to_vec(),
             Target::MotionFrom => MOTION_OPTIONS.map(CStr::to_owned).to_vec(),
             Target::MotionConvention => Convention::PRESETS.iter().map(|c| text(c.label)).collect(),
             _ => Vec::new(),
@@ -342,10 +355,15 @@ const HEIGHT_HINT: &str = "Height in pixels that sizes are meant for: 1080 gives
 const ALPHA_HINT: &str =
     "Filters alpha together with the colour. Off, the result has the alpha of the source.";
 const MASK_HINT: &str = "Lets the mask decide where the effect shows.";
+const MASK_FROM_HINT: &str = "Part of the mask's picture that says where the effect shows.";
+const MASK_INVERT_HINT: &str = "Shows the effect where the mask is dark or transparent.";
 const MOTION_HINT: &str = "Source of the motion by which frames are steadied: the clips Motion and Motion forward, or an \
                            estimate from the pictures.";
 const CONVENTION_HINT: &str = "Program that the motion vectors of the clips come from. One clip is enough: it also stands for \
                                the other direction.";
+
+/// The reference height of new instances, as the other faces have it.
+pub const USUAL_REFERENCE: u32 = 1080;
 
 #[cfg(test)]
 mod tests {

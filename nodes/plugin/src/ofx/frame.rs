@@ -3,6 +3,7 @@
 
 use super::host::Host;
 use crate::pixel_aspect::is_square;
+use isophote::Request;
 use isophote::engine::Rect;
 use isophote::engine::image::MAX_SIDE;
 use isophote_abi::openfx::*;
@@ -103,6 +104,18 @@ impl Frame {
     pub fn canonical_height(&self) -> u32 {
         let height = self.top.map_or(0.0, f64::round);
         if (1.0..=f64::from(MAX_SIDE)).contains(&height) { height as u32 } else { 0 }
+    }
+
+    /// Rendered pixels that a pixel of a length comes to, as the plan's request has it.
+    pub fn length_scale(&self) -> f32 {
+        let [width, height] = self.size();
+        Request {
+            scale: self.scale,
+            reference_height: self.reference_height,
+            canonical_height: self.canonical_height(),
+            ..Request::new(width, height)
+        }
+        .length_scale()
     }
 
     /// Position of its left top corner in the project, in canonical units downwards from the project's; marks are

@@ -80,12 +80,20 @@ impl<'h> Clip<'h> {
             .unwrap_or(1.0)
     }
 
-    /// Its image; `None` where there is none.
+    /// Its image; `None` where there is none, or nothing is connected.
     ///
     /// # Errors
     /// Image format, for one of an unknown depth or unknown components.
     pub fn image(&self, time: f64) -> Outcome<Option<Fetched<'h>>> {
-        let Some(get) = self.host.effects.clipGetImage.filter(|_| !self.is_open()) else { return Ok(None) };
+        if self.is_open() { Ok(None) } else { self.fetch(time) }
+    }
+
+    /// Its image, even where it says that nothing is connected: a preview is rendered for nobody behind it.
+    ///
+    /// # Errors
+    /// As [`Clip::image`].
+    pub fn fetch(&self, time: f64) -> Outcome<Option<Fetched<'h>>> {
+        let Some(get) = self.host.effects.clipGetImage else { return Ok(None) };
         let mut handle = null_mut();
         // SAFETY: a clip that the host gave, and a place for the answer; the null region asks for what the
         // regions of interest named.
@@ -283,19 +291,29 @@ impl<'h> Fetched<'h> {
         }
     }
 
-    /// Alpha of an image as a mask: its alpha or, of one without, its first channel. 0 outside.
+    /// True where an image can have its shape.
+    pub fn is_sound(&self, frame: &Frame) -> bool {
+        self.checked(frame).is_ok()
+    }
+
+    /// Amounts of a mask, each from a pixel of colour and alpha. 0 outside.
     ///
     /// # Errors
     /// As [`Fetched::read`].
-    pub fn read_mask(&self, frame: &Frame, window: Rect) -> Outcome<Vec<f32>> {
-        if self.channels == 4 {
-            let image = self.read(frame, window, GraphInput::Color, Beyond::Zero)?;
-            let mut mask = Vec::new();
-            mask.try_reserve_exact(image.data().len() / 4).map_err(|_| kOfxStatErrMemory)?;
-            mask.extend(image.data().chunks_exact(4).map(|p| p[3]));
-            return Ok(mask);
+    pub fn read_amounts(
+        &self,
+        frame: &Frame,
+        window: Rect,
+        amount: impl Fn([f32; 4]) -> f32,
+    ) -> Outcome<Vec<f32>> {
+        if self.channels == 1 {
+            return Ok(self.read(frame, window, GraphInput::Depth, Beyond::Zero)?.into_data());
         }
-        Ok(self.read(frame, window, GraphInput::Depth, Beyond::Zero)?.into_data())
+        let image = self.read(frame, window, GraphInput::Color, Beyond::Zero)?;
+        let mut amounts = Vec::new();
+        amounts.try_reserve_exact(image.data().len() / 4).map_err(|_| kOfxStatErrMemory)?;
+        amounts.extend(image.data().chunks_exact(4).map(|p| amount([p[0], p[1], p[2], p[3]])));
+        Ok(amounts)
     }
 
     /// Writes the pixels of `image` that this one holds.

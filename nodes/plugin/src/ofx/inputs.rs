@@ -67,9 +67,19 @@ pub struct Inputs<'h> {
     pub identity: bool,
 }
 
-/// The image of a clip, where there is one.
-pub fn fetch<'h>(host: &'h Host, instance: Handle, name: &CStr, time: f64) -> Outcome<Option<Fetched<'h>>> {
-    Clip::of(host, instance, name).map_or(Ok(None), |clip| clip.image(time))
+/// The image of an optional clip, where there is one that can be read: what is of an unknown format counts as none, since
+/// the picture can do without.
+pub fn fetch<'h>(
+    host: &'h Host,
+    instance: Handle,
+    frame: &Frame,
+    name: &CStr,
+    time: f64,
+) -> Outcome<Option<Fetched<'h>>> {
+    match Clip::of(host, instance, name).map_or(Ok(None), |clip| clip.image(time)) {
+        Err(status) if status == kOfxStatErrImageFormat => Ok(None),
+        image => Ok(image?.filter(|image| image.is_sound(frame))),
+    }
 }
 
 /// The guides of an effect that have an image; those of motion where they are wanted.
@@ -77,6 +87,7 @@ pub fn fetch_guides<'h>(
     effect: &Effect,
     host: &'h Host,
     instance: Handle,
+    frame: &Frame,
     time: f64,
     wants_motion: bool,
 ) -> Outcome<Vec<(GraphInput, Fetched<'h>)>> {
@@ -84,7 +95,7 @@ pub fn fetch_guides<'h>(
     for guide in &effect.guides {
         if (wants_motion || !guide.is_motion())
             && let Some(name) = guide_clip(*guide)
-            && let Some(image) = fetch(host, instance, name, time)?
+            && let Some(image) = fetch(host, instance, frame, name, time)?
             && image.suits(*guide)
         {
             guides.push((*guide, image));

@@ -2,15 +2,16 @@
 
 use super::clips::{MASK, OUTPUT, SOURCE, is_connected};
 use super::colours;
-use super::effects::Effect;
+use super::effects::{Effect, Target};
 use super::frame::{Frame, bounded, is_endless};
 use super::host::{Host, Outcome, Properties};
 use super::image::Clip;
 use super::known::{Known, clip_of};
-use super::prepared::Prepared;
-use super::settings::Settings;
+use super::prepared::{Prepared, Quality};
+use super::settings::{Settings, animated};
 use isophote::engine::Rect;
 use isophote::graph::GraphInput;
+use isophote::spec::animates_marks;
 use isophote_abi::openfx::*;
 use std::collections::BTreeMap;
 use std::ffi::{CStr, CString};
@@ -112,7 +113,7 @@ pub fn regions_of_interest(
     let (Some(frame), Some(wanted)) = (frame, wanted) else { return Ok(kOfxStatReplyDefault) };
     let Some(bounds) = frame.pixels(&wanted) else { return Ok(kOfxStatReplyDefault) };
     let region = frame.inside(bounds);
-    if region.is_empty() || settings.is_identity(frame.scale) {
+    if region.is_empty() || settings.is_identity(frame.length_scale()) {
         return Ok(kOfxStatReplyDefault);
     }
     // The first and last line of a field have neighbours in the other field.
@@ -120,9 +121,13 @@ pub fn regions_of_interest(
     let fields = order.is_some_and(|order| order.as_c_str() != kOfxImageFieldNone);
     let mut interest = Interest { answer, frame, fields, rects: BTreeMap::new() };
     let space = colours::working(settings.space);
-    for mut known in Known::connected(effect, host, instance, &settings)? {
+    // Hosts do not say here whether a draft is wanted.
+    let qualities = [Quality::Full, Quality::Draft];
+    let connected = Known::connected(effect, host, instance, &settings)?;
+    for (mut known, quality) in connected.into_iter().flat_map(|known| qualities.map(|q| (known.clone(), q)))
+    {
         known.limit_to_source(host, instance, moment.time);
-        let prepared = Prepared::new(&known, space, &frame, true).map_err(|_| kOfxStatFailed)?;
+        let prepared = Prepared::new(&known, space, &frame, true, quality).map_err(|_| kOfxStatFailed)?;
         let windows = prepared.windows(region);
         for port in prepared.planned.plan().inputs() {
             let window = prepared.host_window(windows[port.image.index()]).union(&region);
@@ -167,8 +172,8 @@ impl Interest<'_> {
     }
 }
 
-/// The result is premultiplied as the source is. Hosts that manage colours are asked for pixels that are
-/// what the working space says.
+/// The result is premultiplied as the source is, and varies from frame to frame where marks move by themselves. Hosts that
+/// manage colours are asked for pixels that are what the working space says.
 ///
 /// # Errors
 /// Failed, when the host has no parameters.
@@ -178,6 +183,10 @@ pub fn clip_preferences(effect: &Effect, host: &Host, instance: Handle, out_args
         .and_then(|clip| clip.properties.string(kOfxImageEffectPropPreMultiplication, 0));
     let answer = host.set(out_args);
     let mut answered = state.is_some_and(|state| answer.answer(kOfxImageEffectPropPreMultiplication, &state));
+    if is_animated(effect, host, instance)? {
+        answer.set_int(kOfxImageEffectFrameVarying, 1);
+        answered = true;
+    }
     let style = host.effect(instance).string(kOfxImageEffectPropColourManagementStyle, 0);
     if style.is_some_and(|style| style.as_c_str() != kOfxImageEffectColourManagementNone) {
         let settings = Settings::read(effect, host, instance, 0.0)?;
@@ -185,6 +194,19 @@ pub fn clip_preferences(effect: &Effect, host: &Host, instance: Handle, out_args
         answered |= space.is_some_and(|s| answer.answer(PREFERRED_COLOURSPACES_OF_SOURCE, s));
     }
     Ok(if answered { kOfxStatOK } else { kOfxStatReplyDefault })
+}
+
+/// True where frames of one and the same picture may differ, at one time or another.
+fn is_animated(effect: &Effect, host: &Host, instance: Handle) -> Outcome<bool> {
+    let decides = effect.controls.iter().any(|control| match control.target {
+        Target::Param(_, param) => animates_marks(param),
+        _ => false,
+    });
+    if !decides {
+        return Ok(false);
+    }
+    let at_all_times = animated(effect, host, instance)?.iter().any(|(_, param)| animates_marks(param));
+    Ok(at_all_times || Settings::read(effect, host, instance, 0.0)?.graph.is_animated())
 }
 
 /// The result is in the source's colour space.
@@ -211,8 +233,10 @@ pub fn is_identity(
     let settings = Settings::read(effect, host, instance, moment.time)?;
     // The scale of the lengths, as when the frame is rendered.
     let frame = Clip::of(host, instance, SOURCE)
-        .and_then(|c| Frame::new(host, c.defined(moment.time), moment.scale, c.aspect(), None));
-    let scale = frame.map_or(moment.scale[1] as f32, |frame| frame.scale);
+        .and_then(|c| Frame::new(host, c.defined(moment.time), moment.scale, c.aspect(), None))
+        .map(|frame| frame.in_project(extent(host, instance).map(|[_, top]| top), moment.time))
+        .map(|frame| frame.for_reference(settings.reference_height));
+    let scale = frame.map_or(moment.scale[1] as f32, |frame| frame.length_scale());
     if !settings.is_identity(scale) {
         return Ok(kOfxStatReplyDefault);
     }

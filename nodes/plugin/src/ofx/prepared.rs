@@ -1,11 +1,32 @@
 //! The plan for a frame, over pixels that are square.
 
 use super::frame::Frame;
+use super::host::Properties;
 use super::known::Known;
 use crate::pixel_aspect::SquarePixels;
 use isophote::engine::plan::{LEAST_ROWS, WORKING_MEMORY};
 use isophote::engine::{Plan, Rect};
 use isophote::{ColourSpace, Planned, Request};
+use isophote_abi::openfx::*;
+
+/// Quality that a host asks for.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Quality {
+    /// The picture as it is.
+    Full,
+    /// A picture of half the size, made larger: for looking at while values change.
+    Draft,
+}
+
+impl Quality {
+    /// Quality that the arguments of a render name.
+    pub fn of(args: Properties<'_>) -> Self {
+        match args.int(kOfxImageEffectPropRenderQualityDraft, 0) {
+            Some(wanted) if wanted != 0 => Self::Draft,
+            _ => Self::Full,
+        }
+    }
+}
 
 /// The plan for a frame, over square pixels.
 #[derive(Debug)]
@@ -26,6 +47,7 @@ impl Prepared {
         space: ColourSpace,
         frame: &Frame,
         premultiplied: bool,
+        quality: Quality,
     ) -> isophote::Result<Self> {
         let plan = |[width, height]: [u32; 2], scale, premultiplied| {
             Planned::new(
@@ -44,6 +66,11 @@ impl Prepared {
                 },
             )
         };
+        if quality == Quality::Draft {
+            let square = SquarePixels::halved(frame.size(), frame.ratio);
+            let planned = plan(square.size(), square.scale, true)?;
+            return Ok(Self { planned, square: Some(square) });
+        }
         if frame.is_square() {
             return Ok(Self { planned: plan(frame.size(), frame.scale, premultiplied)?, square: None });
         }
@@ -131,7 +158,8 @@ mod tests {
                 let has = Guides { motion: vectors, ..Guides::default() };
                 let known = Known::of(&graph, MotionFrom::default(), has, true).unwrap();
                 assert_ne!(known.frames, Frames::NONE);
-                let prepared = Prepared::new(&known, ColourSpace::Linear, &frame, true).unwrap();
+                let prepared =
+                    Prepared::new(&known, ColourSpace::Linear, &frame, true, Quality::Full).unwrap();
                 let rows = prepared.band_rows(whole);
                 let bytes = prepared.planned.plan().peak_bytes(&prepared.windows(Rect { y1: rows, ..whole }));
                 let gib = bytes as f64 / (1_u64 << 30) as f64;
@@ -167,7 +195,8 @@ mod tests {
                     }
                     let (graph, _) = effect.graph(over).unwrap();
                     let known = Known { graph, guides, frames: Frames::NONE };
-                    let prepared = Prepared::new(&known, ColourSpace::Linear, &frame, true).unwrap();
+                    let prepared =
+                        Prepared::new(&known, ColourSpace::Linear, &frame, true, Quality::Full).unwrap();
                     let rows = prepared.band_rows(whole);
                     let middle = (4320 - rows) / 2;
                     let band = Rect { y0: middle, y1: middle + rows, ..whole };

@@ -5,12 +5,13 @@ use super::colours::{Colours, working};
 use super::effects::Effect;
 use super::faults;
 use super::frame::{Bounds, Frame};
-use super::host::{Host, Outcome};
+use super::host::{Host, Outcome, Properties};
 use super::image::{Alpha, Clip, Fetched};
 use super::inputs::{Field, Gathered, Inputs, Named, fetch, fetch_guides};
 use super::instance::{self, Moment};
 use super::known::Known;
-use super::prepared::Prepared;
+use super::mask::MaskRule;
+use super::prepared::{Prepared, Quality};
 use super::settings::Settings;
 use super::stop::Stop;
 use super::threads::FrameThreads;
@@ -30,8 +31,9 @@ use std::sync::Mutex;
 struct RenderAction<'h> {
     inputs: Inputs<'h>,
     settings: Settings,
+    quality: Quality,
     output: Fetched<'h>,
-    mask: Option<Fetched<'h>>,
+    mask: Option<(MaskRule, Fetched<'h>)>,
 }
 
 /// Renders the window that the arguments name.
@@ -39,18 +41,21 @@ struct RenderAction<'h> {
 /// # Errors
 /// Failed without an output, image format for one of an unknown depth, and memory.
 pub fn render(effect: &Effect, host: &Host, instance: Handle, in_args: Handle) -> Outcome {
-    let args = host.set(in_args);
+    report(host, instance, attempt(effect, host, instance, host.set(in_args)))
+}
+
+fn attempt(effect: &Effect, host: &Host, instance: Handle, args: Properties<'_>) -> Result<(), Stop> {
     let moment = Moment::of(args);
-    let output = instance::output(host, instance)?.image(moment.time)?.ok_or(kOfxStatFailed)?;
+    let output = instance::output(host, instance)?.fetch(moment.time)?.ok_or(kOfxStatFailed)?;
     let window = args.ints::<4>(kOfxImageEffectPropRenderWindow).unwrap_or(output.bounds);
     let window = intersection(window, output.bounds);
     if window[0] >= window[2] || window[1] >= window[3] || host.aborted(instance) {
-        return Ok(kOfxStatOK);
+        return Err(Stop::Aborted);
     }
     let clip = Clip::of(host, instance, SOURCE);
     let source = clip.map(|clip| clip.image(moment.time)).transpose()?.flatten();
     let (Some(clip), Some(source)) = (clip, source) else {
-        return clear(host, &output, window).map(|()| kOfxStatOK);
+        return Ok(clear(host, &output, window)?);
     };
     let aspect = source.aspect.unwrap_or_else(|| clip.aspect());
     let mut settings = Settings::read(effect, host, instance, moment.time)?;
@@ -66,7 +71,10 @@ pub fn render(effect: &Effect, host: &Host, instance: Handle, in_args: Handle) -
         // A single channel is coverage, whatever space the colours are in.
         settings.space = Space::Srgb;
     }
-    let mask = if settings.mask_apply { fetch(host, instance, MASK, moment.time)? } else { None };
+    let mask = match settings.mask {
+        Some(rule) => fetch(host, instance, &frame, MASK, moment.time)?.map(|image| (rule, image)),
+        None => None,
+    };
     let wants_motion = host.temporal && settings.graph.frames() != [0, 0];
     let inputs = Inputs {
         host,
@@ -76,13 +84,12 @@ pub fn render(effect: &Effect, host: &Host, instance: Handle, in_args: Handle) -
         field: Field::of(args),
         colours: Colours::of(settings.space, source.alpha != Alpha::Unpremultiplied),
         source,
-        guides: fetch_guides(effect, host, instance, moment.time, wants_motion)?,
+        guides: fetch_guides(effect, host, instance, &frame, moment.time, wants_motion)?,
         convention: settings.convention,
-        identity: settings.is_identity(frame.scale),
+        identity: settings.is_identity(frame.length_scale()),
     };
-    let action = RenderAction { inputs, settings, output, mask };
-    let done = faults::failure(effect).map_or_else(|| action.run(window), |error| Err(Stop::Error(error)));
-    report(host, instance, done)
+    let action = RenderAction { inputs, settings, quality: Quality::of(args), output, mask };
+    faults::failure(effect).map_or_else(|| action.run(window), |error| Err(Stop::Error(error)))
 }
 
 /// The status of a render, with a message on the effect when it failed.
@@ -94,8 +101,8 @@ fn report(host: &Host, instance: Handle, done: Result<(), Stop>) -> Outcome {
         }
         Err(Stop::Aborted) => Ok(kOfxStatOK),
         Err(Stop::Status(status)) => {
-            if status == kOfxStatErrMemory {
-                host.show_failure(instance, "There is not enough memory for a picture of this size.");
+            if let Some(message) = message_of(status) {
+                host.show_failure(instance, message);
             }
             Err(status)
         }
@@ -106,6 +113,20 @@ fn report(host: &Host, instance: Handle, done: Result<(), Stop>) -> Outcome {
                 _ => kOfxStatFailed,
             })
         }
+    }
+}
+
+/// Text for people about a status that a render ended with, and what they can do about it.
+fn message_of(status: OfxStatus) -> Option<&'static str> {
+    match status {
+        s if s == kOfxStatErrMemory => Some(
+            "There is not enough memory for a frame of this size. Use a proxy, or let the host render fewer frames at once.",
+        ),
+        s if s == kOfxStatErrImageFormat => Some(
+            "The source or the result has pixels that Isophote does not know. Give it RGBA, RGB or Alpha of 8 or 16 \
+             bits, half or float.",
+        ),
+        _ => None,
     }
 }
 
@@ -212,11 +233,10 @@ impl RenderAction<'_> {
                 pixel[3] = source[3];
             }
         }
-        if let Some(mask) = &self.mask {
-            let mask = mask.read_mask(&self.inputs.frame, band)?;
+        if let Some((rule, mask)) = &self.mask {
+            let mask = rule.read(mask, &self.inputs.frame, band)?;
             let pixels = image.data_mut().chunks_exact_mut(4).zip(source.data().chunks_exact(4));
             for ((pixel, source), amount) in pixels.zip(mask) {
-                let amount = amount.clamp(0.0, 1.0);
                 for (v, s) in pixel.iter_mut().zip(source) {
                     // Exact at both ends.
                     *v = *v * amount + *s * (1.0 - amount);
@@ -259,8 +279,8 @@ impl Plans {
     }
 
     fn prepared(known: &Known, action: &RenderAction<'_>) -> isophote::Result<Prepared> {
-        let RenderAction { inputs, settings, .. } = action;
-        Prepared::new(known, working(settings.space), &inputs.frame, !inputs.is_straight())
+        let RenderAction { inputs, settings, quality, .. } = action;
+        Prepared::new(known, working(settings.space), &inputs.frame, !inputs.is_straight(), *quality)
     }
 
     /// Images that a band is computed from. Frames are known up to the first that lacks an image.

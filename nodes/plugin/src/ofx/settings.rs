@@ -2,8 +2,9 @@
 //! kept, since hosts change them without a word.
 
 use super::colours::{self, SPACES};
-use super::effects::{Control, Effect, Form, Target};
+use super::effects::{Control, Effect, Form, Target, USUAL_REFERENCE};
 use super::host::{Host, Outcome};
+use super::mask::{MaskFrom, MaskRule};
 use super::motion::MotionFrom;
 use isophote::spec::{Param, Unit};
 use isophote::{Graph, NodeId, Value};
@@ -28,8 +29,8 @@ pub struct Settings {
     pub reference_height: u32,
     /// True where alpha is filtered too.
     pub process_alpha: bool,
-    /// True where a mask counts.
-    pub mask_apply: bool,
+    /// Rule by which a mask is read; none where none counts.
+    pub mask: Option<MaskRule>,
     /// Source of motion between frames.
     pub motion_from: MotionFrom,
     /// Meaning of the vectors of clips.
@@ -51,8 +52,9 @@ impl Settings {
         let values = Values { host, set: host.params(instance)?, time };
         let mut over = false;
         let (mut space, mut as_is) = (host.quirks.space, false);
-        let mut reference_height = 0;
+        let mut reference_height = USUAL_REFERENCE;
         let (mut process_alpha, mut mask_apply) = (false, !host.quirks.all_connected);
+        let mut mask = MaskRule::default();
         let (mut motion_from, mut convention) = (MotionFrom::default(), Convention::OWN);
         for control in &effect.controls {
             let name = &control.name;
@@ -65,10 +67,14 @@ impl Settings {
                 }
                 Target::ReferenceHeight => {
                     let height = values.int(name).and_then(|height| u32::try_from(height).ok());
-                    reference_height = height.unwrap_or_default();
+                    reference_height = height.unwrap_or(reference_height);
                 }
                 Target::ProcessAlpha => process_alpha = values.bool(name).unwrap_or(process_alpha),
                 Target::MaskApply => mask_apply = values.bool(name).unwrap_or(mask_apply),
+                Target::MaskFrom => {
+                    mask.from = values.index(name).and_then(MaskFrom::at).unwrap_or_default();
+                }
+                Target::MaskInvert => mask.inverted = values.bool(name).unwrap_or_default(),
                 Target::MotionFrom => {
                     motion_from = values.index(name).and_then(MotionFrom::at).unwrap_or_default();
                 }
@@ -101,7 +107,7 @@ impl Settings {
             as_is,
             reference_height,
             process_alpha,
-            mask_apply,
+            mask: mask_apply.then_some(mask),
             motion_from,
             convention,
             least,
