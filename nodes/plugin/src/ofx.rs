@@ -17,17 +17,24 @@ mod image;
 mod inputs;
 mod instance;
 mod known;
+#[cfg(test)]
+mod labels;
+mod look_effect;
+mod looks;
 mod mask;
 mod motion;
 mod needed;
 mod prepared;
+mod preset_files;
 #[cfg(test)]
 mod promised;
 mod quirks;
 mod render;
 mod settings;
+mod shipped;
 mod stop;
 mod threads;
+mod values;
 
 use crate::abi::guard::lock;
 use crate::abi::threads::forget_pools;
@@ -130,10 +137,12 @@ fn act_on_library(number: usize, action: &CStr) -> Option<Outcome> {
         a if a == kOfxActionUnload => {
             lock(&SLOTS[number]).fetched = None;
             forget_pools();
+            preset_files::forget_all();
             Some(Ok(kOfxStatOK))
         }
         a if a == kOfxActionPurgeCaches => {
             forget_pools();
+            preset_files::forget_all();
             Some(Ok(kOfxStatOK))
         }
         _ => None,

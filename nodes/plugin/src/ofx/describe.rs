@@ -4,6 +4,7 @@ use super::clips::{MASK, OUTPUT, SOURCE, guide_clip, guide_label};
 use super::colours::SPACES;
 use super::effects::{Control, Effect, Target, USUAL_REFERENCE};
 use super::host::{Host, Outcome, Properties};
+use super::look_effect::DEFAULT;
 use isophote::Value;
 use isophote::spec::{ImageKind, Param, Unit, animates_marks};
 use isophote::value::decimal;
@@ -73,8 +74,8 @@ pub fn describe(effect: &'static Effect, host: &Host, descriptor: Handle) -> Out
 /// The controls that decide about clip preferences: which colour space is asked for, and whether marks move by themselves.
 fn preference_controls(effect: &'static Effect) -> Vec<&'static CStr> {
     let decides = |control: &&Control| match control.target {
-        Target::WorkingSpace => true,
-        Target::Param(_, param) => animates_marks(param),
+        Target::WorkingSpace | Target::Shown | Target::File | Target::TimesRead => true,
+        Target::Param(_, param) | Target::Own(param) => animates_marks(param),
         _ => false,
     };
     effect.controls.iter().filter(decides).map(|control| control.name.as_c_str()).collect()
@@ -218,6 +219,18 @@ fn define_control(
             Value::Choice(default) => choice(define(kOfxParamTypeChoice)?, control, default),
             Value::Color(_) => colour(define(kOfxParamTypeRGBA)?, param),
         },
+        Target::Own(param) => {
+            let set = number(define(kOfxParamTypeDouble)?, param);
+            if animates_marks(param) {
+                set.set_int(kOfxParamPropAnimates, 0);
+            }
+            set
+        }
+        Target::Look => look(choice(define(kOfxParamTypeChoice)?, control, 0), host.quirks.tells_of_edits),
+        Target::Shown => choice(define(kOfxParamTypeChoice)?, control, DEFAULT),
+        Target::File => file(define(kOfxParamTypeString)?),
+        Target::Reload => define(kOfxParamTypePushButton)?,
+        Target::TimesRead => counter(define(kOfxParamTypeInteger)?),
         Target::LinesOutput | Target::MaskFrom | Target::MotionFrom | Target::MotionConvention => {
             choice(define(kOfxParamTypeChoice)?, control, 0)
         }
@@ -303,5 +316,39 @@ fn choice<'h>(set: Properties<'h>, control: &'static Control, default: usize) ->
     }
     set.set_int(kOfxParamPropDefault, default as c_int);
     set.set_int(kOfxParamPropAnimates, 0);
+    set
+}
+
+/// The choice of a look, hidden where the effect would not hear of it.
+fn look(set: Properties<'_>, is_heard: bool) -> Properties<'_> {
+    set.set_int(kOfxParamPropEvaluateOnChange, 0);
+    if !is_heard {
+        set.set_int(kOfxParamPropSecret, 1);
+    }
+    set
+}
+
+/// The path of a file that must be there.
+fn file(set: Properties<'_>) -> Properties<'_> {
+    set.set_string(kOfxParamPropDefault, 0, c"");
+    set.set_string(kOfxParamPropStringMode, 0, kOfxParamStringIsFilePath);
+    set.set_int(kOfxParamPropStringFilePathExists, 1);
+    set.set_int(kOfxParamPropAnimates, 0);
+    set
+}
+
+/// A number that nobody sees.
+fn counter(set: Properties<'_>) -> Properties<'_> {
+    for (name, value) in [
+        (kOfxParamPropDefault, 0),
+        (kOfxParamPropMin, 0),
+        (kOfxParamPropMax, c_int::MAX),
+        (kOfxParamPropDisplayMin, 0),
+        (kOfxParamPropDisplayMax, c_int::MAX),
+        (kOfxParamPropAnimates, 0),
+        (kOfxParamPropSecret, 1),
+    ] {
+        set.set_int(name, value);
+    }
     set
 }
