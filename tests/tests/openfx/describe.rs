@@ -17,7 +17,8 @@ const CONTEXTS: [&CStr; 2] = [kOfxImageEffectContextFilter, kOfxImageEffectConte
 pub fn every_node_that_can_be_an_effect_is_one(binary: &Binary) {
     let found: BTreeSet<String> = binary.plugins().iter().map(|p| p.identifier()).collect();
     assert_eq!(found.len(), binary.plugins().len());
-    let wanted: BTreeSet<String> = expected().iter().map(|effect| identifier(effect.node)).collect();
+    let mut wanted: BTreeSet<String> = expected().iter().map(|effect| identifier(effect.node)).collect();
+    wanted.insert("org.isophote.look".to_owned());
     assert_eq!(found, wanted);
     for node in isophote::registry::nodes().iter().filter(|n| n.group == "styles") {
         assert!(found.contains(&identifier(node)), "{}", node.id);
@@ -159,6 +160,7 @@ pub fn controls_are_the_parameters_of_the_nodes(binary: &Binary, effect: Expecte
         if general && effect.node.is_steady() {
             names.extend(["motion_from", "motion_convention"].map(str::to_owned));
         }
+        names.extend((effect.node.group == "styles").then(|| "look".to_owned()));
         names.extend(effect.is_lines().then(|| "lines_output".to_owned()));
         for (node, prefix) in members {
             for param in node.params() {

@@ -88,7 +88,7 @@ fn notice(host: &Host, instance: Handle, settings: &Settings, aloud: bool) {
 
 /// Tells the user why an instance shows no look.
 fn tell(host: &Host, instance: Handle, settings: &Settings) {
-    if let Some(fault) = &settings.fault {
+    if let Some(fault) = &settings.look.fault {
         host.show_failure(instance, fault);
     }
 }
@@ -128,7 +128,7 @@ fn refresh(effect: &Effect, host: &Host, instance: Handle, time: f64, tiles: boo
                 host.temporal && (settings.graph.frames() != [0, 0] || scene.frames == Frames::NONE)
             }
             Target::MotionConvention => scene.reads_vectors && settings.graph.frames() != [0, 0],
-            Target::File | Target::Reload => settings.is_file,
+            Target::File | Target::Reload => settings.look.is_file,
             Target::Own(param) => {
                 !animates_marks(param) || (scene.frames != Frames::NONE && can_be_steady(&settings.graph))
             }

@@ -219,18 +219,12 @@ fn define_control(
             Value::Choice(default) => choice(define(kOfxParamTypeChoice)?, control, default),
             Value::Color(_) => colour(define(kOfxParamTypeRGBA)?, param),
         },
-        Target::Own(param) => {
-            let set = number(define(kOfxParamTypeDouble)?, param);
-            if animates_marks(param) {
-                set.set_int(kOfxParamPropAnimates, 0);
-            }
-            set
-        }
+        Target::Own(param) => own(number(define(kOfxParamTypeDouble)?, param), param),
         Target::Look => look(choice(define(kOfxParamTypeChoice)?, control, 0), host.quirks.tells_of_edits),
         Target::Shown => choice(define(kOfxParamTypeChoice)?, control, DEFAULT),
         Target::File => file(define(kOfxParamTypeString)?),
         Target::Reload => define(kOfxParamTypePushButton)?,
-        Target::TimesRead => counter(define(kOfxParamTypeInteger)?),
+        Target::TimesRead => hidden(count(define(kOfxParamTypeInteger)?, 0, [c_int::MAX; 2])),
         Target::LinesOutput | Target::MaskFrom | Target::MotionFrom | Target::MotionConvention => {
             choice(define(kOfxParamTypeChoice)?, control, 0)
         }
@@ -239,18 +233,7 @@ fn define_control(
             choice(define(kOfxParamTypeChoice)?, control, default)
         }
         Target::ReferenceHeight => {
-            let set = define(kOfxParamTypeInteger)?;
-            for (name, value) in [
-                (kOfxParamPropDefault, USUAL_REFERENCE as c_int),
-                (kOfxParamPropMin, 0),
-                (kOfxParamPropMax, MOST_HEIGHT),
-                (kOfxParamPropDisplayMin, 0),
-                (kOfxParamPropDisplayMax, USUAL_HEIGHT),
-                (kOfxParamPropAnimates, 0),
-            ] {
-                set.set_int(name, value);
-            }
-            set
+            count(define(kOfxParamTypeInteger)?, USUAL_REFERENCE as c_int, [MOST_HEIGHT, USUAL_HEIGHT])
         }
         Target::ProcessAlpha | Target::MaskInvert => switch(define(kOfxParamTypeBoolean)?, false),
         Target::MaskApply => switch(define(kOfxParamTypeBoolean)?, !host.quirks.all_connected),
@@ -322,10 +305,7 @@ fn choice<'h>(set: Properties<'h>, control: &'static Control, default: usize) ->
 /// The choice of a look, hidden where the effect would not hear of it.
 fn look(set: Properties<'_>, is_heard: bool) -> Properties<'_> {
     set.set_int(kOfxParamPropEvaluateOnChange, 0);
-    if !is_heard {
-        set.set_int(kOfxParamPropSecret, 1);
-    }
-    set
+    if is_heard { set } else { hidden(set) }
 }
 
 /// The path of a file that must be there.
@@ -337,18 +317,31 @@ fn file(set: Properties<'_>) -> Properties<'_> {
     set
 }
 
-/// A number that nobody sees.
-fn counter(set: Properties<'_>) -> Properties<'_> {
+/// A whole number from 0 on that is never animated, with the most that it and its slider can be.
+fn count(set: Properties<'_>, default: c_int, [most, usual]: [c_int; 2]) -> Properties<'_> {
     for (name, value) in [
-        (kOfxParamPropDefault, 0),
+        (kOfxParamPropDefault, default),
         (kOfxParamPropMin, 0),
-        (kOfxParamPropMax, c_int::MAX),
+        (kOfxParamPropMax, most),
         (kOfxParamPropDisplayMin, 0),
-        (kOfxParamPropDisplayMax, c_int::MAX),
+        (kOfxParamPropDisplayMax, usual),
         (kOfxParamPropAnimates, 0),
-        (kOfxParamPropSecret, 1),
     ] {
         set.set_int(name, value);
+    }
+    set
+}
+
+/// A parameter that nobody sees.
+fn hidden(set: Properties<'_>) -> Properties<'_> {
+    set.set_int(kOfxParamPropSecret, 1);
+    set
+}
+
+/// A number of the effect's own. Hosts ask once for all times what steadiness decides about.
+fn own<'h>(set: Properties<'h>, param: &Param) -> Properties<'h> {
+    if animates_marks(param) {
+        set.set_int(kOfxParamPropAnimates, 0);
     }
     set
 }

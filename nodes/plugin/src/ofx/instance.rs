@@ -200,7 +200,7 @@ pub fn clip_preferences(effect: &Effect, host: &Host, instance: Handle, out_args
 fn is_animated(effect: &Effect, host: &Host, instance: Handle) -> Outcome<bool> {
     if effect.form == Form::Look {
         let settings = Settings::read(effect, host, instance, 0.0)?;
-        return Ok(settings.varies || settings.graph.is_animated());
+        return Ok(settings.look.varies || settings.graph.is_animated());
     }
     let decides = effect.controls.iter().any(|control| match control.target {
         Target::Param(_, param) => animates_marks(param),
@@ -242,7 +242,7 @@ pub fn is_identity(
         .map(|frame| frame.for_reference(settings.reference_height));
     let scale = frame.map_or(moment.scale[1] as f32, |frame| frame.length_scale());
     // A fault is told when a frame is rendered.
-    if !settings.is_identity(scale) || settings.fault.is_some() {
+    if !settings.is_identity(scale) || settings.look.fault.is_some() {
         return Ok(kOfxStatReplyDefault);
     }
     let answer = host.set(out_args);

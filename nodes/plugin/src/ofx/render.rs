@@ -88,7 +88,7 @@ fn attempt(effect: &Effect, host: &Host, instance: Handle, args: Properties<'_>)
         convention: settings.convention,
         identity: settings.is_identity(frame.length_scale()),
     };
-    let fault = settings.fault.take();
+    let fault = settings.look.fault.take();
     let action = RenderAction { inputs, settings, quality: Quality::of(args), output, mask };
     faults::failure(effect).map_or_else(|| action.run(window), |error| Err(Stop::Error(error)))?;
     fault.map_or(Ok(()), |fault| Err(Stop::PassedOn(fault)))
@@ -225,7 +225,7 @@ impl RenderAction<'_> {
     /// The filter's result with the source's alpha, unless alpha is filtered too, and under the mask.
     fn finished(&self, result: Image, band: Rect) -> Outcome<Image> {
         let keep_alpha = !self.settings.process_alpha && self.inputs.source.alpha != Alpha::Opaque;
-        let mix = self.settings.mix;
+        let mix = self.settings.look.mix;
         if !keep_alpha && self.mask.is_none() && mix == 1.0 {
             return Ok(result);
         }

@@ -36,17 +36,30 @@ pub struct Settings {
     pub motion_from: MotionFrom,
     /// Meaning of the vectors of clips.
     pub convention: Convention,
-    /// Share of the result in the picture, where the effect and none of its nodes has it.
+    /// Settings that the effect for looks alone has.
+    pub look: OfLook,
+    /// Numbers that must be 0 for the values to leave the picture as it is: the least of those that do so at
+    /// 0. The first is a plain number, the second a length in pixels of the full-size picture.
+    least: [f32; 2],
+}
+
+/// Settings of an instance that shows any graph.
+#[derive(Debug)]
+pub struct OfLook {
+    /// Share of the result in the picture.
     pub mix: f32,
-    /// True where values differ from frame to frame that no control shows.
+    /// True where values of the graph differ from frame to frame, which no control shows.
     pub varies: bool,
     /// True where the graph comes from a file.
     pub is_file: bool,
     /// Reason why the source is passed on as it is, and what to do, for people.
     pub fault: Option<String>,
-    /// Numbers that must be 0 for the values to leave the picture as it is: the least of those that do so at
-    /// 0. The first is a plain number, the second a length in pixels of the full-size picture.
-    least: [f32; 2],
+}
+
+impl Default for OfLook {
+    fn default() -> Self {
+        Self { mix: 1.0, varies: false, is_file: false, fault: None }
+    }
 }
 
 /// Lengths below this share of a rendered pixel count as 0.
@@ -59,11 +72,8 @@ impl Settings {
     /// Failed, when the host has no parameters or the graph refuses a value.
     pub fn read(effect: &Effect, host: &Host, instance: Handle, time: f64) -> Outcome<Self> {
         let values = Values::of(host, instance, time)?;
-        let mut over = false;
         let (mut space, mut as_is) = (host.quirks.space, false);
-        let mut reference_height = USUAL_REFERENCE;
-        let (mut process_alpha, mut mask_apply) = (false, !host.quirks.all_connected);
-        let mut mask = MaskRule::default();
+        let (mut reference_height, mut over, mut process_alpha) = (USUAL_REFERENCE, false, false);
         let (mut motion_from, mut convention) = (MotionFrom::default(), Convention::OWN);
         for control in &effect.controls {
             let name = &control.name;
@@ -79,11 +89,6 @@ impl Settings {
                     reference_height = height.unwrap_or(reference_height);
                 }
                 Target::ProcessAlpha => process_alpha = values.bool(name).unwrap_or(process_alpha),
-                Target::MaskApply => mask_apply = values.bool(name).unwrap_or(mask_apply),
-                Target::MaskFrom => {
-                    mask.from = values.index(name).and_then(MaskFrom::at).unwrap_or_default();
-                }
-                Target::MaskInvert => mask.inverted = values.bool(name).unwrap_or_default(),
                 Target::MotionFrom => {
                     motion_from = values.index(name).and_then(MotionFrom::at).unwrap_or_default();
                 }
@@ -91,13 +96,7 @@ impl Settings {
                     let listed = values.index(name).and_then(|i| Convention::PRESETS.get(i));
                     convention = *listed.unwrap_or(&convention);
                 }
-                Target::Param(..)
-                | Target::Look
-                | Target::Shown
-                | Target::File
-                | Target::Reload
-                | Target::TimesRead
-                | Target::Own(_) => {}
+                _ => {}
             }
         }
         let (mut graph, ids) = effect.graph(over).map_err(|_| kOfxStatFailed)?;
@@ -122,13 +121,10 @@ impl Settings {
             as_is,
             reference_height,
             process_alpha,
-            mask: mask_apply.then_some(mask),
+            mask: mask(effect, &values),
             motion_from,
             convention,
-            mix: 1.0,
-            varies: false,
-            is_file: false,
-            fault: None,
+            look: OfLook::default(),
             least,
         };
         Ok(if effect.form == Form::Look { settings.showing_look(instance, &values) } else { settings })
@@ -143,10 +139,7 @@ impl Settings {
             graph: shown.graph,
             ids: Vec::new(),
             reference_height: if shown.in_pixels { 0 } else { self.reference_height },
-            mix,
-            varies: shown.varies,
-            is_file: shown.is_file,
-            fault: shown.fault,
+            look: OfLook { mix, varies: shown.varies, is_file: shown.is_file, fault: shown.fault },
             least: if is_source { [0.0; 2] } else { [f32::INFINITY; 2] },
             ..self
         }
@@ -162,6 +155,20 @@ impl Settings {
     pub fn is_identity(&self, scale: f32) -> bool {
         self.least[0] == 0.0 || self.least[1] * scale < LEAST_LENGTH
     }
+}
+
+/// Rule by which a mask is read, where one counts.
+fn mask(effect: &Effect, values: &Values<'_>) -> Option<MaskRule> {
+    let (mut applies, mut rule) = (!values.host.quirks.all_connected, MaskRule::default());
+    for Control { name, target, .. } in &effect.controls {
+        match target {
+            Target::MaskApply => applies = values.bool(name).unwrap_or(applies),
+            Target::MaskFrom => rule.from = values.index(name).and_then(MaskFrom::at).unwrap_or_default(),
+            Target::MaskInvert => rule.inverted = values.bool(name).unwrap_or_default(),
+            _ => {}
+        }
+    }
+    applies.then_some(rule)
 }
 
 /// The parameters that have values of their own at different times, each with the position of its node.
