@@ -49,6 +49,7 @@ const SHAPES: &[(&CStr, char, i32)] = &[
     (kOfxImageClipPropIsMask, 'i', 1),
     (kOfxImageClipPropConnected, 'i', 1),
     (kOfxParamPropAnimates, 'i', 1),
+    (kOfxImageEffectFrameVarying, 'i', 1),
     (kOfxParamPropEnabled, 'i', 1),
     (kOfxParamPropEvaluateOnChange, 'i', 1),
     (kOfxParamPropSecret, 'i', 1),
