@@ -2,8 +2,9 @@
 //!
 //! Thin: [`effects`] derives what there is from the nodes' declarations, [`describe`] describes it to hosts,
 //! [`settings`], [`known`], [`image`] and [`inputs`] read what hosts have, [`crate::pixel_aspect`] makes their pixels square,
-//! and [`render`] runs the plan that is [`prepared`]. Nothing is kept between calls but the host's functions, so that
-//! any action may come on any thread, in any number.
+//! and [`render`] runs the plan that is [`prepared`]. [`shipped`] lists the looks, [`looks`] sets the controls of a
+//! style to one, and [`look_effect`] finds what the effect for looks shows. Nothing is kept between calls but the host's
+//! functions and [`preset_files`], so that any action may come on any thread, in any number.
 
 mod clips;
 mod colours;

@@ -50,7 +50,7 @@ fn graph_of(name: &str) -> Graph {
     Graph::from_json(&style.graph().and_then(|graph| graph.to_json()).expect("a graph")).expect("it is whole")
 }
 
-/// What the C table makes of the picture of the tests.
+/// Result of the C table for the picture of the tests.
 fn wanted(graph: &Graph, layout: Layout) -> Vec<u8> {
     through(graph, &source(layout, false), layout, ColourSpace::Srgb)
 }

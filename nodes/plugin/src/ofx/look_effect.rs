@@ -31,7 +31,7 @@ pub fn own_numbers() -> [Option<&'static Param>; 2] {
 
 const STEADINESS: &str = "steadiness";
 
-/// What an instance shows at a time.
+/// Graph that an instance shows at a time, with all that is known of it.
 #[derive(Debug)]
 pub struct Shown {
     /// The graph with its values.

@@ -15,7 +15,7 @@ pub struct Values<'h> {
 }
 
 impl<'h> Values<'h> {
-    /// Those of an instance.
+    /// Values of an instance at a time.
     ///
     /// # Errors
     /// Failed, when the host has no parameters.
