@@ -82,6 +82,8 @@ const OF_THE_BINARY: &[OfTheBinary] = named! {
     looks::an_edit_makes_a_look_custom,
     looks::the_effect_for_looks_shows_all_that_ships,
     looks::the_effect_for_looks_is_mixed_and_steadied,
+    looks::lengths_of_looks_are_those_of_apply,
+    looks::projects_are_told_of_files_and_clips_that_are_gone,
     looks::files_are_shown_and_faults_of_theirs_told,
     looks::files_are_read_again_when_they_change_or_the_user_asks,
     quirks::a_scale_counts_wherever_the_host_says_it,

@@ -2,6 +2,7 @@
 
 use crate::reference::*;
 use crate::render::{SIZE, through};
+use isophote::graph::GraphInput;
 use isophote::preset::{LOOKS, Look};
 use isophote::{ColourSpace, Graph};
 use isophote_abi::openfx::*;
@@ -10,7 +11,7 @@ use isophote_tests::library;
 use isophote_tests::ofx::effect::{Described, Instance, Wanted};
 use isophote_tests::ofx::host::Host;
 use isophote_tests::ofx::objects::Effect;
-use isophote_tests::ofx::picture::Layout;
+use isophote_tests::ofx::picture::{Layout, Picture};
 use isophote_tests::ofx::plugin::Binary;
 use isophote_tests::ofx::properties::{Set, Value};
 use isophote_tests::ofx::state::Behaviour;
@@ -54,6 +55,22 @@ fn graph_of(name: &str) -> Graph {
 fn wanted(graph: &Graph, layout: Layout) -> Vec<u8> {
     through(graph, &source(layout, false), layout, ColourSpace::Srgb)
 }
+
+/// The same for lengths that are meant at 1080 lines, as `apply` has them, of a picture that is a proxy of 1080.
+fn wanted_at_1080(graph: &Graph, picture: &Picture) -> Vec<u8> {
+    let through = Through {
+        graph,
+        size: LARGE,
+        scale: 1.0,
+        space: ColourSpace::Srgb,
+        premultiplied: true,
+        reference_height: 1080,
+    };
+    through.c(&[("color", &picture.packed(), picture.layout)], picture.layout)
+}
+
+/// A picture that has something left of lengths at 1080 lines.
+const LARGE: [i32; 2] = [96, 360];
 
 fn in_host<'h>(host: &'h Host, binary: &Binary, id: &str, context: &CStr) -> Instance<'h> {
     let instance = Described::new(host, binary.plugin(id)).instance(context);
@@ -233,6 +250,73 @@ pub fn the_effect_for_looks_shows_all_that_ships(binary: &Binary) {
         assert!(instance.render(layout, SIZE).packed() == wanted(&graph, layout), "{name}");
     }
     assert!(!instance.is_enabled("file") && !instance.is_enabled("reload"));
+    host.no_faults();
+}
+
+pub fn lengths_of_looks_are_those_of_apply(binary: &Binary) {
+    let host = Host::new(Behaviour::default());
+    let layout = Layout::default();
+    let picture =
+        Picture::packed_in(layout, LARGE[0], LARGE[1], &packed(&scene(LARGE[0], LARGE[1], true), &layout));
+    let graph = graph_of(&LOOKS[0].name());
+    let wanted = wanted_at_1080(&graph, &picture);
+    let instance = in_host(&host, binary, LOOK_EFFECT, CONTEXTS[0]);
+    let style = in_host(&host, binary, "org.isophote.cartoon", CONTEXTS[0]);
+    instance.set("reference_height", 1080);
+    style.edit("look", 1);
+    for instance in [&instance, &style] {
+        instance.connect("Source", picture.clone());
+        assert!(instance.render(layout, LARGE).packed() == wanted);
+    }
+    // Lengths in pixels stay so.
+    let folder = tempfile::TempDir::new().expect("a folder");
+    let path = folder.path().join("pixels.json");
+    let pixels = LOOKS[0].json.replace("\"relative\"", "\"pixels\"");
+    assert_ne!(pixels, LOOKS[0].json);
+    std::fs::write(&path, pixels).expect("it can be written");
+    instance.edit("look", 0);
+    OfFile { instance: &instance, host: &host }.choose(&path);
+    let in_pixels = instance.render(layout, LARGE).packed();
+    instance.edit("look", 1);
+    instance.set("reference_height", 0);
+    assert!(in_pixels != wanted && in_pixels == instance.render(layout, LARGE).packed());
+    host.no_faults();
+}
+
+pub fn projects_are_told_of_files_and_clips_that_are_gone(binary: &Binary) {
+    let host = Host::new(Behaviour::default());
+    let described = Described::new(&host, binary.plugin(LOOK_EFFECT));
+    let said = || host.inner.messages.lock().expect("messages").clone();
+    let saved = [("look", Value::from(0)), ("file", c"/no/such/dusk.json".into())];
+    let instance = described.saved_instance(CONTEXTS[1], &saved);
+    assert!(said().len() == 1 && said()[0].contains("dusk.json is missing"), "{:?}", said());
+    instance.edit("look", 1);
+    assert!(said().is_empty(), "{:?}", said());
+    // A look of a later release.
+    instance.edit("look", 1000);
+    assert!(said().len() == 1 && said()[0].contains("Update Isophote"), "{:?}", said());
+    instance.edit("look", 0);
+    // A graph that cannot do without a clip.
+    let mut graph = Graph::new();
+    let map = graph.add("map", "flow_map").expect("a node");
+    let style = graph.add("style", "painting").expect("a style");
+    graph.connect_input(GraphInput::Flow, map, "color").expect("a port");
+    graph.connect_input(GraphInput::Color, style, "color").expect("a port");
+    graph.connect(map, style, "tensor").expect("a port");
+    graph.set_output(style).expect("an output");
+    let folder = tempfile::TempDir::new().expect("a folder");
+    let path = folder.path().join("painted.json");
+    std::fs::write(&path, graph.to_json().expect("text")).expect("it can be written");
+    OfFile { instance: &instance, host: &host }.choose(&path);
+    assert!(said().len() == 1 && said()[0].contains("needs the clip Flow"), "{:?}", said());
+    let layout = Layout::default();
+    plain(&instance);
+    instance.connect("Source", source(layout, false));
+    let untouched = instance.render(layout, SIZE).packed();
+    assert!(untouched == source(layout, false).packed());
+    instance.connect("Flow", source(layout, true));
+    assert!(instance.render(layout, SIZE).packed() != untouched);
+    assert!(said().is_empty(), "{:?}", said());
     host.no_faults();
 }
 
