@@ -65,6 +65,7 @@ compare! {
     kOfxImageEffectPropRenderWindow kOfxImageEffectPropFieldToRender
     kOfxImageEffectPropRegionOfDefinition kOfxImageEffectPropRegionOfInterest kOfxParamTypeInteger
     kOfxParamTypeDouble kOfxParamTypeBoolean kOfxParamTypeChoice kOfxParamTypeRGBA
+    kOfxImageEffectFrameVarying kOfxImageEffectPropRenderQualityDraft
     kOfxParamTypeString kOfxParamTypePushButton kOfxParamPropEvaluateOnChange kOfxParamPropSecret
     kOfxParamPropStringMode kOfxParamPropStringFilePathExists kOfxParamStringIsFilePath
     kOfxParamTypeGroup kOfxParamTypePage kOfxParamPropAnimates kOfxParamPropScriptName

@@ -12,6 +12,9 @@ use std::sync::{Arc, Mutex};
 
 pub(super) const MAGIC: u64 = 0x0ef_fec7;
 
+/// Values by time.
+type Keys = Vec<(f64, Value)>;
+
 /// A parameter, described or with a value.
 #[derive(Debug)]
 pub struct Param {
@@ -24,7 +27,7 @@ pub struct Param {
     pub set: Box<Set>,
     pub(super) value: Mutex<Vec<Value>>,
     /// Values from a time on, in the order of time; without any, `value` holds at all times.
-    pub(super) keys: Mutex<Vec<(f64, Value)>>,
+    pub(super) keys: Mutex<Keys>,
     /// Texts that plugins were given.
     pub(super) lent: Mutex<Vec<CString>>,
     /// Address of its instance; 0 where it is described.
@@ -49,7 +52,7 @@ pub struct Step {
     /// Its label; none for what was set outside a step.
     pub label: Option<CString>,
     /// Parameters that the plugin set, each with the values and keys of before.
-    pub(super) before: Vec<(CString, Vec<Value>, Vec<(f64, Value)>)>,
+    pub(super) before: Vec<(CString, Vec<Value>, Keys)>,
 }
 
 impl Step {
