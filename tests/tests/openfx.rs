@@ -83,6 +83,7 @@ const OF_THE_BINARY: &[OfTheBinary] = named! {
     looks::the_effect_for_looks_shows_all_that_ships,
     looks::the_effect_for_looks_is_mixed_and_steadied,
     looks::lengths_of_looks_are_those_of_apply,
+    looks::tiles_are_supported_as_the_look_allows,
     looks::projects_are_told_of_files_and_clips_that_are_gone,
     looks::files_are_shown_and_faults_of_theirs_told,
     looks::files_are_read_again_when_they_change_or_the_user_asks,

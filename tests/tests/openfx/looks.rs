@@ -253,6 +253,24 @@ pub fn the_effect_for_looks_shows_all_that_ships(binary: &Binary) {
     host.no_faults();
 }
 
+pub fn tiles_are_supported_as_the_look_allows(binary: &Binary) {
+    let host = Host::new(Behaviour::default());
+    let layout = Layout::default();
+    let instance = in_host(&host, binary, LOOK_EFFECT, CONTEXTS[0]);
+    let is_of =
+        |style: &str| LOOKS.iter().position(|look| look.preset().is_ok_and(|preset| preset.style == style));
+    for (style, tiles) in [("cartoon", 1), ("coherent", 0), ("ink", 1)] {
+        instance.edit("look", is_of(style).expect("a look of the style") as i32 + 1);
+        assert_eq!(instance.effect.set.int(kOfxImageEffectPropSupportsTiles), Some(tiles), "{style}");
+        let whole = instance.render(layout, SIZE);
+        let part = [7, 3, 29, 20];
+        let (status, tile) = instance.try_render(layout, SIZE, &Wanted::new(part));
+        assert_eq!(status, kOfxStatOK);
+        assert!(tile.crop(part).packed() == whole.crop(part).packed(), "{style}");
+    }
+    host.no_faults();
+}
+
 pub fn lengths_of_looks_are_those_of_apply(binary: &Binary) {
     let host = Host::new(Behaviour::default());
     let layout = Layout::default();
