@@ -2,8 +2,9 @@
 //!
 //! Thin: [`effects`] derives what there is from the nodes' declarations, [`describe`] describes it to hosts,
 //! [`settings`], [`known`], [`image`] and [`inputs`] read what hosts have, [`crate::pixel_aspect`] makes their pixels square,
-//! and [`render`] runs the plan that is [`prepared`]. Nothing is kept between calls but the host's functions, so that
-//! any action may come on any thread, in any number.
+//! and [`render`] runs the plan that is [`prepared`]. [`shipped`] lists the looks, [`looks`] sets the controls of a
+//! style to one, and [`look_effect`] finds what the effect for looks shows. Nothing is kept between calls but the host's
+//! functions and [`preset_files`], so that any action may come on any thread, in any number.
 
 mod clips;
 mod colours;
@@ -17,17 +18,24 @@ mod image;
 mod inputs;
 mod instance;
 mod known;
+#[cfg(test)]
+mod labels;
+mod look_effect;
+mod looks;
 mod mask;
 mod motion;
 mod needed;
 mod prepared;
+mod preset_files;
 #[cfg(test)]
 mod promised;
 mod quirks;
 mod render;
 mod settings;
+mod shipped;
 mod stop;
 mod threads;
+mod values;
 
 use crate::abi::guard::lock;
 use crate::abi::threads::forget_pools;
@@ -130,10 +138,12 @@ fn act_on_library(number: usize, action: &CStr) -> Option<Outcome> {
         a if a == kOfxActionUnload => {
             lock(&SLOTS[number]).fetched = None;
             forget_pools();
+            preset_files::forget_all();
             Some(Ok(kOfxStatOK))
         }
         a if a == kOfxActionPurgeCaches => {
             forget_pools();
+            preset_files::forget_all();
             Some(Ok(kOfxStatOK))
         }
         _ => None,
