@@ -18,6 +18,8 @@ mod describe;
 mod draft;
 #[path = "openfx/film.rs"]
 mod film;
+#[path = "openfx/look_files.rs"]
+mod look_files;
 #[path = "openfx/looks.rs"]
 mod looks;
 #[path = "openfx/memory.rs"]
@@ -85,8 +87,8 @@ const OF_THE_BINARY: &[OfTheBinary] = named! {
     looks::lengths_of_looks_are_those_of_apply,
     looks::tiles_are_supported_as_the_look_allows,
     looks::projects_are_told_of_files_and_clips_that_are_gone,
-    looks::files_are_shown_and_faults_of_theirs_told,
-    looks::files_are_read_again_when_they_change_or_the_user_asks,
+    look_files::files_are_shown_and_faults_of_theirs_told,
+    look_files::files_are_read_again_when_they_change_or_the_user_asks,
     quirks::a_scale_counts_wherever_the_host_says_it,
     regions::a_host_without_tiles_may_give_parts_all_the_same,
     regions::regions_shrink_with_the_scale,

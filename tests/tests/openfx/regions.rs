@@ -66,12 +66,12 @@ pub fn tiles_from_their_regions_of_interest_equal_the_full_frame(binary: &Binary
 }
 
 /// True for a region that holds all that is needed of the picture for a window. Drafts, which hosts do not announce, look at
-/// larger pixels, and may need half as much more around it.
+/// pixels twice as large, and may need twice as much around it.
 fn is_enough(region: [i32; 4], needed: [i32; 4], window: [i32; 4]) -> bool {
     (0..4).all(|side| {
         let sign = if side < 2 { -1 } else { 1 };
         let around = (needed[side] - window[side]) * sign;
-        (0..=around / 2 + 8).contains(&((region[side] - needed[side]) * sign))
+        (0..=around + 8).contains(&((region[side] - needed[side]) * sign))
     })
 }
 
