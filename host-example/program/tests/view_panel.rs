@@ -263,7 +263,7 @@ fn one_look_is_used_on_many_pictures_and_what_failed_is_named() {
     let first = Box::new(Opened::Pictures(Box::new(shown)));
     session.take_over(Outcome::Opened(Opened::OfSeveral(first, files.to_vec(), None)));
     let mut harness = harness(session);
-    harness.get_by_label("Use this look on 2 pictures");
+    assert!(harness.query_all_by_label("Use this look on 2 pictures").count() > 0, "no dialog");
     harness.get_by_label("Choose a look first.");
     harness.state_mut().choose(1);
     harness.run_ok();

@@ -131,7 +131,8 @@ mod tests {
         assert_eq!(a.drawing(), Icon::new("gaussian", "smoothing").drawing());
         for side in [16, SIDE, 512] {
             let picture = a.raster(side);
-            assert_eq!(picture.get_pixel(0, 0)[3], 0);
+            // The frame is round, and a pixel of a small picture holds some of it.
+            assert!(picture.get_pixel(0, 0)[3] < 64, "{side}");
             assert_eq!(picture.get_pixel(side / 2, side / 2)[3], 255);
         }
     }

@@ -475,7 +475,7 @@ struct LayerJob<'a> {
     window: &'a Window<'a>,
 }
 
-/// Guides that a style can use, whether or not they are connected.
+/// Guides that a style can use, each once, whether or not they are connected.
 ///
 /// # Errors
 /// [`isophote_files::error::Error::Failure`] when the library fails.
@@ -489,7 +489,10 @@ pub fn usable_guides(library: &Library, style: &Style) -> Result<Vec<Guide>> {
         for port in spec.inputs {
             let is_read = |guide: &Guide| (guide.id(), guide.kind()) == (port.id, port.kind);
             let guide = Guide::ALL.into_iter().find(is_read);
-            guides.extend(guide.filter(|guide| is_steady || !guide.is_motion()));
+            // Several nodes may read one.
+            let is_new = |guide: &Guide| !guides.contains(guide) && (is_steady || !guide.is_motion());
+            let guide = guide.filter(is_new);
+            guides.extend(guide);
         }
     }
     Ok(guides)

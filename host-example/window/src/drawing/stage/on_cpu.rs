@@ -97,7 +97,9 @@ impl Stage {
             Some((request, source, scene)) => Made { request, source, scene, ..made },
             None => made,
         });
-        let is_new = made != self.made || session.record.limit.is_some();
+        // A look that is turned back to, or was never left, is there before it is told of.
+        let is_told = session.record.present().is_some();
+        let is_new = made != self.made || !is_told || session.record.limit.is_some();
         let is_there = processed.is_complete() || !has_looks;
         let is_news = made.is_some() && is_new && is_there;
         let spent = if has_looks { processed.spent() } else { Duration::ZERO };
