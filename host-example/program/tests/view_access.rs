@@ -288,7 +288,7 @@ fn letters_among_the_looks_search_and_arrows_walk() {
     window.key("Down");
     becomes(&mut window, &bus, (BUTTON, "Copperplate"), "focused");
     window.key("Return");
-    window.shows("photo.png", "look:copperplate");
+    window.shows("photo.png", "Copperplate");
     window.close();
     assert_eq!(window.said(), "");
 }
