@@ -18,7 +18,7 @@ pub fn show(
     ui.horizontal(|ui| {
         ui.set_min_height(height);
         // Both ends are laid out in the order in which they are read.
-        let taken = order::width_at_right(ui, name) + ui.spacing().item_spacing.x;
+        let taken = order::known(ui, name) + ui.spacing().item_spacing.x;
         let room = ui.available_width() - taken;
         ScrollArea::horizontal().id_salt(name).max_width(room.max(0.0)).show(ui, |ui| {
             let size = vec2(ui.available_width(), height);

@@ -6,7 +6,7 @@ use egui::{Id, Panel, Rect, Ui, UiBuilder, vec2};
 /// Controls that end at the right of a row, in the order in which they are seen. Their width is that of the frame before, so
 /// the first one is laid out twice.
 pub fn at_right(ui: &mut Ui, salt: &str, content: impl FnOnce(&mut Ui)) {
-    let known = width_at_right(ui, salt);
+    let known = known(ui, salt);
     let room = ui.available_rect_before_wrap();
     let left = (room.right() - known).max(room.left());
     let place = Rect::from_min_max(egui::pos2(left, room.top()), room.max);
@@ -18,19 +18,35 @@ pub fn at_right(ui: &mut Ui, salt: &str, content: impl FnOnce(&mut Ui)) {
         content(ui);
         ui.min_rect().width()
     });
-    if (width.inner - known).abs() > 0.5 {
-        ui.data_mut(|data| data.insert_temp(id_of(salt), width.inner));
-        ui.ctx().request_discard("controls at the right have another width");
-    }
+    keep(ui, salt, known, width.inner);
 }
 
-/// Width of the controls at the right of a row in the frame before.
-pub fn width_at_right(ui: &Ui, salt: &str) -> f32 {
+/// Controls at the lower end of a column, below what scrolls in the height that is left to it.
+pub fn at_bottom(ui: &mut Ui, salt: &str, content: impl FnOnce(&mut Ui)) {
+    let height = ui.scope(content).response.rect.height();
+    keep(ui, salt, known(ui, salt), height);
+}
+
+/// Height that is left above the controls at the lower end, whose own is that of the frame before.
+pub fn height_above(ui: &Ui, salt: &str) -> f32 {
+    (ui.available_height() - known(ui, salt) - ui.spacing().item_spacing.y).max(0.0)
+}
+
+/// Length of an end in the frame before: its width at the right of a row, its height below a column.
+pub fn known(ui: &Ui, salt: &str) -> f32 {
     ui.data(|data| data.get_temp(id_of(salt))).unwrap_or(0.0)
 }
 
+/// Keeps the length of an end; what was laid out with another is laid out once more.
+fn keep(ui: &Ui, salt: &str, known: f32, length: f32) {
+    if (length - known).abs() > 0.5 {
+        ui.data_mut(|data| data.insert_temp(id_of(salt), length));
+        ui.ctx().request_discard("controls at an end have another length");
+    }
+}
+
 fn id_of(salt: &str) -> Id {
-    Id::unique(("width at the right", salt))
+    Id::unique(("length of the end", salt))
 }
 
 /// Room of a panel.

@@ -4,7 +4,7 @@ use std::sync::Arc;
 
 use egui::{CollapsingHeader, RichText, ScrollArea, Ui};
 
-use super::{chain, control, hint, histogram, keyboard, layers, lighting, theme};
+use super::{chain, control, hint, histogram, keyboard, layers, lighting, order, theme};
 use crate::state::look::Parameter;
 use crate::state::resetting::Goal;
 use crate::state::session::{Session, TURNS};
@@ -15,11 +15,10 @@ const OPEN: [&str; 2] = ["look", ""];
 /// Shows the panel.
 pub fn show(ui: &mut Ui, session: &mut Session) {
     let height = ui.available_height();
-    let below = egui::Panel::bottom("histogram").frame(egui::Frame::new()).resizable(false);
-    below.show_separator_line(false).show(ui, |ui| histogram::show(ui, session, height));
     chooser(ui, session);
     ui.add_space(6.0);
-    ScrollArea::vertical().auto_shrink([false, false]).show(ui, |ui| {
+    let room = order::height_above(ui, "histogram");
+    ScrollArea::vertical().auto_shrink([false, false]).max_height(room).show(ui, |ui| {
         ui.set_width(ui.available_width() - 10.0);
         let parameters = Arc::clone(session.looks.parameters());
         if session.look().is_plain() {
@@ -45,6 +44,7 @@ pub fn show(ui: &mut Ui, session: &mut Session) {
         ui.add_space(16.0);
         keyboard::follow(ui);
     });
+    order::at_bottom(ui, "histogram", |ui| histogram::show(ui, session, height));
     if session.is_wheeled() {
         // What was turned is let go of then.
         ui.ctx().request_repaint_after(TURNS);
