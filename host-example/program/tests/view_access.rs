@@ -197,7 +197,8 @@ fn moves(window: &mut Window<'_>, bus: &Bus, sigma: &Control) {
     let mut moved = |key: &str, by: f64| {
         let before = bus.value(sigma)[1];
         window.key(key);
-        window.wait_for(key, |_| bus.value(sigma)[1] != before);
+        // The number is told as it is kept, with the digits of a float, a frame after it was given.
+        window.wait_for(key, |_| (bus.value(sigma)[1] - before).abs() > by.abs() * 0.01);
         let changed = bus.value(sigma)[1] - before;
         assert!((changed - by).abs() < by.abs() * 0.51 + 1e-6, "{key}: {changed}, not {by}");
     };

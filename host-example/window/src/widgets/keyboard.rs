@@ -3,7 +3,10 @@
 use std::ops::RangeInclusive;
 
 use egui::emath::Numeric;
-use egui::{Context, Event, EventFilter, FocusDirection, Id, Key, Response, Slider, Stroke, StrokeKind, Ui};
+use egui::{
+    Context, Event, EventFilter, FocusDirection, Id, Key, Response, Role, Slider, Stroke, StrokeKind, Ui,
+    WidgetInfo,
+};
 
 use super::theme;
 
@@ -100,8 +103,10 @@ pub fn moved(
             now = Some(((to / unit).round() * unit).clamp(least, most));
         }
     });
-    if now.is_some() {
+    if let Some(value) = now {
         stay(ui);
+        // The slider has told where its own keys would have moved it.
+        slider.widget_info(|| WidgetInfo { value: Some(value), ..WidgetInfo::new(Role::Slider) });
     }
     now
 }
