@@ -72,6 +72,15 @@ fn what_is_dropped_opens_and_what_cannot_be_opened_leaves_what_was_there() {
     drops(&display, &window, &[&at("mine.json")]);
     window.shows("a photo, größer.png", "mine");
     window.changes("the look that was dropped", CANVAS, &before);
+    // Nothing is taken behind a dialog.
+    let before = window.settled(CANVAS);
+    window.key("F1");
+    window.changes("the help", CANVAS, &before);
+    drops(&display, &window, &[&at("second.png")]);
+    std::thread::sleep(PAUSE);
+    window.key("Escape");
+    window.becomes("the picture without the help", CANVAS, &before);
+    assert!(window.title().starts_with("a photo, größer.png"), "{}", window.title());
     // The first that opens is shown.
     drops(&display, &window, &[&at("broken.png"), &at("second.png"), &at("a photo, größer.png")]);
     window.shows("second.png", "mine");

@@ -356,7 +356,7 @@ impl ApplicationHandler<Event> for App {
                 Ok(())
             }
             WindowEvent::DroppedFile(path) => {
-                if !self.session.dialogs.leaving.is_shown() {
+                if self.session.takes_files() {
                     self.session.work.ask(Request::Open(path));
                 }
                 Ok(())

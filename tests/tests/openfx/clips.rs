@@ -2,7 +2,7 @@
 
 use crate::reference::*;
 use isophote_abi::openfx::*;
-use isophote_tests::ofx::effect::{Described, Wanted};
+use isophote_tests::ofx::effect::{Described, Instance, Wanted};
 use isophote_tests::ofx::host::Host;
 use isophote_tests::ofx::picture::{Layout, Picture};
 use isophote_tests::ofx::plugin::Binary;
@@ -62,14 +62,20 @@ pub fn pixels_that_cannot_be_read_are_told_of(binary: &Binary) {
     host.no_faults();
 }
 
+/// An effect on a picture, with clips beside it.
+fn blurring<'h>(host: &'h Host, binary: &Binary, source: &Picture) -> Instance<'h> {
+    let described = Described::new(host, binary.plugin("org.isophote.gaussian"));
+    let instance = described.instance(kOfxImageEffectContextGeneral);
+    plain(&instance);
+    instance.connect("Source", source.clone());
+    instance
+}
+
 pub fn a_mask_may_be_any_part_of_its_picture(binary: &Binary) {
     let host = Host::new(Behaviour::default());
     let layout = Layout::default();
-    let described = Described::new(&host, binary.plugin("org.isophote.gaussian"));
-    let instance = described.instance(kOfxImageEffectContextGeneral);
-    plain(&instance);
     let source = source(layout, true);
-    instance.connect("Source", source.clone());
+    let instance = blurring(&host, binary, &source);
     let full = values(&instance.render(layout, SIZE).packed(), &layout);
     let before = values(&source.packed(), &layout);
     let pixel = [0.8_f32, 0.4, 0.1, 0.6];
@@ -101,11 +107,8 @@ pub fn a_mask_may_be_any_part_of_its_picture(binary: &Binary) {
 pub fn an_inverted_mask_shows_the_effect_beside_its_picture(binary: &Binary) {
     let host = Host::new(Behaviour::default());
     let layout = Layout::default();
-    let described = Described::new(&host, binary.plugin("org.isophote.gaussian"));
-    let instance = described.instance(kOfxImageEffectContextGeneral);
-    plain(&instance);
     let source = source(layout, true);
-    instance.connect("Source", source.clone());
+    let instance = blurring(&host, binary, &source);
     let full = instance.render(layout, SIZE);
     let mask = Layout { components: kOfxImageComponentAlpha, ..layout };
     let half = 1.0_f32.to_ne_bytes().repeat((WIDTH / 2 * HEIGHT) as usize);

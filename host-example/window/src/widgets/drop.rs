@@ -11,7 +11,7 @@ use crate::state::session::Session;
 pub fn show(context: &Context, session: &Session) {
     let files: Vec<PathBuf> =
         context.input(|input| input.raw.hovered_files.iter().filter_map(|file| file.path.clone()).collect());
-    if files.is_empty() || session.dialogs.leaving.is_shown() {
+    if files.is_empty() || !session.takes_files() {
         return;
     }
     let window = context.content_rect();

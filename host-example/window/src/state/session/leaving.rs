@@ -53,6 +53,11 @@ impl Session {
         }
     }
 
+    /// True where files that are dropped on the window are taken: not behind a dialog.
+    pub fn takes_files(&self) -> bool {
+        !self.dialogs.leaving.is_shown() && !self.has_dialog()
+    }
+
     /// True where a dialog of the window is open, which keys belong to then.
     pub fn has_dialog(&self) -> bool {
         self.dialogs.shows_help
