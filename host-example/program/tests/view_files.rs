@@ -84,6 +84,8 @@ fn what_is_dropped_opens_and_what_cannot_be_opened_leaves_what_was_there() {
     // The first that opens is shown.
     drops(&display, &window, &[&at("broken.png"), &at("second.png"), &at("a photo, größer.png")]);
     window.shows("second.png", "mine");
+    // Several offer the look for all of them, in a dialog.
+    window.key("Escape");
     drops(&display, &window, &[&at("shot")]);
     window.shows("shot.####.png", "mine");
     window.close();

@@ -218,7 +218,7 @@ test("saving gives all pixels", async () => {
   await drop(page, [{ name: "wide.png", type: "image/png", data: photo(2700, 20) }]);
   await opened(page, "wide.png, 2700 × 20");
   const [download] = await Promise.all([page.waitForEvent("download"), page.getByRole("button", { name: "Save PNG" }).click()]);
-  assert.equal(download.suggestedFilename(), "wide-gaussian.png");
+  assert.equal(download.suggestedFilename(), "wide-gaussian-blur.png");
   assert.deepEqual(sizeOf(readFileSync(await download.path())), [2700, 20]);
   await page.close();
 });
