@@ -49,6 +49,14 @@ pub struct Notes {
     notes: Vec<Note>,
 }
 
+impl Note {
+    /// Time until it goes away by itself; `None` where it stays until it is mended or dismissed.
+    fn left(&self) -> Option<Duration> {
+        let stays = if self.place.is_some() { STAYS_LONG } else { STAYS };
+        (!self.is_bad).then(|| stays.saturating_sub(self.since.elapsed()))
+    }
+}
+
 impl Notes {
     /// Adds a note of something that was done.
     pub fn say(&mut self, text: impl Into<String>) {
@@ -109,10 +117,14 @@ impl Notes {
 
     /// Notes in the order in which they came, which are shown now.
     pub fn present(&mut self) -> &[Note] {
-        let stays = |note: &Note| if note.place.is_some() { STAYS_LONG } else { STAYS };
-        self.notes.retain(|note| note.is_bad || note.since.elapsed() < stays(note));
+        self.notes.retain(|note| note.left().is_none_or(|left| !left.is_zero()));
         self.notes.iter_mut().for_each(|note| note.is_seen = true);
         &self.notes
+    }
+
+    /// Time until the next note goes away by itself.
+    pub fn next_end(&self) -> Option<Duration> {
+        self.notes.iter().filter_map(Note::left).min()
     }
 
     /// Removes a note.
@@ -120,5 +132,20 @@ impl Notes {
         if index < self.notes.len() {
             self.notes.remove(index);
         }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn what_stays_has_no_end_to_wait_for() {
+        let mut notes = Notes::default();
+        notes.complain(&Error::failure("it is damaged", "use an intact file"));
+        assert_eq!(notes.next_end(), None);
+        notes.say("It is saved");
+        assert!(notes.next_end().is_some_and(|left| left <= STAYS));
+        assert_eq!(notes.present().len(), 2);
     }
 }

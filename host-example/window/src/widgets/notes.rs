@@ -57,8 +57,8 @@ pub fn show(context: &egui::Context, rect: Rect, session: &mut Session) {
     if let Some(index) = dismissed {
         session.notes.dismiss(index);
     }
-    // What goes away by itself must be seen to go.
-    context.request_repaint_after(std::time::Duration::from_secs(1));
+    // What goes away by itself must be seen to go; what stays draws nothing anew.
+    session.notes.next_end().into_iter().for_each(|left| context.request_repaint_after(left));
 }
 
 /// Lets programs that read the window aloud say a message when it comes.
