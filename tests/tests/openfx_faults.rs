@@ -5,7 +5,13 @@
 
 #[path = "openfx/allocations.rs"]
 mod allocations;
+#[path = "openfx/card_faults.rs"]
+mod card_faults;
 
+use card_faults::{
+    a_card_that_is_lost_is_opened_anew_but_not_for_ever, a_card_without_memory_leaves_frames_to_the_cpu,
+    a_copy_of_the_process_computes_on_the_cpu, machines_without_a_card_compute_on_the_cpu,
+};
 use isophote_abi::openfx::*;
 use isophote_tests::library;
 use isophote_tests::ofx::effect::{Described, Wanted};
@@ -31,13 +37,17 @@ macro_rules! named {
     ($($test:ident)*) => { [$((stringify!($test), $test)),*] };
 }
 
-const TESTS: [(&str, fn()); 6] = named! {
+const TESTS: [(&str, fn()); 10] = named! {
     a_panic_becomes_a_status_and_the_host_goes_on
     failures_are_shown_once_through_whatever_messages_there_are
     bad_calls_are_answered
     allocations_of_this_process_are_counted
     a_thousand_instances_of_all_effects_leak_nothing
     a_hundred_loads_leak_nothing
+    a_card_that_is_lost_is_opened_anew_but_not_for_ever
+    a_card_without_memory_leaves_frames_to_the_cpu
+    machines_without_a_card_compute_on_the_cpu
+    a_copy_of_the_process_computes_on_the_cpu
 };
 
 fn main() -> ExitCode {

@@ -2,14 +2,17 @@
 //!
 //! Thin: [`effects`] derives what there is from the nodes' declarations, [`describe`] describes it to hosts,
 //! [`settings`], [`known`], [`image`] and [`inputs`] read what hosts have, [`crate::pixel_aspect`] makes their pixels square,
-//! and [`render`] runs the plan that is [`prepared`]. Nothing is kept between calls but the host's functions, so that
-//! any action may come on any thread, in any number.
+//! and [`render`] runs the plan that is [`prepared`] by its [`executors`]. Nothing is kept between calls but the host's
+//! functions and the [`device`] of a graphics card, so that any action may come on any thread, in any number.
 
+mod card;
 mod clips;
 mod colours;
 mod controls;
 mod describe;
+mod device;
 mod effects;
+mod executors;
 mod faults;
 mod frame;
 mod host;
@@ -129,10 +132,12 @@ fn act_on_library(number: usize, action: &CStr) -> Option<Outcome> {
         }
         a if a == kOfxActionUnload => {
             lock(&SLOTS[number]).fetched = None;
+            device::forget();
             forget_pools();
             Some(Ok(kOfxStatOK))
         }
         a if a == kOfxActionPurgeCaches => {
+            device::forget();
             forget_pools();
             Some(Ok(kOfxStatOK))
         }

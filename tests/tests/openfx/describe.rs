@@ -148,7 +148,10 @@ pub fn controls_are_the_parameters_of_the_nodes(binary: &Binary, effect: Expecte
             _ => vec![(effect.node, "")],
         };
         let mut names: BTreeSet<String> =
-            ["working_space", "process_alpha", "reference_height"].map(str::to_owned).into_iter().collect();
+            ["working_space", "process_alpha", "reference_height", "compute_on", "card", "precision"]
+                .map(str::to_owned)
+                .into_iter()
+                .collect();
         names.extend(
             general
                 .then(|| ["mask_apply", "mask_from", "mask_invert"])

@@ -54,6 +54,9 @@ pub fn changed(effect: &Effect, host: &Host, instance: Handle, in_args: Handle) 
     // A clip of motion makes an estimate, which takes whole pictures, needless.
     let tiles = !of_time && (effect.temporal || !of_clip);
     let settings = refresh(effect, host, instance, time, tiles)?;
+    if settings.card.is_none() {
+        host.card_computes(instance);
+    }
     if is_for(kOfxChangeUserEdited) {
         notice(host, instance, &settings, true);
     }
@@ -107,7 +110,8 @@ fn refresh(effect: &Effect, host: &Host, instance: Handle, time: f64, tiles: boo
                 host.temporal && (settings.graph.frames() != [0, 0] || scene.frames == Frames::NONE)
             }
             Target::MotionConvention => scene.reads_vectors && settings.graph.frames() != [0, 0],
-            Target::LinesOutput | Target::WorkingSpace | Target::ReferenceHeight => true,
+            Target::Card | Target::Precision => settings.card.is_some(),
+            Target::LinesOutput | Target::WorkingSpace | Target::ReferenceHeight | Target::ComputeOn => true,
         };
         enable(host, params, &control.name, has_effect);
     }

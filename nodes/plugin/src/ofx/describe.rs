@@ -218,9 +218,13 @@ fn define_control(
             Value::Choice(default) => choice(define(kOfxParamTypeChoice)?, control, default),
             Value::Color(_) => colour(define(kOfxParamTypeRGBA)?, param),
         },
-        Target::LinesOutput | Target::MaskFrom | Target::MotionFrom | Target::MotionConvention => {
-            choice(define(kOfxParamTypeChoice)?, control, 0)
-        }
+        Target::LinesOutput
+        | Target::MaskFrom
+        | Target::MotionFrom
+        | Target::MotionConvention
+        | Target::ComputeOn
+        | Target::Card
+        | Target::Precision => choice(define(kOfxParamTypeChoice)?, control, 0),
         Target::WorkingSpace => {
             let default = SPACES.iter().position(|space| *space == Some(host.quirks.space)).unwrap_or(0);
             choice(define(kOfxParamTypeChoice)?, control, default)

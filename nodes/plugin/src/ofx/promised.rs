@@ -28,11 +28,15 @@ fn stored(control: &Control) -> String {
             }
         }
         Target::WorkingSpace => format!("choice by the host of {options}"),
-        Target::LinesOutput | Target::MotionFrom | Target::MotionConvention => {
-            format!("choice 0 of {options}")
-        }
+        Target::LinesOutput
+        | Target::MaskFrom
+        | Target::MotionFrom
+        | Target::MotionConvention
+        | Target::ComputeOn
+        | Target::Card
+        | Target::Precision => format!("choice 0 of {options}"),
         Target::ReferenceHeight => "whole number".to_owned(),
-        Target::ProcessAlpha | Target::MaskApply => "switch".to_owned(),
+        Target::ProcessAlpha | Target::MaskApply | Target::MaskInvert => "switch".to_owned(),
     }
 }
 

@@ -1,6 +1,7 @@
 //! The values of an instance's controls at one time, as a graph. Read when they are needed and never
 //! kept, since hosts change them without a word.
 
+use super::card::{CARD, COMPUTE_ON, Card, PRECISION};
 use super::colours::{self, SPACES};
 use super::effects::{Control, Effect, Form, Target, USUAL_REFERENCE};
 use super::host::{Host, Outcome};
@@ -35,6 +36,8 @@ pub struct Settings {
     pub motion_from: MotionFrom,
     /// Meaning of the vectors of clips.
     pub convention: Convention,
+    /// Graphics card that computes; none for the CPU.
+    pub card: Option<Card>,
     /// Numbers that must be 0 for the values to leave the picture as it is: the least of those that do so at
     /// 0. The first is a plain number, the second a length in pixels of the full-size picture.
     least: [f32; 2],
@@ -82,7 +85,7 @@ impl Settings {
                     let listed = values.index(name).and_then(|i| Convention::PRESETS.get(i));
                     convention = *listed.unwrap_or(&convention);
                 }
-                Target::Param(..) => {}
+                Target::Param(..) | Target::ComputeOn | Target::Card | Target::Precision => {}
             }
         }
         let (mut graph, ids) = effect.graph(over).map_err(|_| kOfxStatFailed)?;
@@ -110,6 +113,7 @@ impl Settings {
             mask: mask_apply.then_some(mask),
             motion_from,
             convention,
+            card: values.card(),
             least,
         })
     }
@@ -176,6 +180,11 @@ impl Values<'_> {
     /// The position of a choice's option.
     fn index(&self, name: &CStr) -> Option<usize> {
         usize::try_from(self.int(name)?).ok()
+    }
+
+    /// The graphics card, where the host has the controls and one is chosen.
+    fn card(&self) -> Option<Card> {
+        Card::of([COMPUTE_ON, CARD, PRECISION].map(|name| self.index(name).unwrap_or_default()))
     }
 
     fn bool(&self, name: &CStr) -> Option<bool> {
