@@ -2,7 +2,7 @@
 //!
 //! `parameters.txt` holds it as it was when it was last written. Whatever is gone from it, or is another, would break projects.
 
-use super::effects::{Control, EFFECTS, Effect, Target};
+use super::effects::{Control, EFFECTS, Effect, Target, USUAL_REFERENCE};
 use isophote::Value;
 use std::collections::BTreeMap;
 use std::path::Path;
@@ -35,8 +35,9 @@ fn stored(control: &Control) -> String {
         | Target::ComputeOn
         | Target::Card
         | Target::Precision => format!("choice 0 of {options}"),
-        Target::ReferenceHeight => "whole number".to_owned(),
-        Target::ProcessAlpha | Target::MaskApply | Target::MaskInvert => "switch".to_owned(),
+        Target::ReferenceHeight => format!("whole number {USUAL_REFERENCE}"),
+        Target::ProcessAlpha | Target::MaskInvert => "switch off".to_owned(),
+        Target::MaskApply => "switch by the host".to_owned(),
     }
 }
 
