@@ -10,6 +10,9 @@ use isophote_tests::ofx::state::Behaviour;
 use isophote_tests::{device, library};
 use std::ptr::null_mut;
 
+/// Words of drivers and of wgpu for a device that is lost.
+const LOST: [&str; 2] = ["lost", "destroyed"];
+
 /// Fault that the device is to have.
 fn ask(fault: Option<&str>) {
     set("ISOPHOTE_OFX_DEVICE", fault);
@@ -34,6 +37,8 @@ fn prepare(binary: &Binary) -> (Host, Plugin) {
 fn instance<'h>(host: &'h Host, plugin: Plugin) -> Instance<'h> {
     let instance = Described::new(host, plugin).instance(kOfxImageEffectContextFilter);
     instance.connect("Source", picture(Layout::default()));
+    // Its frames are others than those of the CPU.
+    instance.set("precision", 1);
     instance
 }
 
@@ -50,11 +55,13 @@ fn messages(host: &Host) -> Vec<String> {
     host.inner.messages.lock().unwrap().clone()
 }
 
-/// Holds when there is one message, which says why.
-fn says(host: &Host, why: &str) {
+/// Holds when there is one message, which says why, in one of some words.
+fn says(host: &Host, why: &[&str]) {
     let said = messages(host);
     assert!(
-        said.len() == 1 && said[0].starts_with("The CPU computes here. ") && said[0].contains(why),
+        said.len() == 1
+            && said[0].starts_with("The CPU computes here. ")
+            && why.iter().any(|why| said[0].contains(why)),
         "{said:?}"
     );
 }
@@ -71,13 +78,13 @@ pub fn a_card_that_is_lost_is_opened_anew_but_not_for_ever() {
     let (host, plugin) = prepare(&binary);
     let instance = instance(&host, plugin);
     let (on_cpu, on_card) = (render(&instance, false), render(&instance, true));
-    assert!(on_cpu != on_card, "the frames cannot be told apart");
+    assert!(on_cpu != on_card);
     for _ in 0..2 {
         ask(Some("lost"));
         assert!(render(&instance, true) == on_cpu);
-        says(&host, "lost");
+        says(&host, &LOST);
         assert!(render(&instance, true) == on_cpu);
-        says(&host, "lost");
+        says(&host, &LOST);
         ask(None);
         assert!(render(&instance, true) == on_card && messages(&host).is_empty());
     }
@@ -85,7 +92,7 @@ pub fn a_card_that_is_lost_is_opened_anew_but_not_for_ever() {
     (0..3).for_each(|_| assert!(render(&instance, true) == on_cpu));
     ask(None);
     assert!(render(&instance, true) == on_cpu);
-    says(&host, "lost");
+    says(&host, &LOST);
     purge(plugin);
     assert!(render(&instance, true) == on_card && messages(&host).is_empty());
     drop(instance);
@@ -103,7 +110,7 @@ pub fn a_card_without_memory_leaves_frames_to_the_cpu() {
     let (on_cpu, on_card) = (render(&instance, false), render(&instance, true));
     ask(Some("full"));
     assert!(render(&instance, true) == on_cpu && render(&instance, true) == on_cpu);
-    says(&host, "asked for");
+    says(&host, &["asked for"]);
     ask(None);
     assert!(render(&instance, true) == on_card && messages(&host).is_empty());
     drop(instance);
@@ -121,11 +128,11 @@ pub fn machines_without_a_card_compute_on_the_cpu() {
         set(name, Some("/no/such/driver"));
     }
     assert!(render(&instance, true) == on_cpu && render(&instance, true) == on_cpu);
-    says(&host, "graphics adapter");
+    says(&host, &["graphics adapter"]);
     // It is looked for again when the host purges.
     purge(plugin);
     assert!(render(&instance, true) == on_cpu);
-    says(&host, "graphics adapter");
+    says(&host, &["graphics adapter"]);
     drop(instance);
     host.no_faults();
 }
@@ -156,7 +163,7 @@ pub fn a_copy_of_the_process_computes_on_the_cpu() {
             alarm(120);
             let right = std::panic::catch_unwind(|| {
                 assert!(render(&instance, true) == on_cpu);
-                says(&host, "copy");
+                says(&host, &["copy"]);
                 purge(plugin);
                 assert!(render(&instance, true) == on_cpu);
                 assert_eq!(instance.act(kOfxActionDestroyInstance, None, None), kOfxStatOK);

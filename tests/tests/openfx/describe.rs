@@ -135,6 +135,20 @@ fn check(effect: &Effect, name: &str, param: &Param) {
     assert_eq!(found, 1, "{name}");
 }
 
+/// Names of the controls that are no parameters of nodes.
+fn own_controls(effect: Expected, general: bool) -> BTreeSet<String> {
+    let mut names =
+        vec!["working_space", "process_alpha", "reference_height", "compute_on", "card", "precision"];
+    if general {
+        names.extend(["mask_apply", "mask_from", "mask_invert"]);
+    }
+    if general && effect.node.is_steady() {
+        names.extend(["motion_from", "motion_convention"]);
+    }
+    names.extend(effect.is_lines().then_some("lines_output"));
+    names.into_iter().map(str::to_owned).collect()
+}
+
 pub fn controls_are_the_parameters_of_the_nodes(binary: &Binary, effect: Expected) {
     let host = Host::new(Behaviour::default());
     let described = Described::new(&host, effect.plugin(binary));
@@ -147,22 +161,7 @@ pub fn controls_are_the_parameters_of_the_nodes(binary: &Binary, effect: Expecte
             _ if effect.is_lines() => vec![(effect.node, ""), (find("composite_lines"), "lines_")],
             _ => vec![(effect.node, "")],
         };
-        let mut names: BTreeSet<String> =
-            ["working_space", "process_alpha", "reference_height", "compute_on", "card", "precision"]
-                .map(str::to_owned)
-                .into_iter()
-                .collect();
-        names.extend(
-            general
-                .then(|| ["mask_apply", "mask_from", "mask_invert"])
-                .into_iter()
-                .flatten()
-                .map(str::to_owned),
-        );
-        if general && effect.node.is_steady() {
-            names.extend(["motion_from", "motion_convention"].map(str::to_owned));
-        }
-        names.extend(effect.is_lines().then(|| "lines_output".to_owned()));
+        let mut names = own_controls(effect, general);
         for (node, prefix) in members {
             for param in node.params() {
                 let name = format!("{prefix}{}", param.id);

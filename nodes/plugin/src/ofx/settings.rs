@@ -56,8 +56,7 @@ impl Settings {
         let mut over = false;
         let (mut space, mut as_is) = (host.quirks.space, false);
         let mut reference_height = USUAL_REFERENCE;
-        let (mut process_alpha, mut mask_apply) = (false, !host.quirks.all_connected);
-        let mut mask = MaskRule::default();
+        let mut process_alpha = false;
         let (mut motion_from, mut convention) = (MotionFrom::default(), Convention::OWN);
         for control in &effect.controls {
             let name = &control.name;
@@ -73,11 +72,6 @@ impl Settings {
                     reference_height = height.unwrap_or(reference_height);
                 }
                 Target::ProcessAlpha => process_alpha = values.bool(name).unwrap_or(process_alpha),
-                Target::MaskApply => mask_apply = values.bool(name).unwrap_or(mask_apply),
-                Target::MaskFrom => {
-                    mask.from = values.index(name).and_then(MaskFrom::at).unwrap_or_default();
-                }
-                Target::MaskInvert => mask.inverted = values.bool(name).unwrap_or_default(),
                 Target::MotionFrom => {
                     motion_from = values.index(name).and_then(MotionFrom::at).unwrap_or_default();
                 }
@@ -85,7 +79,7 @@ impl Settings {
                     let listed = values.index(name).and_then(|i| Convention::PRESETS.get(i));
                     convention = *listed.unwrap_or(&convention);
                 }
-                Target::Param(..) | Target::ComputeOn | Target::Card | Target::Precision => {}
+                _ => {}
             }
         }
         let (mut graph, ids) = effect.graph(over).map_err(|_| kOfxStatFailed)?;
@@ -110,7 +104,7 @@ impl Settings {
             as_is,
             reference_height,
             process_alpha,
-            mask: mask_apply.then_some(mask),
+            mask: mask(effect, &values),
             motion_from,
             convention,
             card: values.card(),
@@ -128,6 +122,20 @@ impl Settings {
     pub fn is_identity(&self, scale: f32) -> bool {
         self.least[0] == 0.0 || self.least[1] * scale < LEAST_LENGTH
     }
+}
+
+/// Rule by which a mask is read, where one counts.
+fn mask(effect: &Effect, values: &Values<'_>) -> Option<MaskRule> {
+    let (mut applies, mut rule) = (!values.host.quirks.all_connected, MaskRule::default());
+    for Control { name, target, .. } in &effect.controls {
+        match target {
+            Target::MaskApply => applies = values.bool(name).unwrap_or(applies),
+            Target::MaskFrom => rule.from = values.index(name).and_then(MaskFrom::at).unwrap_or_default(),
+            Target::MaskInvert => rule.inverted = values.bool(name).unwrap_or_default(),
+            _ => {}
+        }
+    }
+    applies.then_some(rule)
 }
 
 /// The parameters that have values of their own at different times, each with the position of its node.
