@@ -1,6 +1,6 @@
 //! Graphics cards that fail: lost, without memory, not there, or in a process that was forked. The CPU computes the frame.
 
-use super::{SIZE, picture};
+use crate::small::{SIZE, picture};
 use isophote_abi::openfx::*;
 use isophote_tests::ofx::effect::{Described, Instance, Wanted};
 use isophote_tests::ofx::host::Host;
