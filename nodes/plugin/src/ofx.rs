@@ -2,8 +2,10 @@
 //!
 //! Thin: [`effects`] derives what there is from the nodes' declarations, [`describe`] describes it to hosts,
 //! [`settings`], [`known`], [`image`] and [`inputs`] read what hosts have, [`crate::pixel_aspect`] makes their pixels square,
-//! and [`render`] runs the plan that is [`prepared`] by its [`executors`]. Nothing is kept between calls but the host's
-//! functions and the [`device`] of a graphics card, so that any action may come on any thread, in any number.
+//! and [`render`] runs the plan that is [`prepared`] by its [`executors`]. [`shipped`] lists the looks, [`looks`] sets the
+//! controls of a style to one, and [`look_effect`] finds what the effect for looks shows. Nothing is kept between calls but
+//! the host's functions, [`preset_files`] and the [`device`] of a graphics card, so that any action may come on any thread,
+//! in any number.
 
 mod card;
 mod clips;
@@ -20,17 +22,24 @@ mod image;
 mod inputs;
 mod instance;
 mod known;
+#[cfg(test)]
+mod labels;
+mod look_effect;
+mod looks;
 mod mask;
 mod motion;
 mod needed;
 mod prepared;
+mod preset_files;
 #[cfg(test)]
 mod promised;
 mod quirks;
 mod render;
 mod settings;
+mod shipped;
 mod stop;
 mod threads;
+mod values;
 
 use crate::abi::guard::lock;
 use crate::abi::threads::forget_pools;
@@ -134,11 +143,13 @@ fn act_on_library(number: usize, action: &CStr) -> Option<Outcome> {
             lock(&SLOTS[number]).fetched = None;
             device::forget();
             forget_pools();
+            preset_files::forget_all();
             Some(Ok(kOfxStatOK))
         }
         a if a == kOfxActionPurgeCaches => {
             device::forget();
             forget_pools();
+            preset_files::forget_all();
             Some(Ok(kOfxStatOK))
         }
         _ => None,

@@ -3,6 +3,7 @@
 //! `parameters.txt` holds it as it was when it was last written. Whatever is gone from it, or is another, would break projects.
 
 use super::effects::{Control, EFFECTS, Effect, Target, USUAL_REFERENCE};
+use super::look_effect::DEFAULT;
 use isophote::Value;
 use std::collections::BTreeMap;
 use std::path::Path;
@@ -28,7 +29,13 @@ fn stored(control: &Control) -> String {
             }
         }
         Target::WorkingSpace => format!("choice by the host of {options}"),
-        Target::LinesOutput
+        Target::Own(param) => format!("number {}", param.default.decimals()[0]),
+        Target::Shown => format!("choice {DEFAULT} of {options}"),
+        Target::File => "text".to_owned(),
+        Target::Reload => "button".to_owned(),
+        Target::TimesRead => "whole number 0".to_owned(),
+        Target::Look
+        | Target::LinesOutput
         | Target::MaskFrom
         | Target::MotionFrom
         | Target::MotionConvention

@@ -89,8 +89,10 @@ fn attempt(effect: &Effect, host: &Host, instance: Handle, args: Properties<'_>)
         convention: settings.convention,
         identity: settings.is_identity(frame.length_scale()),
     };
+    let fault = settings.look.fault.take();
     let action = RenderAction { inputs, settings, quality: Quality::of(args), output, mask };
-    faults::failure(effect).map_or_else(|| action.run(window), |error| Err(Stop::Error(error)))
+    faults::failure(effect).map_or_else(|| action.run(window), |error| Err(Stop::Error(error)))?;
+    fault.map_or(Ok(()), |fault| Err(Stop::PassedOn(fault)))
 }
 
 /// The status of a render, with a message on the effect when it failed.
@@ -101,6 +103,10 @@ fn report(host: &Host, instance: Handle, done: Result<(), Stop>) -> Outcome {
             Ok(kOfxStatOK)
         }
         Err(Stop::Aborted) => Ok(kOfxStatOK),
+        Err(Stop::PassedOn(reason)) => {
+            host.show_failure(instance, &reason);
+            Ok(kOfxStatOK)
+        }
         Err(Stop::Status(status)) => {
             if let Some(message) = message_of(status) {
                 host.show_failure(instance, message);
@@ -226,7 +232,8 @@ impl RenderAction<'_> {
     /// The filter's result with the source's alpha, unless alpha is filtered too, and under the mask.
     fn finished(&self, result: Image, band: Rect) -> Outcome<Image> {
         let keep_alpha = !self.settings.process_alpha && self.inputs.source.alpha != Alpha::Opaque;
-        if !keep_alpha && self.mask.is_none() {
+        let mix = self.settings.look.mix;
+        if !keep_alpha && self.mask.is_none() && mix == 1.0 {
             return Ok(result);
         }
         let source = self.inputs.read(band)?;
@@ -240,10 +247,12 @@ impl RenderAction<'_> {
                 pixel[3] = source[3];
             }
         }
-        if let Some((rule, mask)) = &self.mask {
-            let mask = rule.read(mask, &self.inputs.frame, band)?;
+        if self.mask.is_some() || mix != 1.0 {
+            let mask = self.mask.as_ref().map(|(rule, mask)| rule.read(mask, &self.inputs.frame, band));
+            let mask = mask.transpose()?;
             let pixels = image.data_mut().chunks_exact_mut(4).zip(source.data().chunks_exact(4));
-            for ((pixel, source), amount) in pixels.zip(mask) {
+            for (at, (pixel, source)) in pixels.enumerate() {
+                let amount = mask.as_ref().map_or(1.0, |mask| mask[at]) * mix;
                 for (v, s) in pixel.iter_mut().zip(source) {
                     // Exact at both ends.
                     *v = *v * amount + *s * (1.0 - amount);
