@@ -6,6 +6,8 @@
 
 #[path = "openfx/aspect.rs"]
 mod aspect;
+#[path = "openfx/card.rs"]
+mod card;
 #[path = "openfx/clips.rs"]
 mod clips;
 #[path = "openfx/colours.rs"]
@@ -62,6 +64,11 @@ type OfAnEffect = (&'static str, fn(&Binary, Expected));
 /// Tests of the binary, whatever its effects.
 const OF_THE_BINARY: &[OfTheBinary] = named! {
     regions::a_bounding_box_shows_the_marks_of_the_project,
+    card::frames_on_threads_share_a_card_and_stand_purges,
+    card::cards_are_counted_and_one_that_is_not_there_is_told_of,
+    card::the_card_and_its_precision_are_grey_on_the_cpu,
+    card::tiles_on_a_card_are_parts_of_the_frame,
+    card::a_host_that_wants_to_stop_is_heard_while_a_card_computes,
     clips::an_output_that_nobody_takes_is_rendered,
     clips::pixels_that_cannot_be_read_are_told_of,
     clips::a_mask_may_be_any_part_of_its_picture,
@@ -113,6 +120,7 @@ const OF_EVERY_EFFECT: &[OfAnEffect] = named! {
     aspect::oblong_pixels_show_what_square_ones_show,
     aspect::guides_have_oblong_pixels_too,
     aspect::alpha_and_masks_are_those_of_the_hosts_pixels,
+    card::every_effect_equals_the_c_table_on_a_device,
     clips::guides_and_masks_of_unknown_formats_count_as_none,
     draft::drafts_look_like_the_frame_and_their_tiles_are_parts_of_them,
     preferences::marks_that_move_by_themselves_vary_from_frame_to_frame,

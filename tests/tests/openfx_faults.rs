@@ -5,21 +5,29 @@
 
 #[path = "openfx/allocations.rs"]
 mod allocations;
+#[path = "openfx/card_faults.rs"]
+mod card_faults;
+#[path = "openfx/small.rs"]
+mod small;
 
+use card_faults::{
+    a_card_that_is_lost_is_opened_anew_but_not_for_ever, a_card_without_memory_leaves_frames_to_the_cpu,
+    a_copy_of_the_process_computes_on_the_cpu, machines_without_a_card_compute_on_the_cpu,
+};
 use isophote_abi::openfx::*;
 use isophote_tests::library;
 use isophote_tests::ofx::effect::{Described, Wanted};
 use isophote_tests::ofx::host::Host;
-use isophote_tests::ofx::picture::{Layout, Picture};
+use isophote_tests::ofx::picture::Layout;
 use isophote_tests::ofx::plugin::Binary;
 use isophote_tests::ofx::state::Behaviour;
 use isophote_tests::trials::Trials;
+use small::{SIZE, picture};
 use std::ffi::CStr;
 use std::process::{Command, ExitCode};
 use std::ptr::null_mut;
 use std::time::{Duration, Instant};
 
-const SIZE: i32 = 32;
 /// Allocations that the runner of the tests may make or free meanwhile.
 const MOST_OF_OTHERS: i64 = 100;
 
@@ -31,13 +39,17 @@ macro_rules! named {
     ($($test:ident)*) => { [$((stringify!($test), $test)),*] };
 }
 
-const TESTS: [(&str, fn()); 6] = named! {
+const TESTS: [(&str, fn()); 10] = named! {
     a_panic_becomes_a_status_and_the_host_goes_on
     failures_are_shown_once_through_whatever_messages_there_are
     bad_calls_are_answered
     allocations_of_this_process_are_counted
     a_thousand_instances_of_all_effects_leak_nothing
     a_hundred_loads_leak_nothing
+    a_card_that_is_lost_is_opened_anew_but_not_for_ever
+    a_card_without_memory_leaves_frames_to_the_cpu
+    machines_without_a_card_compute_on_the_cpu
+    a_copy_of_the_process_computes_on_the_cpu
 };
 
 fn main() -> ExitCode {
@@ -60,12 +72,6 @@ fn in_a_process(name: &str) {
     let printed = [run.stdout, run.stderr].map(|text| String::from_utf8_lossy(&text).into_owned()).concat();
     print!("{printed}");
     assert!(run.status.success(), "{}\n{printed}", run.status);
-}
-
-fn picture(layout: Layout) -> Picture {
-    let values = (0..SIZE * SIZE * 4).map(|i| if i % 4 == 3 { 1.0 } else { (i * 37 % 101) as f32 / 101.0 });
-    let bytes: Vec<u8> = values.flat_map(f32::to_ne_bytes).collect();
-    Picture::packed_in(layout, SIZE, SIZE, &bytes)
 }
 
 /// Bytes of this process that are in memory.

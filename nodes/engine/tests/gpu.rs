@@ -457,6 +457,19 @@ fn several_threads_share_a_device() {
 }
 
 #[test]
+fn adapters_are_counted_from_the_best() {
+    let Some(usual) = device() else { return };
+    let open = |adapter: &str| Device::open(&Options { adapter: Some(adapter.into()), ..Options::default() });
+    // Where a variable asks for another than the best, it is another.
+    if std::env::var_os("ISOPHOTE_ADAPTER").is_none() {
+        assert_eq!(open("#1").unwrap().name(), usual.name());
+    }
+    for none in ["#0", "#99"] {
+        assert!(matches!(open(none), Err(Error::NoDevice(e)) if e.contains(none)));
+    }
+}
+
+#[test]
 fn an_unknown_adapter_is_named() {
     let options = Options { adapter: Some("no such adapter".into()), ..Options::default() };
     let Err(Error::NoDevice(e)) = Device::open(&options) else { panic!("there is no such adapter") };

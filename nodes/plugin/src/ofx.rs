@@ -2,15 +2,19 @@
 //!
 //! Thin: [`effects`] derives what there is from the nodes' declarations, [`describe`] describes it to hosts,
 //! [`settings`], [`known`], [`image`] and [`inputs`] read what hosts have, [`crate::pixel_aspect`] makes their pixels square,
-//! and [`render`] runs the plan that is [`prepared`]. [`shipped`] lists the looks, [`looks`] sets the controls of a
-//! style to one, and [`look_effect`] finds what the effect for looks shows. Nothing is kept between calls but the host's
-//! functions and [`preset_files`], so that any action may come on any thread, in any number.
+//! and [`render`] runs the plan that is [`prepared`] by its [`executors`]. [`shipped`] lists the looks, [`looks`] sets the
+//! controls of a style to one, and [`look_effect`] finds what the effect for looks shows. Nothing is kept between calls but
+//! the host's functions, [`preset_files`] and the [`device`] of a graphics card, so that any action may come on any thread,
+//! in any number.
 
+mod card;
 mod clips;
 mod colours;
 mod controls;
 mod describe;
+mod device;
 mod effects;
+mod executors;
 mod faults;
 mod frame;
 mod host;
@@ -137,11 +141,13 @@ fn act_on_library(number: usize, action: &CStr) -> Option<Outcome> {
         }
         a if a == kOfxActionUnload => {
             lock(&SLOTS[number]).fetched = None;
+            device::forget();
             forget_pools();
             preset_files::forget_all();
             Some(Ok(kOfxStatOK))
         }
         a if a == kOfxActionPurgeCaches => {
+            device::forget();
             forget_pools();
             preset_files::forget_all();
             Some(Ok(kOfxStatOK))

@@ -180,9 +180,11 @@ unsafe extern "C" fn said(handle: *mut c_void, kind: *const c_char, text: *const
     let (kind, text) = unsafe { (owned(kind), owned(text)) };
     match kind.as_deref() {
         Some(kind) if kind == kOfxMessageError => {}
-        // A notice, for which nobody waits.
+        // A notice, for which nobody waits. Only a render finds out that a graphics card is not to be had.
         Some(kind) if kind == kOfxMessageWarning || kind == kOfxMessageMessage => {
-            if state::rendered().is_some() {
+            let of_card = kind == kOfxMessageWarning
+                && text.as_ref().is_some_and(|text| text.to_bytes().starts_with(b"The CPU computes here."));
+            if state::rendered().is_some() && !of_card {
                 effect.host.fault("a notice while a frame is rendered");
             }
         }

@@ -138,7 +138,8 @@ fn check(effect: &Effect, name: &str, param: &Param) {
 
 /// Names of the controls that are no parameters of nodes.
 fn own_controls(effect: Expected, general: bool) -> BTreeSet<String> {
-    let mut names = vec!["working_space", "process_alpha", "reference_height"];
+    let mut names =
+        vec!["working_space", "process_alpha", "reference_height", "compute_on", "card", "precision"];
     if general {
         names.extend(["mask_apply", "mask_from", "mask_invert"]);
     }

@@ -113,9 +113,47 @@ pub struct Through<'a> {
     pub reference_height: u32,
 }
 
+/// A device of the C table's that computes, and how precisely.
+#[derive(Clone, Copy, Default)]
+pub struct On {
+    pub device: IsophoteDevice,
+    pub precision: IsophotePrecision,
+}
+
+impl On {
+    /// A device of the table's, which all tests of this process share; none where there is none and none was required.
+    pub fn device(test: &str) -> Option<IsophoteDevice> {
+        static DEVICE: OnceLock<IsophoteDevice> = OnceLock::new();
+        isophote_tests::device::device(test)?;
+        Some(*DEVICE.get_or_init(|| {
+            let mut device = IsophoteDevice::default();
+            // SAFETY: a place for the handle; there is an adapter.
+            let status = unsafe { (table().api.device_create)(null(), null_mut(), &raw mut device) };
+            assert_eq!(status, ISOPHOTE_OK);
+            device
+        }))
+    }
+
+    /// Sets the precision of a graph.
+    fn prepare(&self, graph: IsophoteGraph) {
+        // SAFETY: a name with a closing zero; the extension of this name is of this type.
+        let status = unsafe {
+            let extension = (table().api.extension)(c"isophote.precision/1".as_ptr());
+            let api = extension.cast::<IsophotePrecisionApi>().as_ref().unwrap();
+            (api.graph_set_precision)(graph, self.precision)
+        };
+        assert_eq!(status, ISOPHOTE_OK);
+    }
+}
+
 impl Through<'_> {
     /// Runs the graph on `inputs`, each packed pixels by the name of their port.
     pub fn c(&self, inputs: &[(&str, &[u8], Layout)], layout: Layout) -> Vec<u8> {
+        self.on(On::default(), inputs, layout)
+    }
+
+    /// The same on a device.
+    pub fn on(&self, on: On, inputs: &[(&str, &[u8], Layout)], layout: Layout) -> Vec<u8> {
         let names: Vec<CString> = inputs.iter().map(|(name, ..)| CString::new(*name).unwrap()).collect();
         let images: Vec<IsophoteInput> = inputs
             .iter()
@@ -129,7 +167,11 @@ impl Through<'_> {
         let IsophoteImage { row_stride, sample, channels, width, height, x, y, .. } =
             self.image(null(), &layout);
         let data = out.as_mut_ptr().cast();
-        self.process(&images, &IsophoteTarget { data, row_stride, sample, channels, width, height, x, y });
+        self.process(
+            on,
+            &images,
+            &IsophoteTarget { data, row_stride, sample, channels, width, height, x, y },
+        );
         out
     }
 
@@ -153,7 +195,7 @@ impl Through<'_> {
         }
     }
 
-    fn process(&self, images: &[IsophoteInput], target: &IsophoteTarget) {
+    fn process(&self, on: On, images: &[IsophoteInput], target: &IsophoteTarget) {
         let api = table().api;
         let json = CString::new(self.graph.to_json().unwrap()).unwrap();
         let mut graph = Default::default();
@@ -169,9 +211,10 @@ impl Through<'_> {
         // SAFETY: text with a closing zero, images of the sizes they name, and places for the answers.
         unsafe {
             assert_eq!((api.graph_create_from_json)(json.as_ptr(), null_mut(), &raw mut graph), ISOPHOTE_OK);
+            on.prepare(graph);
             let status = (api.process)(
                 graph,
-                IsophoteDevice::default(),
+                on.device,
                 &raw const request,
                 images.as_ptr(),
                 images.len() as u32,

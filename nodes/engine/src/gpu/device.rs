@@ -10,7 +10,7 @@ use std::sync::{Arc, Mutex, OnceLock, PoisonError};
 use std::time::Duration;
 
 /// Environment variable that chooses the adapter where [`Options::adapter`] does not: `gpu`,
-/// `software`, or a part of an adapter's name.
+/// `software`, a number such as `#2`, or a part of an adapter's name.
 const ADAPTER_VARIABLE: &str = "ISOPHOTE_ADAPTER";
 
 /// Bytes that a driver may take to be opened, of which those that compute on the CPU take most. Drivers that do not
@@ -20,9 +20,9 @@ const DRIVER: u64 = 1 << 30;
 /// Options for opening a device.
 #[derive(Clone, Debug, Default)]
 pub struct Options {
-    /// `gpu` for hardware only, `software` for a driver on the CPU, anything else for a part of the
-    /// adapter's name in any case. `None` takes the environment variable `ISOPHOTE_ADAPTER`, and
-    /// without one the best adapter there is: hardware before software.
+    /// `gpu` for hardware only, `software` for a driver on the CPU, `#2` for the second adapter, counted from the best
+    /// in one backend, anything else for a part of the adapter's name in any case. `None` takes the environment
+    /// variable `ISOPHOTE_ADAPTER`, and without one the best adapter there is: hardware before software.
     pub adapter: Option<String>,
     /// Ask for timestamps, where the adapter has them ([`Device::has_timestamps`]).
     pub timestamps: bool,
@@ -115,7 +115,8 @@ impl Device {
             ));
         }
         let found: Vec<String> = adapters.iter().map(|a| a.get_info().name).collect();
-        adapters.retain(|a| wanted.as_deref().is_none_or(|w| is_wanted(&a.get_info(), w)));
+        adapters.sort_by_key(|a| rank(a.get_info().device_type));
+        keep_wanted(&mut adapters, wanted.as_deref());
         if adapters.is_empty() {
             return Err(Error::NoDevice(format!(
                 "no graphics adapter matches '{}'; there is {}",
@@ -123,7 +124,6 @@ impl Device {
                 found.join(", ")
             )));
         }
-        adapters.sort_by_key(|a| rank(a.get_info().device_type));
         let mut reason = String::new();
         for adapter in &adapters {
             match Self::request(adapter, options) {
@@ -349,6 +349,20 @@ impl Drop for Device {
             let _ = self.wait(None);
         }
     }
+}
+
+/// Leaves the adapters that are wanted of all, which are in order.
+fn keep_wanted(adapters: &mut Vec<wgpu::Adapter>, wanted: Option<&str>) {
+    let Some(wanted) = wanted else { return };
+    let number = wanted.strip_prefix('#').and_then(|number| number.parse::<usize>().ok());
+    let Some(number) = number else {
+        return adapters.retain(|adapter| is_wanted(&adapter.get_info(), wanted));
+    };
+    // Each backend lists the same cards.
+    let backend = adapters.first().map(|adapter| adapter.get_info().backend);
+    adapters.retain(|adapter| Some(adapter.get_info().backend) == backend);
+    let chosen = number.checked_sub(1).filter(|index| *index < adapters.len());
+    *adapters = chosen.map(|index| adapters.swap_remove(index)).into_iter().collect();
 }
 
 fn is_wanted(info: &wgpu::AdapterInfo, wanted: &str) -> bool {

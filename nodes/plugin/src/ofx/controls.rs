@@ -64,6 +64,9 @@ pub fn changed(effect: &'static Effect, host: &Host, instance: Handle, in_args: 
     // A clip of motion makes an estimate, which takes whole pictures, needless.
     let tiles = !of_time && (effect.temporal || !of_clip);
     let settings = refresh(effect, host, instance, time, tiles)?;
+    if settings.card.is_none() {
+        host.card_computes(instance);
+    }
     if by_user {
         notice(host, instance, &settings, true);
     }
@@ -128,6 +131,7 @@ fn refresh(effect: &Effect, host: &Host, instance: Handle, time: f64, tiles: boo
                 host.temporal && (settings.graph.frames() != [0, 0] || scene.frames == Frames::NONE)
             }
             Target::MotionConvention => scene.reads_vectors && settings.graph.frames() != [0, 0],
+            Target::Card | Target::Precision => settings.card.is_some(),
             Target::File | Target::Reload => settings.look.is_file,
             Target::Own(param) => {
                 !animates_marks(param) || (scene.frames != Frames::NONE && can_be_steady(&settings.graph))
@@ -137,7 +141,8 @@ fn refresh(effect: &Effect, host: &Host, instance: Handle, time: f64, tiles: boo
             | Target::ReferenceHeight
             | Target::Look
             | Target::Shown
-            | Target::TimesRead => true,
+            | Target::TimesRead
+            | Target::ComputeOn => true,
         };
         enable(host, params, &control.name, has_effect);
     }

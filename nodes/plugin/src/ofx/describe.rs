@@ -225,9 +225,13 @@ fn define_control(
         Target::File => file(define(kOfxParamTypeString)?),
         Target::Reload => define(kOfxParamTypePushButton)?,
         Target::TimesRead => hidden(count(define(kOfxParamTypeInteger)?, 0, [c_int::MAX; 2])),
-        Target::LinesOutput | Target::MaskFrom | Target::MotionFrom | Target::MotionConvention => {
-            choice(define(kOfxParamTypeChoice)?, control, 0)
-        }
+        Target::LinesOutput
+        | Target::MaskFrom
+        | Target::MotionFrom
+        | Target::MotionConvention
+        | Target::ComputeOn
+        | Target::Card
+        | Target::Precision => choice(define(kOfxParamTypeChoice)?, control, 0),
         Target::WorkingSpace => {
             let default = SPACES.iter().position(|space| *space == Some(host.quirks.space)).unwrap_or(0);
             choice(define(kOfxParamTypeChoice)?, control, default)

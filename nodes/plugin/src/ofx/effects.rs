@@ -5,6 +5,10 @@
 //! the first node under a prefix, so that neither can ever take the other's name) and the few that an
 //! image effect adds itself.
 
+use super::card::{
+    CARD, CARD_HINT, CARD_OPTIONS, COMPUTE_HINT, COMPUTE_ON, COMPUTE_OPTIONS, PRECISION, PRECISION_HINT,
+    PRECISION_OPTIONS,
+};
 use super::clips::guides;
 use super::colours::{AS_IS, SPACES};
 use super::look_effect::{FILE, FROM_FILE, LOOK, RELOAD, TIMES_READ, own_numbers, stand_in};
@@ -75,6 +79,12 @@ pub enum Target {
     MotionFrom,
     /// Meaning of the vectors of a connected clip.
     MotionConvention,
+    /// Device that computes: the CPU, or a graphics card.
+    ComputeOn,
+    /// Graphics card that is used.
+    Card,
+    /// Precision of numbers on a graphics card.
+    Precision,
     /// Look whose values the other controls are set to. It decides about no pixel itself.
     Look,
     /// Look or style that is shown, or that of the file.
@@ -331,6 +341,13 @@ impl Effect {
                 Target::MotionConvention,
             );
         }
+        for (name, label, hint, target) in [
+            (COMPUTE_ON, "Compute on", COMPUTE_HINT, Target::ComputeOn),
+            (CARD, "Card", CARD_HINT, Target::Card),
+            (PRECISION, "Card precision", PRECISION_HINT, Target::Precision),
+        ] {
+            self.add(&name.to_string_lossy(), label, hint, "computing", target);
+        }
         self.add(
             &WORKING_SPACE.to_string_lossy(),
             "Working space",
@@ -365,6 +382,9 @@ impl Effect {
             }
             Target::MaskFrom => MASK_OPTIONS.map(CStr::to_owned).to_vec(),
             Target::MotionFrom => MOTION_OPTIONS.map(CStr::to_owned).to_vec(),
+            Target::ComputeOn => COMPUTE_OPTIONS.map(CStr::to_owned).to_vec(),
+            Target::Card => CARD_OPTIONS.map(CStr::to_owned).to_vec(),
+            Target::Precision => PRECISION_OPTIONS.map(CStr::to_owned).to_vec(),
             Target::MotionConvention => Convention::PRESETS.iter().map(|c| text(c.label)).collect(),
             _ => Vec::new(),
         };
@@ -378,7 +398,11 @@ impl Effect {
         if let Some(at) = self.groups.iter().position(|g| g.name == name) {
             return at;
         }
-        self.groups.push(Group { name, label: text(&capital(id)), open: id != "advanced" });
+        self.groups.push(Group {
+            name,
+            label: text(&capital(id)),
+            open: !["advanced", "computing"].contains(&id),
+        });
         self.groups.len() - 1
     }
 

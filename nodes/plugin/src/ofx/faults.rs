@@ -3,6 +3,8 @@
 
 use super::effects::Effect;
 use isophote::Error;
+use isophote::engine::Error as EngineError;
+use isophote::engine::gpu::Device;
 use std::ffi::CStr;
 
 /// `<effect's identifier>:<action>` in this variable is where to panic.
@@ -26,5 +28,17 @@ pub fn failure(effect: &Effect) -> Option<Error> {
         return Some(isophote::engine::Error::Memory("asked for".to_owned()).into());
     }
     let _ = effect;
+    None
+}
+
+/// Fault of the graphics device that `ISOPHOTE_OFX_DEVICE` asks for: `lost` loses it, `full` says that its memory is full.
+pub fn of_device(device: &Device) -> Option<EngineError> {
+    #[cfg(debug_assertions)]
+    match std::env::var("ISOPHOTE_OFX_DEVICE").as_deref() {
+        Ok("lost") => device.raw().destroy(),
+        Ok("full") => return Some(EngineError::Memory("asked for".to_owned())),
+        _ => {}
+    }
+    let _ = device;
     None
 }

@@ -182,6 +182,20 @@ impl Host {
         })
     }
 
+    /// Tells the user that the graphics card does not compute an effect, until it does: where messages stay on the effect and
+    /// stop nobody, and not again while it is shown.
+    pub fn warn_of_card(&self, effect: Handle, message: &str) {
+        let Some(show) = self.messages().and_then(|messages| messages.setPersistentMessage) else { return };
+        if lock(&self.showing).insert(effect.addr(), Shown::Card) != Some(Shown::Card) {
+            say(show, effect, kOfxMessageWarning, message);
+        }
+    }
+
+    /// Takes the message about the graphics card back, if the effect shows it.
+    pub fn card_computes(&self, effect: Handle) {
+        self.clear(effect, &[Shown::Card]);
+    }
+
     /// Takes a failure back, if the effect shows one.
     pub fn clear_failure(&self, effect: Handle) {
         self.clear(effect, &[Shown::Failure]);
@@ -195,7 +209,7 @@ impl Host {
     /// Forgets an instance that ends, and clears what it shows.
     pub fn forget(&self, effect: Handle) {
         lock(&self.noticed).remove(&effect.addr());
-        self.clear(effect, &[Shown::Failure, Shown::Notice]);
+        self.clear(effect, &[Shown::Failure, Shown::Notice, Shown::Card]);
     }
 
     /// Sets values of an instance. What the host tells of them meanwhile is no news.
@@ -229,6 +243,8 @@ impl Host {
 enum Shown {
     /// That it did not render.
     Failure,
+    /// That the CPU computes it in place of the graphics card.
+    Card,
     /// Anything else.
     Notice,
 }

@@ -38,9 +38,10 @@ fn stored(control: &Control) -> String {
         | Target::LinesOutput
         | Target::MaskFrom
         | Target::MotionFrom
-        | Target::MotionConvention => {
-            format!("choice 0 of {options}")
-        }
+        | Target::MotionConvention
+        | Target::ComputeOn
+        | Target::Card
+        | Target::Precision => format!("choice 0 of {options}"),
         Target::ReferenceHeight => format!("whole number {USUAL_REFERENCE}"),
         Target::ProcessAlpha | Target::MaskInvert => "switch off".to_owned(),
         Target::MaskApply => "switch by the host".to_owned(),

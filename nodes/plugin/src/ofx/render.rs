@@ -3,6 +3,7 @@
 use super::clips::{MASK, SOURCE};
 use super::colours::{Colours, working};
 use super::effects::Effect;
+use super::executors::{Executors, Work};
 use super::faults;
 use super::frame::{Bounds, Frame};
 use super::host::{Host, Outcome, Properties};
@@ -16,7 +17,7 @@ use super::settings::Settings;
 use super::stop::Stop;
 use super::threads::FrameThreads;
 use crate::pixel_aspect::divide;
-use isophote::engine::cpu::{Control, CpuExecutor, Threads};
+use isophote::engine::cpu::{Control, Threads};
 use isophote::engine::plan::LEAST_ROWS;
 use isophote::engine::{Error as EngineError, Image, Rect};
 use isophote::graph::GraphInput;
@@ -178,28 +179,34 @@ impl RenderAction<'_> {
             return Ok(());
         }
         let threads = FrameThreads::of(host);
+        let mut executors = Executors::new(host, *instance, self.settings.card);
         // Hosts need not expect the question from two threads at once.
         let instance = Mutex::new(Instance(*instance));
         let aborted = || instance.lock().is_ok_and(|instance| host.aborted(instance.0));
         let control = Control { cancelled: Some(&aborted), progress: None };
         let mut plans = Plans::new(self)?;
-        let mut executor = CpuExecutor::new();
-        for band in bands(inside, plans.prepared.band_rows(inside)) {
+        let mut rows = executors.band_rows(&plans.prepared, inside);
+        let mut next = inside.y0;
+        while next < inside.y1 {
+            let band = Rect { y0: next, y1: next.saturating_add(rows).min(inside.y1), ..inside };
             let images = plans.gather(self, band, threads.threads())?;
             let region = plans.prepared.plan_window(band);
             let planned = plans.planned(&images)?;
             let named: Vec<(&str, &Image)> = images.iter().map(|(name, image)| (&name[..], image)).collect();
-            let results = executor
-                .run(planned.plan(), &named, region, threads.threads(), control)
-                .map_err(Error::from)?;
+            let work = Work { plan: planned.plan(), images: &named, region, control };
+            let Some(results) = executors.run(&work, threads.threads())? else {
+                rows = executors.band_rows(&plans.prepared, inside);
+                next = inside.y0;
+                continue;
+            };
             drop(images);
             if band.y1 == inside.y1 {
-                // What it kept for the next band.
-                executor = CpuExecutor::new();
+                executors.purge();
             }
             let result = results.into_iter().next().ok_or(kOfxStatFailed)?;
             let result = self.to_host(&plans.prepared, result, band, threads.threads())?;
             self.write(self.finished(result, band)?)?;
+            next = band.y1;
         }
         Ok(())
     }

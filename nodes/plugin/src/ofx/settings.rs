@@ -1,6 +1,7 @@
 //! The values of an instance's controls at one time, as a graph. Read when they are needed and never
 //! kept, since hosts change them without a word.
 
+use super::card::{CARD, COMPUTE_ON, Card, PRECISION};
 use super::colours::{self, SPACES};
 use super::effects::{Control, Effect, Form, Target, USUAL_REFERENCE};
 use super::host::{Host, Outcome};
@@ -36,6 +37,8 @@ pub struct Settings {
     pub motion_from: MotionFrom,
     /// Meaning of the vectors of clips.
     pub convention: Convention,
+    /// Graphics card that computes; none for the CPU.
+    pub card: Option<Card>,
     /// Settings that the effect for looks alone has.
     pub look: OfLook,
     /// Numbers that must be 0 for the values to leave the picture as it is: the least of those that do so at
@@ -124,6 +127,7 @@ impl Settings {
             mask: mask(effect, &values),
             motion_from,
             convention,
+            card: card(&values),
             look: OfLook::default(),
             least,
         };
@@ -182,4 +186,9 @@ pub fn animated(effect: &Effect, host: &Host, instance: Handle) -> Outcome<Vec<(
         _ => None,
     };
     Ok(effect.controls.iter().filter_map(of_node).collect())
+}
+
+/// The graphics card, where the host has the controls and one is chosen.
+fn card(values: &Values<'_>) -> Option<Card> {
+    Card::of([COMPUTE_ON, CARD, PRECISION].map(|name| values.index(name).unwrap_or_default()))
 }
