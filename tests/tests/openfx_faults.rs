@@ -5,6 +5,8 @@
 
 #[path = "openfx/allocations.rs"]
 mod allocations;
+#[path = "openfx/kept.rs"]
+mod kept;
 
 use isophote_abi::openfx::*;
 use isophote_tests::library;
@@ -14,6 +16,7 @@ use isophote_tests::ofx::picture::{Layout, Picture};
 use isophote_tests::ofx::plugin::Binary;
 use isophote_tests::ofx::state::Behaviour;
 use isophote_tests::trials::Trials;
+use kept::*;
 use std::ffi::CStr;
 use std::process::{Command, ExitCode};
 use std::ptr::null_mut;
@@ -31,13 +34,16 @@ macro_rules! named {
     ($($test:ident)*) => { [$((stringify!($test), $test)),*] };
 }
 
-const TESTS: [(&str, fn()); 6] = named! {
+const TESTS: [(&str, fn()); 9] = named! {
     a_panic_becomes_a_status_and_the_host_goes_on
     failures_are_shown_once_through_whatever_messages_there_are
     bad_calls_are_answered
     allocations_of_this_process_are_counted
     a_thousand_instances_of_all_effects_leak_nothing
     a_hundred_loads_leak_nothing
+    what_frames_have_in_common_is_computed_once
+    memory_is_given_back_when_caches_are_purged
+    times_of_warm_renders
 };
 
 fn main() -> ExitCode {
@@ -50,6 +56,8 @@ fn main() -> ExitCode {
     for (name, _) in TESTS {
         trials.add_plain(&format!("openfx_faults::{name}"), || in_a_process(name));
     }
+    // The last measures, and asserts nothing.
+    trials.ignore_last();
     trials.run()
 }
 

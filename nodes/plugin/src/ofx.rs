@@ -2,11 +2,13 @@
 //!
 //! Thin: [`effects`] derives what there is from the nodes' declarations, [`describe`] describes it to hosts,
 //! [`settings`], [`known`], [`image`] and [`inputs`] read what hosts have, [`crate::pixel_aspect`] makes their pixels square,
-//! and [`render`] runs the plan that is [`prepared`]. Nothing is kept between calls but the host's functions, so that
-//! any action may come on any thread, in any number.
+//! and [`render`] runs the plan that is [`prepared`]. Nothing is kept between calls but the host's functions, memory of
+//! images, and what frames have in common ([`neighbours`]), found by the contents of pictures alone; so any action may
+//! come on any thread, in any number.
 
 mod clips;
 mod colours;
+mod content;
 mod controls;
 mod describe;
 mod effects;
@@ -16,10 +18,12 @@ mod host;
 mod image;
 mod inputs;
 mod instance;
+mod kept;
 mod known;
 mod mask;
 mod motion;
 mod needed;
+mod neighbours;
 mod prepared;
 #[cfg(test)]
 mod promised;
@@ -129,15 +133,21 @@ fn act_on_library(number: usize, action: &CStr) -> Option<Outcome> {
         }
         a if a == kOfxActionUnload => {
             lock(&SLOTS[number]).fetched = None;
-            forget_pools();
+            forget_caches();
             Some(Ok(kOfxStatOK))
         }
         a if a == kOfxActionPurgeCaches => {
-            forget_pools();
+            forget_caches();
             Some(Ok(kOfxStatOK))
         }
         _ => None,
     }
+}
+
+/// Ends idle threads, and gives back what is kept from one render to the next.
+fn forget_caches() {
+    forget_pools();
+    render::forget_caches();
 }
 
 /// Actions on a descriptor or an instance; [`act_on_effect`] knows each.

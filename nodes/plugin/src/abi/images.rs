@@ -4,6 +4,7 @@
 //! another image, or lie at any address.
 
 use super::failure::{Failure, Outcome};
+use crate::pool;
 use isophote::engine::pixels::{Sample, read_row, read_vectors, write_row};
 use isophote::engine::{Image, Rect};
 use isophote::graph::GraphInput;
@@ -149,7 +150,7 @@ impl Checked {
     pub unsafe fn read(&self, window: Rect, input: GraphInput) -> Outcome<(Image, u64)> {
         self.must_suit(input)?;
         let channels = input.kind().channels();
-        let mut image = Image::with_window(window, channels)?;
+        let mut image = pool::image(window, channels)?;
         let mut bytes = self.row_of_bytes(&window)?;
         let mut replaced = 0;
         for y in window.y0..window.y1 {
