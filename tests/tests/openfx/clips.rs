@@ -75,7 +75,7 @@ pub fn a_mask_may_be_any_part_of_its_picture(binary: &Binary) {
     let pixel = [0.8_f32, 0.4, 0.1, 0.6];
     let luminance = 0.2126 * pixel[0] + 0.7152 * pixel[1] + 0.0722 * pixel[2];
     let rgba = pixel.repeat((WIDTH * HEIGHT) as usize);
-    let mut render = |components, from: i32, inverted: i32| {
+    let render = |components, from: i32, inverted: i32| {
         let mask = Layout { components, ..layout };
         instance.connect("Mask", Picture::packed_in(mask, WIDTH, HEIGHT, &packed(&rgba, &mask)));
         instance.set("mask_from", from);

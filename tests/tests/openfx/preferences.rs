@@ -45,7 +45,7 @@ pub fn marks_that_move_by_themselves_vary_from_frame_to_frame(binary: &Binary, e
 
 pub fn lengths_are_meant_at_1080_lines(binary: &Binary) {
     let host = Host::new(Behaviour::default());
-    for plugin in binary.plugins() {
+    for plugin in binary.plugins().iter().copied() {
         let described = Described::new(&host, plugin);
         for context in [kOfxImageEffectContextFilter, kOfxImageEffectContextGeneral] {
             let effect = described.in_context(context);

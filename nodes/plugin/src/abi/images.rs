@@ -201,13 +201,21 @@ impl Checked {
             Failure::new(ISOPHOTE_ERROR_OUT_OF_MEMORY, format!("there is no memory for {len} vectors"))
         })?;
         pairs.resize(len, 0.0);
-        for (pixel, pair) in
-            bytes.chunks_exact(self.channels * self.sample.size()).zip(pairs.chunks_exact_mut(2))
-        {
+        let size = self.sample.size();
+        let pixels = bytes.chunks_exact(self.channels * size).zip(pairs.chunks_exact_mut(2));
+        for (pixel, pair) in pixels {
             for (value, channel) in pair.iter_mut().zip(channels) {
-                let from = &pixel[channel * self.sample.size()..][..self.sample.size()];
                 // A vector of one component, whose number is kept whatever it is.
-                read_vectors(from, self.sample, 1, std::slice::from_mut(value), 1, f32::NAN);
+                match (self.sample, pixel[channel * size..].first_chunk()) {
+                    (Sample::F32, Some(bytes)) => {
+                        let read = f32::from_ne_bytes(*bytes);
+                        *value = if read.is_finite() { read } else { f32::NAN };
+                    }
+                    _ => {
+                        let from = &pixel[channel * size..][..size];
+                        read_vectors(from, self.sample, 1, std::slice::from_mut(value), 1, f32::NAN);
+                    }
+                }
             }
         }
         Ok(pairs)

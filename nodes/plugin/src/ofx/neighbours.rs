@@ -54,6 +54,23 @@ impl Stages {
     }
 }
 
+/// The shared images of a plan that the plans of other frames ask for as well.
+fn lasting(plan: &Plan) -> Vec<Shared> {
+    let mut all = plan.shared();
+    let mut relative = Vec::new();
+    for Shared { image, frames: [first, _], .. } in &all {
+        let name = |from: i32| content::of_text(&format!("{from}"));
+        let names =
+            plan.names(|port| content::of_all(&[content::of_text(port.base()), name(port.frame - first)]));
+        relative.push(names[image.index()]);
+    }
+    let mut places = relative.iter();
+    all.retain(|_| {
+        places.next().is_some_and(|name| relative.iter().filter(|other| *other == name).count() > 1)
+    });
+    all
+}
+
 /// A search for the stages of one frame.
 pub struct Search<'s> {
     pub inputs: &'s Inputs<'s>,
@@ -71,7 +88,7 @@ impl Search<'_> {
     /// As reading and running.
     pub fn run(&self, executor: &mut CpuExecutor) -> Result<Found, Stop> {
         let plan = self.prepared.planned.plan();
-        let shared = plan.shared();
+        let shared = lasting(plan);
         let [width, height] = plan.size();
         let whole = Rect::of_size(width, height);
         let bytes = |shared: &Shared| {
@@ -136,5 +153,48 @@ impl Search<'_> {
             faults::computed(ids.len());
             Ok(images.map_err(Error::from)?)
         })
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::super::effects::EFFECTS;
+    use super::super::frame::Frame;
+    use super::super::known::Known;
+    use super::super::motion::MotionFrom;
+    use super::super::prepared::Quality;
+    use super::*;
+    use isophote::ColourSpace;
+    use isophote::request::Guides;
+
+    #[test]
+    fn plans_are_cut_at_what_other_frames_ask_for_as_well() {
+        let picture = [0, 0, 64, 48];
+        let frame = Frame { picture, ratio: [1.0; 2], scale: 1.0, top: None, number: 7, reference_height: 0 };
+        for effect in EFFECTS.iter().filter(|effect| effect.temporal) {
+            let (mut graph, ids) = effect.graph(false).unwrap();
+            let prepared = |graph: &_, has: Guides| {
+                let known = Known::of(graph, MotionFrom::default(), has, true).unwrap();
+                Prepared::new(&known, ColourSpace::Srgb, &frame, true, Quality::Full).unwrap()
+            };
+            let vectors = Guides { motion: true, motion_forward: true, ..Guides::default() };
+            assert_eq!(lasting(prepared(&graph, vectors).planned.plan()), [], "a still by default");
+            graph.set(ids[0], "steadiness", isophote::Value::Float(0.5)).unwrap();
+            for has in [vectors, Guides::default()] {
+                let prepared = prepared(&graph, has);
+                let plan = prepared.planned.plan();
+                let shared = lasting(plan);
+                let of = |frames: [i32; 2]| shared.iter().filter(|shared| shared.frames == frames).count();
+                assert!(of([0, 0]) > 0, "{:?}", effect.identifier);
+                assert!((-2..=2).all(|n| of([n, n]) == of([0, 0])), "{:?}: {shared:?}", effect.identifier);
+                assert_eq!(of([-1, 0]) > 0, !has.motion, "{:?}: {shared:?}", effect.identifier);
+                let image = Arc::new(Image::new(1, 1, 1).unwrap());
+                let stages = Stages(shared.iter().map(|shared| (shared.name, Arc::clone(&image))).collect());
+                let cut = stages.cut(plan);
+                assert!(cut.handed.len() == shared.len() && cut.plan.passes().len() < plan.passes().len());
+                let others = cut.plan.inputs().iter().filter(|p| p.base() == "color" && p.frame != 0);
+                assert_eq!(others.count(), 0, "{:?}", effect.identifier);
+            }
+        }
     }
 }
