@@ -178,7 +178,8 @@ mod tests {
                 Prepared::new(&known, ColourSpace::Srgb, &frame, true, Quality::Full).unwrap()
             };
             let vectors = Guides { motion: true, motion_forward: true, ..Guides::default() };
-            assert_eq!(lasting(prepared(&graph, vectors).planned.plan()), [], "a still by default");
+            graph.set(ids[0], "steadiness", isophote::Value::Float(0.0)).unwrap();
+            assert_eq!(lasting(prepared(&graph, vectors).planned.plan()), [], "{:?}", effect.identifier);
             graph.set(ids[0], "steadiness", isophote::Value::Float(0.5)).unwrap();
             for has in [vectors, Guides::default()] {
                 let prepared = prepared(&graph, has);
