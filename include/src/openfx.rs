@@ -144,10 +144,17 @@ strings! {
     kOfxParamTypeBoolean = c"OfxParamTypeBoolean";
     kOfxParamTypeChoice = c"OfxParamTypeChoice";
     kOfxParamTypeRGBA = c"OfxParamTypeRGBA";
+    kOfxParamTypeString = c"OfxParamTypeString";
+    kOfxParamTypePushButton = c"OfxParamTypePushButton";
     kOfxParamTypeGroup = c"OfxParamTypeGroup";
     kOfxParamTypePage = c"OfxParamTypePage";
     kOfxParamPropAnimates = c"OfxParamPropAnimates";
     kOfxParamPropEnabled = c"OfxParamPropEnabled";
+    kOfxParamPropEvaluateOnChange = c"OfxParamPropEvaluateOnChange";
+    kOfxParamPropSecret = c"OfxParamPropSecret";
+    kOfxParamPropStringMode = c"OfxParamPropStringMode";
+    kOfxParamPropStringFilePathExists = c"OfxParamPropStringFilePathExists";
+    kOfxParamStringIsFilePath = c"OfxParamStringIsFilePath";
     kOfxParamPropScriptName = c"OfxParamPropScriptName";
     kOfxParamPropHint = c"OfxParamPropHint";
     kOfxParamPropDefault = c"OfxParamPropDefault";

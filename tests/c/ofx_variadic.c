@@ -8,15 +8,22 @@
 
 typedef int (*Count)(void *param);
 typedef int (*Get)(void *param, double time, int count, void **places);
+typedef char (*Kind)(void *param);
+typedef int (*Set)(void *param, int count, const int *whole, const double *numbers, const char *text);
 typedef int (*Said)(void *handle, const char *type, const char *text);
 
 static Count count_of;
 static Get get;
+static Kind kind_of;
+static Set set;
 static Said said;
 
-void ofx_shim_install(Count count_function, Get get_function, Said said_function) {
+void ofx_shim_install(Count count_function, Get get_function, Kind kind_function, Set set_function,
+                      Said said_function) {
   count_of = count_function;
   get = get_function;
+  kind_of = kind_function;
+  set = set_function;
   said = said_function;
 }
 
@@ -41,6 +48,23 @@ int ofx_shim_get_at(void *param, double time, ...) {
   int status = gather(param, time, list);
   va_end(list);
   return status;
+}
+
+int ofx_shim_set(void *param, ...) {
+  int whole[MOST] = {0};
+  double numbers[MOST] = {0};
+  const char *text = NULL;
+  int count = count_of(param);
+  char kind = kind_of(param);
+  va_list list;
+  va_start(list, param);
+  for (int i = 0; i < count && i < MOST; i++) {
+    if (kind == 'i') whole[i] = va_arg(list, int);
+    if (kind == 'd') numbers[i] = va_arg(list, double);
+    if (kind == 's') text = va_arg(list, const char *);
+  }
+  va_end(list);
+  return set(param, count, whole, numbers, text);
 }
 
 int ofx_shim_message(void *handle, const char *type, const char *id, const char *format, ...) {

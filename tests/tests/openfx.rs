@@ -18,6 +18,8 @@ mod describe;
 mod draft;
 #[path = "openfx/film.rs"]
 mod film;
+#[path = "openfx/looks.rs"]
+mod looks;
 #[path = "openfx/memory.rs"]
 mod memory;
 #[path = "openfx/preferences.rs"]
@@ -76,6 +78,15 @@ const OF_THE_BINARY: &[OfTheBinary] = named! {
     describe::hosts_that_manage_colours_are_asked_for_the_working_space,
     describe::half_floats_are_offered_to_hosts_that_have_them,
     describe::a_host_without_a_needed_suite_is_told,
+    looks::hosts_that_tell_of_no_edits_have_no_choice_of_looks,
+    looks::an_edit_makes_a_look_custom,
+    looks::the_effect_for_looks_shows_all_that_ships,
+    looks::the_effect_for_looks_is_mixed_and_steadied,
+    looks::lengths_of_looks_are_those_of_apply,
+    looks::tiles_are_supported_as_the_look_allows,
+    looks::projects_are_told_of_files_and_clips_that_are_gone,
+    looks::files_are_shown_and_faults_of_theirs_told,
+    looks::files_are_read_again_when_they_change_or_the_user_asks,
     quirks::a_scale_counts_wherever_the_host_says_it,
     regions::a_host_without_tiles_may_give_parts_all_the_same,
     regions::regions_shrink_with_the_scale,
@@ -109,6 +120,8 @@ const OF_EVERY_EFFECT: &[OfAnEffect] = named! {
     describe::clips_are_source_and_output_and_in_general_a_mask_and_guides,
     describe::controls_are_the_parameters_of_the_nodes,
     describe::describing_is_the_same_every_time_and_stands_refused_properties,
+    looks::looks_of_a_style_come_first_in_its_page,
+    looks::choosing_a_look_sets_the_controls_in_one_step,
     memory::an_8k_frame_fits_into_4_gib,
     quirks::rows_may_run_downwards_be_padded_and_begin_anywhere,
     quirks::hosts_that_lack_what_can_be_lacked_get_their_pictures,

@@ -12,7 +12,7 @@ use isophote_pictures::pixels::{Pixels, Precision};
 use isophote_pictures::primaries;
 use isophote_pictures::read::{self, Source};
 use isophote_pictures::transfer::Transfer;
-use isophote_pictures::write::{self, Format};
+use isophote_pictures::write::{self, Format, Options};
 
 fn case(name: &str) -> PathBuf {
     Path::new(env!("CARGO_MANIFEST_DIR")).join("../../tests/data/cases").join(name)
@@ -139,8 +139,16 @@ fn dwa_is_read_and_written_without_loss() {
         let mut source = source(path);
         let out = folder.path().join(path.file_name().expect("a name"));
         let (exr, pixels) = (source.exr.take(), source.pictures[0].pixels.clone());
-        write::write(&out, Existing::Keep, Format::Exr, vec![pixels], &Meaning::light(), &source, exr)
-            .expect("it can be written");
+        write::write(
+            &out,
+            Existing::Keep,
+            (Format::Exr, Options::default()),
+            vec![pixels],
+            &Meaning::light(),
+            &source,
+            exr,
+        )
+        .expect("it can be written");
         assert_eq!(self::source(&out).pictures[0].pixels.to_f32(), numbers);
     }
 }
@@ -224,7 +232,7 @@ fn profiles_are_kept_where_they_fit() {
         write::write(
             &out,
             Existing::Replace,
-            format,
+            (format, Options::default()),
             vec![pixels],
             &source.pictures[0].meaning,
             &source,
@@ -242,7 +250,7 @@ fn profiles_are_kept_where_they_fit() {
     write::write(
         &out,
         Existing::Replace,
-        Format::Png,
+        (Format::Png, Options::default()),
         vec![of_colours],
         &grey.pictures[0].meaning,
         &grey,
@@ -310,8 +318,16 @@ fn numbers_mean_the_same_in_all_files_that_are_written() {
         for name in ["a.png", "a.tif", "a.jpg"] {
             let path = folder.path().join(name);
             let format = Format::of(&path).expect("a kind of file");
-            write::write(&path, Existing::Replace, format, vec![pixels.clone()], &meaning, &read, None)
-                .expect("it can be written");
+            write::write(
+                &path,
+                Existing::Replace,
+                (format, Options::default()),
+                vec![pixels.clone()],
+                &meaning,
+                &read,
+                None,
+            )
+            .expect("it can be written");
             let found = source(&path).pictures.remove(0).meaning;
             let said = format!("{name}: {} as {}", meaning.words(), found.words());
             assert!(found.warnings.is_empty(), "{said}: {:?}", found.warnings);
@@ -325,8 +341,16 @@ fn numbers_mean_the_same_in_all_files_that_are_written() {
     }
     // The usual is not said.
     let path = folder.path().join("usual.png");
-    write::write(&path, Existing::Keep, Format::Png, vec![pixels], &Meaning::display(), &read, None)
-        .expect("it can be written");
+    write::write(
+        &path,
+        Existing::Keep,
+        (Format::Png, Options::default()),
+        vec![pixels],
+        &Meaning::display(),
+        &read,
+        None,
+    )
+    .expect("it can be written");
     let bytes = fs::read(&path).expect("it is there");
     for chunk in [b"cICP", b"gAMA", b"cHRM", b"iCCP", b"sRGB"] {
         assert!(bytes.windows(4).all(|window| window != chunk));
@@ -341,8 +365,16 @@ fn light_of_other_primaries_is_written_with_them() {
     for name in ["a.tif", "a.exr"] {
         let path = folder.path().join(name);
         let (format, pixels) = (Format::of(&path).expect("a kind"), picture.pixels.clone());
-        write::write(&path, Existing::Keep, format, vec![pixels], &picture.meaning, &read, None)
-            .expect("it can be written");
+        write::write(
+            &path,
+            Existing::Keep,
+            (format, Options::default()),
+            vec![pixels],
+            &picture.meaning,
+            &read,
+            None,
+        )
+        .expect("it can be written");
         let found = source(&path).pictures.remove(0).meaning;
         assert!(found.has_primaries(primaries::REC2020) && found.transfer == Transfer::Linear, "{found:?}");
     }

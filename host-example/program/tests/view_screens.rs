@@ -19,10 +19,11 @@ use isophote_window::state::browser::entry::Group;
 use isophote_window::state::histogram::{Histogram, Histograms};
 use isophote_window::state::leaving::Leaving;
 use isophote_window::state::look::EditedLook;
+use isophote_window::state::probed::Probed;
 use isophote_window::state::scenery::{Scenery, Staging};
 use isophote_window::state::session::Session;
 use isophote_window::state::settings::Settings;
-use isophote_window::state::viewport::Compare;
+use isophote_window::state::viewport::{Compare, Overlay};
 use isophote_window::state::work::Request;
 use isophote_window::widgets;
 use winit::keyboard::{Key, NamedKey};
@@ -78,8 +79,19 @@ fn sequence(folder: &Path) -> Session {
         support::picture(48, 32).save(folder.join(format!("shot.000{number}.png"))).expect("it is writable");
     }
     open(&mut session, &folder.join("shot.####.png"));
-    session.viewport.probed = Some([[0.123, 0.456, 0.789, 1.0]; 2]);
+    session.probed = Some(probed());
     session
+}
+
+/// A pixel with as many digits as there may be.
+fn probed() -> Probed {
+    let original = [0.123_456, 0.456_789, 0.789_123, 0.5];
+    Probed {
+        at: [1234, 987],
+        original,
+        shown: Some([0.987_654, 0.654_321, 0.321_987, 0.5]),
+        overlay: Overlay::None,
+    }
 }
 
 fn scene(folder: &Path) -> Session {
@@ -104,7 +116,7 @@ const SCREENS: [Screen; 16] = [
     ("menu at the start", |_| nothing(), Some("File")),
     ("photo", photo, None),
     ("menu", photo, Some("File")),
-    ("help", photo, Some("?")),
+    ("help", photo, Some("Keys and mouse")),
     (
         "histogram",
         |folder| {
@@ -119,7 +131,7 @@ const SCREENS: [Screen; 16] = [
         "probe",
         |folder| {
             let mut session = photo(folder);
-            session.viewport.probed = Some([[0.123, 0.456, 0.789, 1.0]; 2]);
+            session.probed = Some(probed());
             session.work.exported = Some(0.3);
             session
         },

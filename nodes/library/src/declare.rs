@@ -5,4 +5,5 @@ pub mod choice;
 pub mod param;
 pub(crate) mod ports;
 pub mod spec;
+pub(crate) mod time;
 pub mod value;

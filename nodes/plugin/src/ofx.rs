@@ -2,9 +2,10 @@
 //!
 //! Thin: [`effects`] derives what there is from the nodes' declarations, [`describe`] describes it to hosts,
 //! [`settings`], [`known`], [`image`] and [`inputs`] read what hosts have, [`crate::pixel_aspect`] makes their pixels square,
-//! and [`render`] runs the plan that is [`prepared`]. Nothing is kept between calls but the host's functions, memory of
-//! images, and what frames have in common ([`neighbours`]), found by the contents of pictures alone; so any action may
-//! come on any thread, in any number.
+//! and [`render`] runs the plan that is [`prepared`]. [`shipped`] lists the looks, [`looks`] sets the controls of a
+//! style to one, and [`look_effect`] finds what the effect for looks shows. Nothing is kept between calls but the host's
+//! functions, [`preset_files`], memory of images, and what frames have in common ([`neighbours`]), found by the contents
+//! of pictures alone; so any action may come on any thread, in any number.
 
 mod clips;
 mod colours;
@@ -20,18 +21,25 @@ mod inputs;
 mod instance;
 mod kept;
 mod known;
+#[cfg(test)]
+mod labels;
+mod look_effect;
+mod looks;
 mod mask;
 mod motion;
 mod needed;
 mod neighbours;
 mod prepared;
+mod preset_files;
 #[cfg(test)]
 mod promised;
 mod quirks;
 mod render;
 mod settings;
+mod shipped;
 mod stop;
 mod threads;
+mod values;
 
 use crate::abi::guard::lock;
 use crate::abi::threads::forget_pools;
@@ -147,6 +155,7 @@ fn act_on_library(number: usize, action: &CStr) -> Option<Outcome> {
 /// Ends idle threads, and gives back what is kept from one render to the next.
 fn forget_caches() {
     forget_pools();
+    preset_files::forget_all();
     render::forget_caches();
 }
 

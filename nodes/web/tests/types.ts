@@ -7,7 +7,7 @@ import { Camera, Scene } from "three/webgpu";
 
 export async function pictures(image: HTMLImageElement): Promise<ImageData> {
   const isophote = await Isophote.create();
-  const onCpu = await Isophote.create({ backend: "cpu", cpu: { wasm: new URL("https://example.org/isophote-cpu.wasm") } });
+  const onCpu = await Isophote.create({ backend: "cpu", cpu: { wasm: new URL("https://example.org/cpu.wasm") } });
   const backend: "gpu" | "cpu" = onCpu.backend;
   console.log(backend, onCpu.reason?.length);
   const look: Look = { style: "cartoon", parameters: { posterize: 6, sigma_d: { "1": 2, "9": 4, between: "step" } } };

@@ -65,6 +65,9 @@ compare! {
     kOfxImageEffectPropRenderWindow kOfxImageEffectPropFieldToRender
     kOfxImageEffectPropRegionOfDefinition kOfxImageEffectPropRegionOfInterest kOfxParamTypeInteger
     kOfxParamTypeDouble kOfxParamTypeBoolean kOfxParamTypeChoice kOfxParamTypeRGBA
+    kOfxImageEffectFrameVarying kOfxImageEffectPropRenderQualityDraft
+    kOfxParamTypeString kOfxParamTypePushButton kOfxParamPropEvaluateOnChange kOfxParamPropSecret
+    kOfxParamPropStringMode kOfxParamPropStringFilePathExists kOfxParamStringIsFilePath
     kOfxParamTypeGroup kOfxParamTypePage kOfxParamPropAnimates kOfxParamPropScriptName
     kOfxParamPropHint kOfxParamPropDefault kOfxParamPropMin kOfxParamPropMax kOfxParamPropDisplayMin
     kOfxParamPropDisplayMax kOfxParamPropIncrement kOfxParamPropDigits kOfxParamPropDoubleType

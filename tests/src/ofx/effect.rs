@@ -2,7 +2,7 @@
 
 use super::handles::handle_of;
 use super::host::Host;
-use super::objects::{Clip, Effect, MAGIC, Param};
+use super::objects::{Clip, Effect, MAGIC, Param, Step};
 use super::picture::{Layout, Picture};
 use super::plugin::Plugin;
 use super::properties::{Set, Value};
@@ -97,6 +97,8 @@ impl<'h> Described<'h> {
                 set: Set::new(&self.host.inner, "parameter"),
                 value: Mutex::new(value),
                 keys: Mutex::default(),
+                lent: Mutex::default(),
+                instance: handle_of(&*effect) as usize,
             });
             new.set = param.set.copy("parameter", handle_of(&*new) as usize);
             lock(&effect.params).push(new);
@@ -114,6 +116,7 @@ impl<'h> Described<'h> {
             new.set.put(kOfxImageClipPropConnected, vec![connected.into()]);
             lock(&effect.clips).push(new);
         }
+        *lock(&effect.entry) = self.plugin.raw().mainEntry;
         let status = self.plugin.act(kOfxActionCreateInstance, effect.handle(), None, None);
         assert_eq!(status, kOfxStatOK, "CreateInstance of {}", self.plugin.identifier());
         Instance { host: self.host, plugin: self.plugin, effect }
@@ -221,6 +224,66 @@ impl Instance<'_> {
         args.put(kOfxImageEffectPropRenderScale, vec![1.0.into(); 2]);
         let status = self.act(kOfxActionInstanceChanged, Some(&args), None);
         assert_eq!(status, kOfxStatOK, "InstanceChanged of {}", self.plugin.identifier());
+    }
+
+    /// Sets a parameter as the user does, and tells the plugin.
+    ///
+    /// # Panics
+    /// When there is none of this name, or the plugin does not take it.
+    pub fn edit(&self, name: &str, value: impl Into<Value>) {
+        self.set(name, value);
+        self.touch(name);
+    }
+
+    /// Tells the plugin that the user edited a parameter, or pressed a button.
+    ///
+    /// # Panics
+    /// When the plugin does not take it, or leaves a step open.
+    pub fn touch(&self, name: &str) {
+        let args = self.args();
+        let name = CString::new(name).expect("a name");
+        args.put(kOfxPropName, vec![name.as_c_str().into()]);
+        args.put(kOfxPropType, vec![kOfxTypeParameter.into()]);
+        args.put(kOfxPropChangeReason, vec![kOfxChangeUserEdited.into()]);
+        args.put(kOfxPropTime, vec![0.0.into()]);
+        args.put(kOfxImageEffectPropRenderScale, vec![1.0.into(); 2]);
+        let status = self.act(kOfxActionInstanceChanged, Some(&args), None);
+        assert_eq!(status, kOfxStatOK, "InstanceChanged of {}", self.plugin.identifier());
+        assert!(lock(&self.effect.edits).open.is_none(), "a step without an end");
+    }
+
+    /// Values of a parameter.
+    ///
+    /// # Panics
+    /// When there is none of this name.
+    pub fn get(&self, name: &str) -> Vec<Value> {
+        self.with(name, |param| lock(&param.value).clone())
+    }
+
+    /// True where a parameter has keyframes.
+    ///
+    /// # Panics
+    /// When there is none of this name.
+    pub fn has_keys(&self, name: &str) -> bool {
+        self.with(name, |param| !lock(&param.keys).is_empty())
+    }
+
+    /// Steps that the plugin took since this was asked last.
+    pub fn steps(&self) -> Vec<Step> {
+        std::mem::take(&mut lock(&self.effect.edits).done)
+    }
+
+    /// Undoes a step.
+    ///
+    /// # Panics
+    /// When it is of another instance.
+    pub fn undo(&self, step: &Step) {
+        for (name, values, keys) in step.before.iter().rev() {
+            self.with(&name.to_string_lossy(), |param| {
+                lock(&param.value).clone_from(values);
+                lock(&param.keys).clone_from(keys);
+            });
+        }
     }
 
     /// Sets a property of the clip of this name.

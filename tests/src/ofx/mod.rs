@@ -6,6 +6,7 @@
 
 #![allow(unsafe_code, reason = "a host calls foreign code and is called by it")]
 
+mod edits;
 pub mod effect;
 mod handles;
 pub mod host;

@@ -4,11 +4,16 @@ use super::handles::handle_of;
 use super::picture::Picture;
 use super::properties::{Set, Value};
 use super::state::{self, Inner, lock};
-use isophote_abi::openfx::{Handle, kOfxImageEffectPropFrameRange, kOfxImageEffectPropTemporalClipAccess};
-use std::ffi::CString;
+use isophote_abi::openfx::{
+    Handle, MainEntry, kOfxImageEffectPropFrameRange, kOfxImageEffectPropTemporalClipAccess,
+};
+use std::ffi::{CString, c_char};
 use std::sync::{Arc, Mutex};
 
 pub(super) const MAGIC: u64 = 0x0ef_fec7;
+
+/// Values by time.
+type Keys = Vec<(f64, Value)>;
 
 /// A parameter, described or with a value.
 #[derive(Debug)]
@@ -22,7 +27,46 @@ pub struct Param {
     pub set: Box<Set>,
     pub(super) value: Mutex<Vec<Value>>,
     /// Values from a time on, in the order of time; without any, `value` holds at all times.
-    pub(super) keys: Mutex<Vec<(f64, Value)>>,
+    pub(super) keys: Mutex<Keys>,
+    /// Texts that plugins were given.
+    pub(super) lent: Mutex<Vec<CString>>,
+    /// Address of its instance; 0 where it is described.
+    pub(super) instance: usize,
+}
+
+impl Param {
+    /// A text of its values, for the life of the parameter.
+    pub(super) fn lend(&self, index: usize) -> *const c_char {
+        let Some(Value::String(text)) = lock(&self.value).get(index).cloned() else {
+            return std::ptr::null();
+        };
+        let mut lent = lock(&self.lent);
+        lent.push(text);
+        lent.last().map_or(std::ptr::null(), |text| text.as_ptr())
+    }
+}
+
+/// A step that can be undone.
+#[derive(Clone, Debug, Default)]
+pub struct Step {
+    /// Its label; none for what was set outside a step.
+    pub label: Option<CString>,
+    /// Parameters that the plugin set, each with the values and keys of before.
+    pub(super) before: Vec<(CString, Vec<Value>, Keys)>,
+}
+
+impl Step {
+    /// The parameters that were set, in their order.
+    pub fn names(&self) -> Vec<String> {
+        self.before.iter().map(|(name, ..)| name.to_string_lossy().into_owned()).collect()
+    }
+}
+
+/// Steps of an instance that its plugin took.
+#[derive(Debug, Default)]
+pub(super) struct Edits {
+    pub(super) done: Vec<Step>,
+    pub(super) open: Option<Step>,
 }
 
 /// A clip, described or with a picture.
@@ -83,6 +127,9 @@ pub struct Effect {
     pub(super) params: Mutex<Vec<Box<Param>>>,
     #[expect(clippy::vec_box, reason = "plugins hold their addresses as handles")]
     pub(super) clips: Mutex<Vec<Box<Clip>>>,
+    /// Function that is told of what the plugin sets.
+    pub(super) entry: Mutex<Option<MainEntry>>,
+    pub(super) edits: Mutex<Edits>,
 }
 
 impl Effect {
@@ -96,6 +143,8 @@ impl Effect {
             param_set: Set::new(host, what),
             params: Mutex::default(),
             clips: Mutex::default(),
+            entry: Mutex::default(),
+            edits: Mutex::default(),
         });
         let owner = handle_of(&*effect) as usize;
         effect.param_set = Set::owned_by(host, what, owner);

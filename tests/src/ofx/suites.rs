@@ -1,5 +1,6 @@
 //! The functions of the test host, and the library of variadic ones that is compiled from C.
 
+use super::edits;
 use super::handles::{handle_of, nothing, owned};
 use super::objects::{Clip, Effect, MAGIC, Param};
 use super::properties::{self, Set, Value};
@@ -28,10 +29,11 @@ impl Suites {
         let null = behaviour.null_functions;
         let (get, get_at, message) =
             (Some(shim.get), Some(shim.get_at), Some(shim.message).filter(|_| !null));
+        let params = OfxParameterSuiteV1 { paramGetValue: get, paramGetValueAtTime: get_at, ..PARAMS };
         Self {
             properties: properties::SUITE,
             effects: EFFECTS,
-            params: OfxParameterSuiteV1 { paramGetValue: get, paramGetValueAtTime: get_at, ..PARAMS },
+            params: OfxParameterSuiteV1 { paramSetValue: Some(shim.set), ..params },
             threads: if null { threads::NONE } else { threads::SUITE },
             first_messages: OfxMessageSuiteV1 { message },
             messages: OfxMessageSuiteV2 {
@@ -77,12 +79,15 @@ pub(super) unsafe extern "C" fn fetch(host: Handle, name: *const c_char, version
 
 type CountFn = unsafe extern "C" fn(*mut c_void) -> c_int;
 type GetFn = unsafe extern "C" fn(*mut c_void, f64, c_int, *mut *mut c_void) -> c_int;
+type KindFn = unsafe extern "C" fn(*mut c_void) -> c_char;
+type SetFn = unsafe extern "C" fn(*mut c_void, c_int, *const c_int, *const f64, *const c_char) -> c_int;
 type SaidFn = unsafe extern "C" fn(*mut c_void, *const c_char, *const c_char) -> c_int;
-type Install = unsafe extern "C" fn(CountFn, GetFn, SaidFn);
+type Install = unsafe extern "C" fn(CountFn, GetFn, KindFn, SetFn, SaidFn);
 
 struct Shim {
     get: unsafe extern "C" fn(Handle, ...) -> OfxStatus,
     get_at: unsafe extern "C" fn(Handle, OfxTime, ...) -> OfxStatus,
+    set: unsafe extern "C" fn(Handle, ...) -> OfxStatus,
     message: unsafe extern "C" fn(*mut c_void, *const c_char, *const c_char, *const c_char, ...) -> OfxStatus,
     _library: libloading::Library,
 }
@@ -105,10 +110,11 @@ fn shim() -> &'static Shim {
         unsafe {
             let library = libloading::Library::new(&file).expect("the C functions can be loaded");
             let install = *library.get::<Install>(b"ofx_shim_install\0").expect("a symbol");
-            install(count_of, get_value, said);
+            install(count_of, get_value, edits::kind_of, edits::set_value, said);
             Shim {
                 get: *library.get(b"ofx_shim_get\0").expect("a symbol"),
                 get_at: *library.get(b"ofx_shim_get_at\0").expect("a symbol"),
+                set: *library.get(b"ofx_shim_set\0").expect("a symbol"),
                 message: *library.get(b"ofx_shim_message\0").expect("a symbol"),
                 _library: library,
             }
@@ -147,6 +153,10 @@ unsafe extern "C" fn get_value(
     let param = thing!(param, Param, "paramGetValue");
     let keyed = lock(&param.keys).iter().rev().find(|(from, _)| *from <= time).map(|(_, v)| vec![v.clone()]);
     let values = keyed.unwrap_or_else(|| lock(&param.value).clone());
+    if edits::kind_of(handle_of(param)) == 0 {
+        param.set.host.fault(format!("{:?} has no value", param.name));
+        return kOfxStatErrValue;
+    }
     for (index, value) in values.iter().enumerate().take(count as usize) {
         // SAFETY: the plugin gave as many places of the parameter's type, of which the standard has ints and
         // doubles here.
@@ -155,6 +165,8 @@ unsafe extern "C" fn get_value(
             match value {
                 Value::Int(v) => place.cast::<c_int>().write(*v),
                 Value::Double(v) => place.cast::<f64>().write(*v),
+                // Valid until the parameter is set.
+                Value::String(_) => place.cast::<*const c_char>().write(param.lend(index)),
                 _ => return kOfxStatErrValue,
             }
         }
@@ -213,8 +225,8 @@ unsafe extern "C" fn param_define(
     }
     let set = Set::new(&effect.host, "descriptor");
     let handle = set.handle();
-    let (value, keys) = Default::default();
-    params.push(Box::new(Param { magic: MAGIC, kind, name, set, value, keys }));
+    let (value, keys, lent) = Default::default();
+    params.push(Box::new(Param { magic: MAGIC, kind, name, set, value, keys, lent, instance: 0 }));
     // SAFETY: the plugin gave a place, or null.
     if let Some(place) = unsafe { place.as_mut() } {
         *place = handle;
@@ -272,10 +284,10 @@ const PARAMS: OfxParameterSuiteV1 = OfxParameterSuiteV1 {
     paramGetKeyTime: None,
     paramGetKeyIndex: None,
     paramDeleteKey: None,
-    paramDeleteAllKeys: None,
+    paramDeleteAllKeys: Some(edits::forget_keys),
     paramCopy: None,
-    paramEditBegin: None,
-    paramEditEnd: None,
+    paramEditBegin: Some(edits::begin),
+    paramEditEnd: Some(edits::end),
 };
 
 // ----- effects, clips, images -----

@@ -11,9 +11,13 @@ use roxmltree::{Document, Node, ParsingOptions};
 use std::collections::{BTreeMap, BTreeSet};
 use std::sync::OnceLock;
 
-/// Controls of hosts that give one frame and one clip at a time, which panels leave at their defaults.
-const LEFT_OUT: [&str; 6] =
-    ["working_space", "process_alpha", "reference_height", "steadiness", "window", "renewal"];
+/// Controls of hosts that give one frame and one clip at a time, which panels leave at their defaults, and the choice of a look,
+/// which needs hosts that tell of edits.
+const LEFT_OUT: [&str; 7] =
+    ["look", "working_space", "process_alpha", "reference_height", "steadiness", "window", "renewal"];
+
+/// The effect that chooses among looks and files, for which editors make the list of its controls themselves.
+const WITHOUT_PANEL: &str = "org.isophote.look";
 
 /// A control of the plugin, as MLT takes it.
 #[derive(Debug, PartialEq)]
@@ -49,7 +53,8 @@ fn plugin() -> &'static BTreeMap<String, BTreeMap<String, Control>> {
             });
             (format!("openfx.{}", identifier.replace(':', "^")), controls)
         };
-        binary.plugins().iter().map(|plugin| effect(plugin.identifier())).collect()
+        let ids = binary.plugins().iter().map(|plugin| plugin.identifier());
+        ids.filter(|id| id != WITHOUT_PANEL).map(effect).collect()
     })
 }
 

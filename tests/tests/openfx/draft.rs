@@ -34,8 +34,11 @@ pub fn drafts_look_like_the_frame_and_their_tiles_are_parts_of_them(binary: &Bin
     let square: f64 = full.iter().zip(&half).map(|(a, b)| f64::from(a - b).powi(2)).sum();
     let psnr = -10.0 * (square / full.len() as f64).log10();
     println!("{id}: {psnr:.1} dB");
-    assert!(full != half, "{id} is no draft");
-    assert!(psnr >= if effect.node.id == "ink" { LEAST_OF_MARKS } else { LEAST }, "{id}: {psnr:.1} dB");
+    // There is no edge in it that is as hard as some effects want one.
+    let is_plain = full.iter().all(|value| *value == full[0]);
+    assert!(is_plain || full != half, "{id} is no draft");
+    let has_marks = ["ink", "tensor_view"].contains(&effect.node.id);
+    assert!(psnr >= if has_marks { LEAST_OF_MARKS } else { LEAST }, "{id}: {psnr:.1} dB");
     // From what the regions of interest ask for alone.
     let tile = [60, 30, 126, 97];
     if let Some(regions) = instance.regions(tile.map(f64::from), 1.0) {

@@ -109,6 +109,8 @@ pub struct Through<'a> {
     pub scale: f32,
     pub space: ColourSpace,
     pub premultiplied: bool,
+    /// Height of pictures at which lengths are meant; 0: any.
+    pub reference_height: u32,
 }
 
 impl Through<'_> {
@@ -161,6 +163,7 @@ impl Through<'_> {
             scale: self.scale,
             space: self.space as u32,
             alpha: if self.premultiplied { ISOPHOTE_ALPHA_PREMULTIPLIED } else { ISOPHOTE_ALPHA_STRAIGHT },
+            reference_height: self.reference_height,
             ..Default::default()
         };
         // SAFETY: text with a closing zero, images of the sizes they name, and places for the answers.

@@ -53,7 +53,7 @@ pub fn tiles_from_their_regions_of_interest_equal_the_full_frame(binary: &Binary
             };
             let needed = needed(&effect, region, aspect);
             let wanted = [needed.x0 + x, SIZE[1] - needed.y1 + y, needed.x1 + x, SIZE[1] - needed.y0 + y];
-            assert_eq!(pixels, wanted, "{}", effect.plugin(binary).identifier());
+            assert!(is_enough(pixels, wanted, window), "{wanted:?}: {pixels:?}");
             instance.connect("Source", source.crop(pixels));
             let (status, tile) = instance.try_render(layout, SIZE, &Wanted::new(window));
             assert_eq!(status, kOfxStatOK);
@@ -63,6 +63,16 @@ pub fn tiles_from_their_regions_of_interest_equal_the_full_frame(binary: &Binary
         }
     }
     host.no_faults();
+}
+
+/// True for a region that holds all that is needed of the picture for a window. Drafts, which hosts do not announce, look at
+/// larger pixels, and may need half as much more around it.
+fn is_enough(region: [i32; 4], needed: [i32; 4], window: [i32; 4]) -> bool {
+    (0..4).all(|side| {
+        let sign = if side < 2 { -1 } else { 1 };
+        let around = (needed[side] - window[side]) * sign;
+        (0..=around / 2 + 8).contains(&((region[side] - needed[side]) * sign))
+    })
 }
 
 pub fn a_host_without_tiles_may_give_parts_all_the_same(binary: &Binary) {

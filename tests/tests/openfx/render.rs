@@ -26,6 +26,7 @@ pub fn through(graph: &isophote::Graph, source: &Picture, layout: Layout, space:
         scale: 1.0,
         space,
         premultiplied: layout.alpha != Some(kOfxImageUnPreMultiplied),
+        reference_height: 0,
     };
     through.c(&[("color", &source.packed(), layout)], layout)
 }
@@ -208,15 +209,22 @@ pub fn guides_enter_in_the_general_context(binary: &Binary, effect: Expected) {
     if let Ok(tensor) = graph.find("t") {
         graph.set_text(tensor, "guide_weight", "1").unwrap();
     }
-    let wanted =
-        Through { graph: &graph, size: SIZE, scale: 1.0, space: ColourSpace::Srgb, premultiplied: true }.c(
-            &[
-                ("color", &source.packed(), layout),
-                ("normal", &normals, layout),
-                ("depth", &depths, depth_layout),
-            ],
-            layout,
-        );
+    let wanted = Through {
+        graph: &graph,
+        size: SIZE,
+        scale: 1.0,
+        space: ColourSpace::Srgb,
+        premultiplied: true,
+        reference_height: 0,
+    }
+    .c(
+        &[
+            ("color", &source.packed(), layout),
+            ("normal", &normals, layout),
+            ("depth", &depths, depth_layout),
+        ],
+        layout,
+    );
     assert!(got == wanted, "{}", effect.plugin(binary).identifier());
     let without = through(&graph, &source, layout, ColourSpace::Srgb);
     assert!(got != without, "{} does not mind its guides", effect.plugin(binary).identifier());
@@ -251,9 +259,15 @@ pub fn object_numbers_and_painted_flow_enter_in_the_general_context(binary: &Bin
         inputs.push(("flow", &flow, layout));
     }
     let got = instance.render(layout, SIZE).packed();
-    let wanted =
-        Through { graph: &graph, size: SIZE, scale: 1.0, space: ColourSpace::Srgb, premultiplied: true }
-            .c(&inputs, layout);
+    let wanted = Through {
+        graph: &graph,
+        size: SIZE,
+        scale: 1.0,
+        space: ColourSpace::Srgb,
+        premultiplied: true,
+        reference_height: 0,
+    }
+    .c(&inputs, layout);
     assert!(got == wanted, "{}", effect.plugin(binary).identifier());
     let follows_flow = ["oil_paint", "painting", "coherent", "line_integral_convolution", "flow_bilateral"];
     if follows_flow.contains(&effect.node.id) {

@@ -66,7 +66,7 @@ fn run(catalogue: &Path, folder: &Path) -> Result<(), Error> {
     effects(&value)?.iter().try_for_each(|(id, group)| draw(folder, id, group))
 }
 
-/// Ids and groups of the effects, by the rule that the library follows.
+/// Ids and groups of the effects, by the rule that the library follows, and of that for looks.
 fn effects(catalogue: &Value) -> Result<Vec<(String, String)>, Error> {
     let nodes = catalogue["nodes"].as_array().ok_or(Error::NoNodes)?;
     let effect = |node: &Value| {
@@ -80,7 +80,8 @@ fn effects(catalogue: &Value) -> Result<Vec<(String, String)>, Error> {
         let shown = node["output"]["kind"] == "color" || node["output"]["kind"] == "scalar";
         (alone && shown).then(|| (id.to_owned(), group.to_owned()))
     };
-    Ok(nodes.iter().filter_map(effect).collect())
+    let look = ("look".to_owned(), "styles".to_owned());
+    Ok(nodes.iter().filter_map(effect).chain([look]).collect())
 }
 
 /// Writes both files of one effect.

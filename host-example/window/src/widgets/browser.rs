@@ -177,6 +177,21 @@ fn layout(session: &Session, width: f32, columns: usize) -> (Vec<(Rect, Item)>, 
     (items, y + GAP)
 }
 
+/// Says why there is no card.
+fn say_why_empty(ui: &mut Ui, session: &Session) {
+    let text = if session.browser.entries().is_empty() {
+        "Reading the looks…"
+    } else if session.browser.filter.favourites {
+        "No look with a star is like that. A click on the star of a card, or *, makes it a favourite."
+    } else {
+        "No look is like that."
+    };
+    if !session.browser.entries().is_empty() {
+        ui.add_space(24.0);
+    }
+    ui.label(RichText::new(text).color(theme::FAINT));
+}
+
 fn grid(ui: &mut Ui, viewport: Rect, session: &mut Session) {
     let width = ui.available_width() - 14.0;
     // Two beside each other can be compared where there is hardly room for them.
@@ -186,17 +201,8 @@ fn grid(ui: &mut Ui, viewport: Rect, session: &mut Session) {
     let (items, height) = layout(session, width, columns);
     ui.set_height(height);
     let corner = ui.max_rect().min.to_vec2();
-    if session.browser.entries().is_empty() {
-        ui.label(RichText::new("Reading the looks…").color(theme::FAINT));
-    } else if items.is_empty() {
-        ui.add_space(24.0);
-        let text = match session.browser.filter.favourites {
-            true => {
-                "No look with a star is like that. A click on the star of a card, or *, makes it a favourite."
-            }
-            false => "No look is like that.",
-        };
-        ui.label(RichText::new(text).color(theme::FAINT));
+    if items.is_empty() {
+        say_why_empty(ui, session);
     }
     let mut act = None;
     ask_plain(ui, session, &items);

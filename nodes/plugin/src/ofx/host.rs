@@ -33,6 +33,8 @@ pub struct Host {
     showing: Mutex<BTreeMap<usize, Shown>>,
     /// Addresses of the instances that have been given their notice.
     noticed: Mutex<BTreeSet<usize>>,
+    /// Addresses of the instances whose values the effect itself sets.
+    edited: Mutex<BTreeSet<usize>>,
     pub quirks: Quirks,
     /// True where images may hold only a part of the picture.
     pub tiles: bool,
@@ -79,6 +81,7 @@ impl Host {
                 messages: OnceLock::new(),
                 showing: Mutex::default(),
                 noticed: Mutex::default(),
+                edited: Mutex::default(),
                 quirks: Quirks::default(),
                 tiles: true,
                 temporal: false,
@@ -193,6 +196,18 @@ impl Host {
     pub fn forget(&self, effect: Handle) {
         lock(&self.noticed).remove(&effect.addr());
         self.clear(effect, &[Shown::Failure, Shown::Notice]);
+    }
+
+    /// Sets values of an instance. What the host tells of them meanwhile is no news.
+    pub fn editing(&self, effect: Handle, set: impl FnOnce()) {
+        lock(&self.edited).insert(effect.addr());
+        set();
+        lock(&self.edited).remove(&effect.addr());
+    }
+
+    /// True while the effect itself sets values of an instance.
+    pub fn is_editing(&self, effect: Handle) -> bool {
+        lock(&self.edited).contains(&effect.addr())
     }
 
     fn clear(&self, effect: Handle, what: &[Shown]) {

@@ -2,7 +2,7 @@
 
 use super::clips::{MASK, OUTPUT, SOURCE, is_connected};
 use super::colours;
-use super::effects::{Effect, Target};
+use super::effects::{Effect, Form, Target};
 use super::frame::{Frame, bounded, is_endless};
 use super::host::{Host, Outcome, Properties};
 use super::image::Clip;
@@ -198,6 +198,10 @@ pub fn clip_preferences(effect: &Effect, host: &Host, instance: Handle, out_args
 
 /// True where frames of one and the same picture may differ, at one time or another.
 fn is_animated(effect: &Effect, host: &Host, instance: Handle) -> Outcome<bool> {
+    if effect.form == Form::Look {
+        let settings = Settings::read(effect, host, instance, 0.0)?;
+        return Ok(settings.look.varies || settings.graph.is_animated());
+    }
     let decides = effect.controls.iter().any(|control| match control.target {
         Target::Param(_, param) => animates_marks(param),
         _ => false,
@@ -237,7 +241,8 @@ pub fn is_identity(
         .map(|frame| frame.in_project(extent(host, instance).map(|[_, top]| top), moment.time))
         .map(|frame| frame.for_reference(settings.reference_height));
     let scale = frame.map_or(moment.scale[1] as f32, |frame| frame.length_scale());
-    if !settings.is_identity(scale) {
+    // A fault is told when a frame is rendered.
+    if !settings.is_identity(scale) || settings.look.fault.is_some() {
         return Ok(kOfxStatReplyDefault);
     }
     let answer = host.set(out_args);

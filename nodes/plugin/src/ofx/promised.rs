@@ -2,7 +2,8 @@
 //!
 //! `parameters.txt` holds it as it was when it was last written. Whatever is gone from it, or is another, would break projects.
 
-use super::effects::{Control, EFFECTS, Effect, Target};
+use super::effects::{Control, EFFECTS, Effect, Target, USUAL_REFERENCE};
+use super::look_effect::DEFAULT;
 use isophote::Value;
 use std::collections::BTreeMap;
 use std::path::Path;
@@ -28,11 +29,21 @@ fn stored(control: &Control) -> String {
             }
         }
         Target::WorkingSpace => format!("choice by the host of {options}"),
-        Target::LinesOutput | Target::MotionFrom | Target::MotionConvention => {
+        Target::Own(param) => format!("number {}", param.default.decimals()[0]),
+        Target::Shown => format!("choice {DEFAULT} of {options}"),
+        Target::File => "text".to_owned(),
+        Target::Reload => "button".to_owned(),
+        Target::TimesRead => "whole number 0".to_owned(),
+        Target::Look
+        | Target::LinesOutput
+        | Target::MaskFrom
+        | Target::MotionFrom
+        | Target::MotionConvention => {
             format!("choice 0 of {options}")
         }
-        Target::ReferenceHeight => "whole number".to_owned(),
-        Target::ProcessAlpha | Target::MaskApply => "switch".to_owned(),
+        Target::ReferenceHeight => format!("whole number {USUAL_REFERENCE}"),
+        Target::ProcessAlpha | Target::MaskInvert => "switch off".to_owned(),
+        Target::MaskApply => "switch by the host".to_owned(),
     }
 }
 

@@ -15,12 +15,20 @@ pub struct Quirks {
     pub threads: bool,
     /// True where a clip without a picture can call itself connected, so that a mask must be asked for.
     pub all_connected: bool,
+    /// True where effects hear of what the user edits.
+    pub tells_of_edits: bool,
 }
 
 impl Default for Quirks {
     fn default() -> Self {
         // Most hosts composite in scene-linear light.
-        Self { space: Space::Linear, messages: true, threads: true, all_connected: false }
+        Self {
+            space: Space::Linear,
+            messages: true,
+            threads: true,
+            all_connected: false,
+            tells_of_edits: true,
+        }
     }
 }
 
@@ -42,8 +50,12 @@ impl Quirks {
             // A runner for tests, which ends when its suite is used.
             return Self { threads: false, ..general };
         }
+        if named(&["mlt", "kdenlive", "shotcut"]) {
+            // Instances are made anew for each frame, with the values that there are.
+            return Self { space: Space::Srgb, tells_of_edits: false, ..general };
+        }
         // Editors work on pictures as they are displayed.
-        if named(&["vegas", "mlt", "kdenlive", "shotcut", "premiere", "hitfilm"]) {
+        if named(&["vegas", "premiere", "hitfilm"]) {
             return Self { space: Space::Srgb, ..general };
         }
         general

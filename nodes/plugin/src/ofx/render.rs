@@ -91,13 +91,15 @@ fn attempt(effect: &Effect, host: &Host, instance: Handle, args: Properties<'_>)
         convention: settings.convention,
         identity: settings.is_identity(frame.length_scale()),
     };
+    let fault = settings.look.fault.take();
     let action = RenderAction { inputs, settings, quality: Quality::of(args), output, mask };
     let done = faults::failure(effect).map_or_else(|| action.run(window), |error| Err(Stop::Error(error)));
     if matches!(done, Err(Stop::Error(Error::Engine(EngineError::Memory(_))))) {
         // What is kept for other frames may be what is missing.
         forget_caches();
     }
-    done
+    done?;
+    fault.map_or(Ok(()), |fault| Err(Stop::PassedOn(fault)))
 }
 
 /// Gives back what is kept from one render to the next.
@@ -114,6 +116,10 @@ fn report(host: &Host, instance: Handle, done: Result<(), Stop>) -> Outcome {
             Ok(kOfxStatOK)
         }
         Err(Stop::Aborted) => Ok(kOfxStatOK),
+        Err(Stop::PassedOn(reason)) => {
+            host.show_failure(instance, &reason);
+            Ok(kOfxStatOK)
+        }
         Err(Stop::Status(status)) => {
             if let Some(message) = message_of(status) {
                 host.show_failure(instance, message);
@@ -253,7 +259,8 @@ impl RenderAction<'_> {
     /// was read of the source, if that is at hand.
     fn finished(&self, result: Image, band: Rect, source: Option<Image>) -> Outcome<Image> {
         let keep_alpha = !self.settings.process_alpha && self.inputs.source.alpha != Alpha::Opaque;
-        if !keep_alpha && self.mask.is_none() {
+        let mix = self.settings.look.mix;
+        if !keep_alpha && self.mask.is_none() && mix == 1.0 {
             source.into_iter().for_each(pool::keep_image);
             return Ok(result);
         }
@@ -268,10 +275,13 @@ impl RenderAction<'_> {
                 take_alpha(image.row_mut(y), of_band(&source, band, y), premultiplied);
             }
         }
-        if let Some((rule, mask)) = &self.mask {
-            let amounts = rule.read(mask, &self.inputs.frame, band)?;
-            for (y, amounts) in (band.y0..band.y1).zip(amounts.chunks_exact(band.width() as usize)) {
-                blend(image.row_mut(y), of_band(&source, band, y), amounts);
+        if self.mask.is_some() || mix != 1.0 {
+            let mask = self.mask.as_ref().map(|(rule, mask)| rule.read(mask, &self.inputs.frame, band));
+            let mask = mask.transpose()?;
+            let width = band.width() as usize;
+            for (at, y) in (band.y0..band.y1).enumerate() {
+                let amounts = mask.as_ref().map(|mask| &mask[at * width..(at + 1) * width]);
+                blend(image.row_mut(y), of_band(&source, band, y), amounts, mix);
             }
         }
         pool::keep_image(source);
@@ -414,9 +424,10 @@ fn take_alpha(row: &mut [f32], source: &[f32], premultiplied: bool) {
     }
 }
 
-/// Blends the source into a row of pixels where the mask is less than 1.
-fn blend(row: &mut [f32], source: &[f32], amounts: &[f32]) {
-    for ((pixel, source), amount) in row.chunks_exact_mut(4).zip(source.chunks_exact(4)).zip(amounts) {
+/// Blends the source into a row of pixels where the mask, which is 1 where there is none, times the mix is less than 1.
+fn blend(row: &mut [f32], source: &[f32], amounts: Option<&[f32]>, mix: f32) {
+    for (at, (pixel, source)) in row.chunks_exact_mut(4).zip(source.chunks_exact(4)).enumerate() {
+        let amount = amounts.map_or(1.0, |amounts| amounts[at]) * mix;
         for (v, s) in pixel.iter_mut().zip(source) {
             // Exact at both ends.
             *v = *v * amount + *s * (1.0 - amount);

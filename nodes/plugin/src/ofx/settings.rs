@@ -4,15 +4,16 @@
 use super::colours::{self, SPACES};
 use super::effects::{Control, Effect, Form, Target, USUAL_REFERENCE};
 use super::host::{Host, Outcome};
+use super::look_effect;
 use super::mask::{MaskFrom, MaskRule};
 use super::motion::MotionFrom;
+use super::values::Values;
 use isophote::spec::{Param, Unit};
-use isophote::{Graph, NodeId, Value};
+use isophote::{Graph, NodeId};
 use isophote_abi::openfx::*;
 use isophote_colour::Space;
 use isophote_motion::Convention;
-use std::ffi::{CStr, c_int};
-use std::ptr::null_mut;
+use std::ffi::CStr;
 
 /// Settings of an instance.
 #[derive(Debug)]
@@ -35,9 +36,30 @@ pub struct Settings {
     pub motion_from: MotionFrom,
     /// Meaning of the vectors of clips.
     pub convention: Convention,
+    /// Settings that the effect for looks alone has.
+    pub look: OfLook,
     /// Numbers that must be 0 for the values to leave the picture as it is: the least of those that do so at
     /// 0. The first is a plain number, the second a length in pixels of the full-size picture.
     least: [f32; 2],
+}
+
+/// Settings of an instance that shows any graph.
+#[derive(Debug)]
+pub struct OfLook {
+    /// Share of the result in the picture.
+    pub mix: f32,
+    /// True where values of the graph differ from frame to frame, which no control shows.
+    pub varies: bool,
+    /// True where the graph comes from a file.
+    pub is_file: bool,
+    /// Reason why the source is passed on as it is, and what to do, for people.
+    pub fault: Option<String>,
+}
+
+impl Default for OfLook {
+    fn default() -> Self {
+        Self { mix: 1.0, varies: false, is_file: false, fault: None }
+    }
 }
 
 /// Lengths below this share of a rendered pixel count as 0.
@@ -49,12 +71,9 @@ impl Settings {
     /// # Errors
     /// Failed, when the host has no parameters or the graph refuses a value.
     pub fn read(effect: &Effect, host: &Host, instance: Handle, time: f64) -> Outcome<Self> {
-        let values = Values { host, set: host.params(instance)?, time };
-        let mut over = false;
+        let values = Values::of(host, instance, time)?;
         let (mut space, mut as_is) = (host.quirks.space, false);
-        let mut reference_height = USUAL_REFERENCE;
-        let (mut process_alpha, mut mask_apply) = (false, !host.quirks.all_connected);
-        let mut mask = MaskRule::default();
+        let (mut reference_height, mut over, mut process_alpha) = (USUAL_REFERENCE, false, false);
         let (mut motion_from, mut convention) = (MotionFrom::default(), Convention::OWN);
         for control in &effect.controls {
             let name = &control.name;
@@ -70,11 +89,6 @@ impl Settings {
                     reference_height = height.unwrap_or(reference_height);
                 }
                 Target::ProcessAlpha => process_alpha = values.bool(name).unwrap_or(process_alpha),
-                Target::MaskApply => mask_apply = values.bool(name).unwrap_or(mask_apply),
-                Target::MaskFrom => {
-                    mask.from = values.index(name).and_then(MaskFrom::at).unwrap_or_default();
-                }
-                Target::MaskInvert => mask.inverted = values.bool(name).unwrap_or_default(),
                 Target::MotionFrom => {
                     motion_from = values.index(name).and_then(MotionFrom::at).unwrap_or_default();
                 }
@@ -82,7 +96,7 @@ impl Settings {
                     let listed = values.index(name).and_then(|i| Convention::PRESETS.get(i));
                     convention = *listed.unwrap_or(&convention);
                 }
-                Target::Param(..) => {}
+                _ => {}
             }
         }
         let (mut graph, ids) = effect.graph(over).map_err(|_| kOfxStatFailed)?;
@@ -100,18 +114,35 @@ impl Settings {
                 least[kind] = least[kind].min(value.form().numbers[0].abs() as f32);
             }
         }
-        Ok(Self {
+        let settings = Self {
             graph,
             ids,
             space,
             as_is,
             reference_height,
             process_alpha,
-            mask: mask_apply.then_some(mask),
+            mask: mask(effect, &values),
             motion_from,
             convention,
+            look: OfLook::default(),
             least,
-        })
+        };
+        Ok(if effect.form == Form::Look { settings.showing_look(instance, &values) } else { settings })
+    }
+
+    /// The same with the look of an instance.
+    fn showing_look(self, instance: Handle, values: &Values<'_>) -> Self {
+        let shown = look_effect::shown(values.host, instance, values);
+        let mix = look_effect::mix(values);
+        let is_source = shown.fault.is_some() || mix == 0.0;
+        Self {
+            graph: shown.graph,
+            ids: Vec::new(),
+            reference_height: if shown.in_pixels { 0 } else { self.reference_height },
+            look: OfLook { mix, varies: shown.varies, is_file: shown.is_file, fault: shown.fault },
+            least: if is_source { [0.0; 2] } else { [f32::INFINITY; 2] },
+            ..self
+        }
     }
 
     /// Space of the pixels by the host's name of their colour space, which counts more than what they
@@ -126,87 +157,29 @@ impl Settings {
     }
 }
 
+/// Rule by which a mask is read, where one counts.
+fn mask(effect: &Effect, values: &Values<'_>) -> Option<MaskRule> {
+    let (mut applies, mut rule) = (!values.host.quirks.all_connected, MaskRule::default());
+    for Control { name, target, .. } in &effect.controls {
+        match target {
+            Target::MaskApply => applies = values.bool(name).unwrap_or(applies),
+            Target::MaskFrom => rule.from = values.index(name).and_then(MaskFrom::at).unwrap_or_default(),
+            Target::MaskInvert => rule.inverted = values.bool(name).unwrap_or_default(),
+            _ => {}
+        }
+    }
+    applies.then_some(rule)
+}
+
 /// The parameters that have values of their own at different times, each with the position of its node.
 ///
 /// # Errors
 /// Failed, when the host has no parameters.
 pub fn animated(effect: &Effect, host: &Host, instance: Handle) -> Outcome<Vec<(usize, &'static Param)>> {
-    let values = Values { host, set: host.params(instance)?, time: 0.0 };
+    let values = Values::of(host, instance, 0.0)?;
     let of_node = |control: &Control| match control.target {
         Target::Param(node, param) if values.is_animated(&control.name) => Some((node, param)),
         _ => None,
     };
     Ok(effect.controls.iter().filter_map(of_node).collect())
-}
-
-/// Parameters of an instance at a time.
-struct Values<'h> {
-    host: &'h Host,
-    set: Handle,
-    time: f64,
-}
-
-impl Values<'_> {
-    fn handle(&self, name: &CStr) -> Option<Handle> {
-        let get = self.host.parameters.paramGetHandle?;
-        let mut param = null_mut();
-        // SAFETY: a set that the host gave, a string with a closing zero, a place for the answer, and no
-        // wish for the properties.
-        let status = unsafe { get(self.set, name.as_ptr(), &raw mut param, null_mut()) };
-        (status == kOfxStatOK && !param.is_null()).then_some(param)
-    }
-
-    fn is_animated(&self, name: &CStr) -> bool {
-        let Some((param, count)) = self.handle(name).zip(self.host.parameters.paramGetNumKeys) else {
-            return false;
-        };
-        let mut keys = 0;
-        // SAFETY: a parameter that the host gave, and a place for the answer.
-        unsafe { count(param, &raw mut keys) == kOfxStatOK && keys > 0 }
-    }
-
-    fn int(&self, name: &CStr) -> Option<c_int> {
-        let (param, get) = (self.handle(name)?, self.host.parameters.paramGetValueAtTime?);
-        let mut value: c_int = 0;
-        // SAFETY: integers, booleans and choices are given through one pointer to an int.
-        let status = unsafe { get(param, self.time, &raw mut value) };
-        (status == kOfxStatOK).then_some(value)
-    }
-
-    /// The position of a choice's option.
-    fn index(&self, name: &CStr) -> Option<usize> {
-        usize::try_from(self.int(name)?).ok()
-    }
-
-    fn bool(&self, name: &CStr) -> Option<bool> {
-        Some(self.int(name)? != 0)
-    }
-
-    fn double(&self, name: &CStr) -> Option<f64> {
-        let (param, get) = (self.handle(name)?, self.host.parameters.paramGetValueAtTime?);
-        let mut value: f64 = 0.0;
-        // SAFETY: doubles are given through one pointer to a double.
-        let status = unsafe { get(param, self.time, &raw mut value) };
-        (status == kOfxStatOK && !value.is_nan()).then_some(value)
-    }
-
-    fn color(&self, name: &CStr) -> Option<[f64; 4]> {
-        let (param, get) = (self.handle(name)?, self.host.parameters.paramGetValueAtTime?);
-        let mut value = [0.0_f64; 4];
-        let [r, g, b, a] = &mut value;
-        // SAFETY: colours with alpha are given through four pointers to doubles.
-        let status = unsafe { get(param, self.time, &raw mut *r, &raw mut *g, &raw mut *b, &raw mut *a) };
-        (status == kOfxStatOK && !value.iter().any(|v| v.is_nan())).then_some(value)
-    }
-
-    /// A value within the range of the parameter, which not every host keeps.
-    fn value(&self, name: &CStr, param: &Param) -> Option<Value> {
-        let numbers = match param.default {
-            Value::Float(_) => [self.double(name)?, 0.0, 0.0, 0.0],
-            Value::Int(_) | Value::Choice(_) => [self.int(name)?.into(), 0.0, 0.0, 0.0],
-            Value::Bool(_) => [u8::from(self.bool(name)?).into(), 0.0, 0.0, 0.0],
-            Value::Color(_) => self.color(name)?,
-        };
-        Some(param.nearest(numbers))
-    }
 }

@@ -10,6 +10,8 @@ pub enum Stop {
     Aborted,
     Status(OfxStatus),
     Error(Error),
+    /// The source was passed on as it is, for this reason.
+    PassedOn(String),
 }
 
 impl From<OfxStatus> for Stop {
