@@ -4,6 +4,7 @@
 //! another image, or lie at any address.
 
 use super::failure::{Failure, Outcome};
+use crate::pool;
 use isophote::engine::pixels::{Sample, read_row, read_vectors, write_row};
 use isophote::engine::{Image, Rect};
 use isophote::graph::GraphInput;
@@ -149,7 +150,7 @@ impl Checked {
     pub unsafe fn read(&self, window: Rect, input: GraphInput) -> Outcome<(Image, u64)> {
         self.must_suit(input)?;
         let channels = input.kind().channels();
-        let mut image = Image::with_window(window, channels)?;
+        let mut image = pool::image(window, channels)?;
         let mut bytes = self.row_of_bytes(&window)?;
         let mut replaced = 0;
         for y in window.y0..window.y1 {
@@ -200,13 +201,21 @@ impl Checked {
             Failure::new(ISOPHOTE_ERROR_OUT_OF_MEMORY, format!("there is no memory for {len} vectors"))
         })?;
         pairs.resize(len, 0.0);
-        for (pixel, pair) in
-            bytes.chunks_exact(self.channels * self.sample.size()).zip(pairs.chunks_exact_mut(2))
-        {
+        let size = self.sample.size();
+        let pixels = bytes.chunks_exact(self.channels * size).zip(pairs.chunks_exact_mut(2));
+        for (pixel, pair) in pixels {
             for (value, channel) in pair.iter_mut().zip(channels) {
-                let from = &pixel[channel * self.sample.size()..][..self.sample.size()];
                 // A vector of one component, whose number is kept whatever it is.
-                read_vectors(from, self.sample, 1, std::slice::from_mut(value), 1, f32::NAN);
+                match (self.sample, pixel[channel * size..].first_chunk()) {
+                    (Sample::F32, Some(bytes)) => {
+                        let read = f32::from_ne_bytes(*bytes);
+                        *value = if read.is_finite() { read } else { f32::NAN };
+                    }
+                    _ => {
+                        let from = &pixel[channel * size..][..size];
+                        read_vectors(from, self.sample, 1, std::slice::from_mut(value), 1, f32::NAN);
+                    }
+                }
             }
         }
         Ok(pairs)

@@ -210,12 +210,12 @@ impl<'h> Fetched<'h> {
     pub fn read(&self, frame: &Frame, window: Rect, input: GraphInput, beyond: Beyond) -> Outcome<Image> {
         let checked = self.checked(frame)?;
         let channels = input.kind().channels();
-        let mut image = Image::with_window(window, channels).map_err(|_| kOfxStatErrMemory)?;
+        let zeros = || Image::with_window(window, channels).map_err(|_| kOfxStatErrMemory);
         let inside = window.intersection(&checked.window);
         // Normals are read as colours: integers hold them as shares of -1..=1.
         let as_input = if input == GraphInput::Normal { GraphInput::Color } else { input };
         if inside.is_empty() && beyond == Beyond::Zero {
-            return Ok(image);
+            return zeros();
         }
         let inside = if inside.is_empty() { nearest(&window, &checked.window) } else { inside };
         // SAFETY: the host gave the image, so that its memory may be read until it is released.
@@ -231,6 +231,7 @@ impl<'h> Fetched<'h> {
         if inside == window {
             return Ok(part);
         }
+        let mut image = zeros()?;
         let c = channels as usize;
         for y in window.y0..window.y1 {
             if beyond == Beyond::Zero && !(inside.y0..inside.y1).contains(&y) {
@@ -316,24 +317,23 @@ impl<'h> Fetched<'h> {
         Ok(amounts)
     }
 
-    /// Writes the pixels of `image` that this one holds.
+    /// Writes the pixels of `image` that this one holds; its colours may be in another order afterwards.
     ///
     /// # Errors
     /// Memory; image format, when no image can have its shape.
-    pub fn write(&self, frame: &Frame, mut image: Image) -> Outcome<()> {
+    pub fn write(&self, frame: &Frame, image: &mut Image) -> Outcome<()> {
         let checked = self.checked(frame)?;
         let inside = image.window().intersection(&checked.window);
         if inside.is_empty() {
             return Ok(());
         }
-        if inside != image.window() {
-            image = image.crop(inside).map_err(|_| kOfxStatErrMemory)?;
-        }
         if self.blue_first && image.channels() == 4 {
             image.data_mut().chunks_exact_mut(4).for_each(|p| p.swap(0, 2));
         }
+        let part = (inside != image.window()).then(|| image.crop(inside)).transpose();
+        let part = part.map_err(|_| kOfxStatErrMemory)?;
         // SAFETY: the host gave the image to be written, until it is released.
-        unsafe { checked.write(&image) }.map_err(|_| kOfxStatErrMemory)
+        unsafe { checked.write(part.as_ref().unwrap_or(image)) }.map_err(|_| kOfxStatErrMemory)
     }
 }
 

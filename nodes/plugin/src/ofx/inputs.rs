@@ -1,7 +1,7 @@
 //! Inputs of a plan: the picture and its guides, of the frame that is rendered and of those around it.
 //!
-//! The images of other frames are fetched when they are read and given back at once. None is kept from one render to the
-//! next: hosts do not tell effects when the pictures of other frames change.
+//! The images of other frames are fetched when they are read and given back at once. They are read for every render:
+//! hosts do not tell effects when the pictures of other frames change.
 
 use super::clips::{MOTION, MOTION_FORWARD, SOURCE, guide_clip};
 use super::colours::Colours;
@@ -12,9 +12,10 @@ use super::image::{Alpha, Beyond, Clip, Fetched};
 use super::prepared::Prepared;
 use super::stop::Stop;
 use crate::pixel_aspect::multiply;
+use crate::pool;
 use isophote::Error;
 use isophote::engine::cpu::Threads;
-use isophote::engine::{Image, Rect};
+use isophote::engine::{Image, Plan, Rect};
 use isophote::graph::GraphInput;
 use isophote::request::Guides;
 use isophote_abi::openfx::*;
@@ -39,13 +40,29 @@ impl Field {
     }
 }
 
-/// Images by the names of a plan's inputs.
-pub type Named = Vec<(String, Image)>;
+/// Pixels that were read for an input of a plan.
+pub struct Read {
+    /// The plan's name for it.
+    pub name: String,
+    /// The host's pixels, or those of the plan once they are ready.
+    pub pixels: Image,
+    input: GraphInput,
+    /// The part of the plan's image.
+    window: Rect,
+    is_ready: bool,
+}
+
+impl Read {
+    /// Keeps its memory for others.
+    pub fn keep_memory(self) {
+        pool::keep_image(self.pixels);
+    }
+}
 
 /// Result of reading.
 pub enum Gathered {
     /// Everything.
-    All(Named),
+    All(Vec<Read>),
     /// Nothing, since this frame, counted from the one that is rendered, lacks an image.
     Without(i32),
 }
@@ -120,33 +137,47 @@ impl<'h> Inputs<'h> {
         self.source.alpha == Alpha::Unpremultiplied
     }
 
-    /// Images that the plan reads to compute `band`, in the plan's pixels.
-    pub fn gather(&self, prepared: &Prepared, band: Rect, threads: &dyn Threads) -> Result<Gathered, Stop> {
-        let windows = prepared.windows(band);
-        let mut images = Vec::new();
-        for port in prepared.planned.plan().inputs() {
+    /// The host's pixels that a plan, or a part of it, reads of each of its images.
+    pub fn gather(&self, prepared: &Prepared, plan: &Plan, windows: &[Rect]) -> Result<Gathered, Stop> {
+        let mut reads = Vec::new();
+        for port in plan.inputs() {
             let window = windows[port.image.index()];
             let Some(input) = GraphInput::from_id(port.base()).filter(|_| !window.is_empty()) else {
                 continue;
             };
-            let Some(mut pixels) = self.pixels(prepared, input, port.frame, window)? else {
-                if port.frame != 0 {
-                    return Ok(Gathered::Without(port.frame));
+            match self.pixels(prepared, input, port.frame, window)? {
+                Some(pixels) => {
+                    let name = port.name.clone();
+                    reads.push(Read { name, pixels, input, window, is_ready: false });
                 }
-                continue;
-            };
-            if input == GraphInput::Color {
-                self.colours.enter(&mut pixels, threads);
+                None if port.frame != 0 => return Ok(Gathered::Without(port.frame)),
+                None => {}
             }
-            if let Some(square) = prepared.square {
-                if input == GraphInput::Color && self.is_straight() {
-                    multiply(&mut pixels);
-                }
-                pixels = square.to_square(pixels, window, input, threads).map_err(Error::from)?;
-            }
-            images.push((port.name.clone(), pixels));
         }
-        Ok(Gathered::All(images))
+        Ok(Gathered::All(reads))
+    }
+
+    /// Makes the host's pixels those of the plan, if they are not yet.
+    pub fn make_ready(
+        &self,
+        prepared: &Prepared,
+        read: &mut Read,
+        threads: &dyn Threads,
+    ) -> Result<(), Stop> {
+        if std::mem::replace(&mut read.is_ready, true) {
+            return Ok(());
+        }
+        if read.input == GraphInput::Color {
+            self.colours.enter(&mut read.pixels, threads);
+        }
+        if let Some(square) = prepared.square {
+            if read.input == GraphInput::Color && self.is_straight() {
+                multiply(&mut read.pixels);
+            }
+            let pixels = std::mem::take(&mut read.pixels);
+            read.pixels = square.to_square(pixels, read.window, read.input, threads).map_err(Error::from)?;
+        }
+        Ok(())
     }
 
     /// The host's pixels under a window of the plan's; none where there is no image.
