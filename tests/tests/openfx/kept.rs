@@ -8,6 +8,7 @@ use isophote_tests::ofx::host::Host;
 use isophote_tests::ofx::picture::{Layout, Picture};
 use isophote_tests::ofx::plugin::{Binary, Plugin};
 use isophote_tests::ofx::state::Behaviour;
+use std::ffi::CString;
 use std::ptr::null_mut;
 use std::time::Instant;
 
@@ -32,11 +33,15 @@ fn steadied<'h>(described: &Described<'h>, size: [i32; 2]) -> Instance<'h> {
     instance.set("window", 2);
     instance.set("motion_from", 1);
     instance.connect_film("Source", 0, (0..FRAMES).map(|n| frame(size, n)).collect());
+    instance.connect_film("Motion", 0, (0..FRAMES).map(|_| vectors(size)).collect());
+    instance
+}
+
+/// The motion of the film.
+fn vectors(size: [i32; 2]) -> Picture {
     let vectors: Vec<u8> =
         (0..size[0] * size[1]).flat_map(|_| [-1.0, 0.0, 0.0, 1.0_f32]).flat_map(f32::to_ne_bytes).collect();
-    let vectors = Picture::packed_in(Layout::default(), size[0], size[1], &vectors);
-    instance.connect_film("Motion", 0, (0..FRAMES).map(|_| vectors.clone()).collect());
-    instance
+    Picture::packed_in(Layout::default(), size[0], size[1], &vectors)
 }
 
 fn render(instance: &Instance<'_>, size: [i32; 2], time: i32) -> Vec<u8> {
@@ -50,20 +55,32 @@ fn purge(plugin: Plugin) {
     assert_eq!(plugin.act(kOfxActionPurgeCaches, null_mut(), None, None), kOfxStatOK);
 }
 
+/// Images that were computed for several frames, told in a file.
+struct Computed(tempfile::TempDir);
+
+impl Computed {
+    fn new() -> Self {
+        let folder = tempfile::tempdir().unwrap();
+        // SAFETY: no other test runs in this process, and no other thread reads the environment now.
+        unsafe { std::env::set_var("ISOPHOTE_OFX_COMPUTED", folder.path().join("computed")) };
+        Self(folder)
+    }
+
+    /// Those since the last question.
+    fn now(&self) -> usize {
+        let path = self.0.path().join("computed");
+        let text = std::fs::read_to_string(&path).unwrap_or_default();
+        let _ = std::fs::remove_file(&path);
+        text.lines().map(|line| line.parse::<usize>().unwrap()).sum::<usize>()
+    }
+}
+
 pub fn what_frames_have_in_common_is_computed_once() {
     if !cfg!(debug_assertions) {
         return;
     }
-    let folder = tempfile::tempdir().unwrap();
-    let path = folder.path().join("computed");
-    // SAFETY: no other test runs in this process, and no other thread reads the environment now.
-    unsafe { std::env::set_var("ISOPHOTE_OFX_COMPUTED", &path) };
-    // Images that were computed since the last question.
-    let computed = || {
-        let text = std::fs::read_to_string(&path).unwrap_or_default();
-        let _ = std::fs::remove_file(&path);
-        text.lines().map(|line| line.parse::<usize>().unwrap()).sum::<usize>()
-    };
+    let counter = Computed::new();
+    let computed = || counter.now();
     let size = [96, 64];
     let binary = Binary::open(library::path());
     let host = Host::new(Behaviour::default());
@@ -104,6 +121,55 @@ pub fn what_frames_have_in_common_is_computed_once() {
     assert!(render(&instances[0], size, 3) != first);
     assert_eq!(computed(), 0);
     drop(instances);
+    host.no_faults();
+}
+
+pub fn strips_share_what_frames_have_in_common() {
+    if !cfg!(debug_assertions) {
+        return;
+    }
+    // Two segments, in each of which the same is shared.
+    let size = [64, 1100];
+    let counter = Computed::new();
+    let binary = Binary::open(library::path());
+    let host = Host::new(Behaviour::default());
+    let plugin = binary.plugin("org.isophote.cartoon");
+    let described = Described::new(&host, plugin);
+    let film = || {
+        let instance = steadied(&described, size);
+        instance.set("window", 1);
+        instance
+    };
+    let (whole, strips) = (film(), film());
+    let frames = [2, 3].map(|time| render(&whole, size, time));
+    let all = counter.now();
+    assert!(all % 4 == 0, "{all} of four frames");
+    let each = all / 4;
+    purge(plugin);
+    let packed = |time: usize| Picture::packed_in(Layout::default(), size[0], size[1], &frames[time - 2]);
+    for (time, new) in [(2, 3 * each), (3, each)] {
+        let full = packed(time);
+        for (index, y) in (0..size[1]).step_by(50).enumerate() {
+            let window = [0, y, size[0], y + 50];
+            let wanted = Wanted { time: time as f64, ..Wanted::new(window) };
+            // The host gives what it was asked for, and no more.
+            for name in ["Source", "Motion"] {
+                let region = [0.0, f64::from(y), f64::from(size[0]), f64::from(y + 50)];
+                let asked = strips.regions_at(time as f64, region, 1.0).expect("regions");
+                let asked = asked.numbers(&CString::new(format!("{}{name}", ROI_PREFIX)).unwrap());
+                let asked = [0, 1, 2, 3].map(|side| asked[side] as i32);
+                assert!(asked[3] - asked[1] < size[1], "{name}: {asked:?} is no part");
+                let picture = |n| if name == "Source" { frame(size, n) } else { vectors(size) };
+                strips.connect_film(name, 0, (0..FRAMES).map(|n| picture(n).crop(asked)).collect());
+            }
+            let (status, strip) = strips.try_render(Layout::default(), size, &wanted);
+            assert_eq!(status, kOfxStatOK);
+            assert!(strip.crop(window).packed() == full.crop(window).packed(), "{window:?} at {time}");
+            let expected = if [0, 11].contains(&index) { new } else { 0 };
+            assert_eq!(counter.now(), expected, "{window:?} at {time}");
+        }
+    }
+    drop((whole, strips));
     host.no_faults();
 }
 
@@ -189,6 +255,21 @@ pub fn times_of_warm_renders() {
             });
             let stills: Vec<f64> = times.map(|time| time / warm.1).collect();
             println!("{id}, motion from {motion_from}: frames in order take {stills:.2?} stills");
+            if motion_from == 2 {
+                // Estimates are of whole pictures.
+                continue;
+            }
+            purge(plugin);
+            let strips = (2..6).map(|time| {
+                let started = Instant::now();
+                for y in (0..size[1]).step_by(120) {
+                    let window = [0, y, size[0], y + 120];
+                    let wanted = Wanted { time: time.into(), ..Wanted::new(window) };
+                    assert_eq!(film.render_connected(&wanted), kOfxStatOK);
+                }
+                started.elapsed().as_secs_f64() * 1e3 / warm.1
+            });
+            println!("{id}: frames in nine strips take {:.2?} stills", strips.collect::<Vec<f64>>());
         }
     }
 }

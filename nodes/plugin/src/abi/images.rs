@@ -4,13 +4,19 @@
 //! another image, or lie at any address.
 
 use super::failure::{Failure, Outcome};
+use super::guard::lock;
 use crate::pool;
+use isophote::engine::cpu::Threads;
 use isophote::engine::pixels::{Sample, read_row, read_vectors, write_row};
 use isophote::engine::{Image, Rect};
 use isophote::graph::GraphInput;
 use isophote::kernels::shared::motion::UNKNOWN;
 use isophote::spec::ImageKind;
 use isophote_abi::*;
+use std::sync::{Mutex, PoisonError};
+
+/// Rows that a thread reads one after the other.
+const ROWS: u32 = 32;
 
 /// An image of the host's whose shape was checked.
 #[derive(Clone, Copy, Debug)]
@@ -182,6 +188,37 @@ impl Checked {
         Ok((image, replaced))
     }
 
+    /// Hands the bytes of each row of `window`, which the image must hold, to `look`, on several threads.
+    ///
+    /// # Errors
+    /// Out of memory.
+    ///
+    /// # Safety
+    /// The memory of the image must be readable.
+    pub unsafe fn each_row(
+        &self,
+        window: Rect,
+        threads: &dyn Threads,
+        look: &(dyn Fn(i32, &[u8]) + Sync),
+    ) -> Outcome<()> {
+        let image = Readable(self);
+        let failure = Mutex::new(None);
+        threads.run(window.height().div_ceil(ROWS) as usize, &|job| {
+            let checked = image.get();
+            let mut bytes = match checked.row_of_bytes(&window) {
+                Ok(bytes) => bytes,
+                Err(error) => return *lock(&failure) = Some(error),
+            };
+            let first = window.y0 + job as i32 * ROWS as i32;
+            for y in first..(first + ROWS as i32).min(window.y1) {
+                // SAFETY: as in `read`.
+                unsafe { bytes.as_mut_ptr().copy_from_nonoverlapping(checked.at(&window, y), bytes.len()) };
+                look(y, &bytes);
+            }
+        });
+        failure.into_inner().unwrap_or_else(PoisonError::into_inner).map_or(Ok(()), Err)
+    }
+
     /// Two channels of the pixels of a row, which the image must hold, as they are stored.
     ///
     /// # Errors
@@ -281,6 +318,18 @@ impl Checked {
         Ok(())
     }
 }
+
+/// An image that several threads read.
+struct Readable<'c>(&'c Checked);
+
+impl<'c> Readable<'c> {
+    fn get(&self) -> &'c Checked {
+        self.0
+    }
+}
+
+// SAFETY: who reads by it has been promised that the memory is readable, and nobody writes it meanwhile.
+unsafe impl Sync for Readable<'_> {}
 
 /// A rectangle for people: its size and corner.
 pub fn shown(rect: &Rect) -> String {

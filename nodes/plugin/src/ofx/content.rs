@@ -34,6 +34,18 @@ pub fn of_text(text: &str) -> u128 {
     of_words(text.as_bytes().chunks(8).map(|bytes| [word(bytes), bytes.len() as u64]))
 }
 
+/// 128 bits of bytes.
+pub fn of_bytes(bytes: &[u8]) -> u128 {
+    let (words, rest) = bytes.as_chunks::<16>();
+    let pair = |word: &[u8; 16]| {
+        let word = u128::from_le_bytes(*word);
+        [word as u64, (word >> 64) as u64]
+    };
+    let mut last = [0; 16];
+    last[..rest.len()].copy_from_slice(rest);
+    of_words(words.iter().chain([&last]).map(pair).chain([[bytes.len() as u64, 0]]))
+}
+
 /// 128 bits of several such.
 pub fn of_all(numbers: &[u128]) -> u128 {
     of_words(numbers.iter().map(|number| [*number as u64, (number >> 64) as u64]))
@@ -79,6 +91,9 @@ mod tests {
         }
         assert!(!seen.insert(of_image(&image, &CallingThread)));
         assert!(seen.insert(of_image(&Image::new(29, 37, 3).unwrap(), &CallingThread)));
+        for len in 1..40 {
+            assert!(seen.insert(of_bytes(&vec![0; len])) && seen.insert(of_bytes(&vec![1; len])));
+        }
         assert!(seen.insert(of_text("a")) && seen.insert(of_text("a\0")) && seen.insert(of_text("")));
     }
 }

@@ -1,8 +1,11 @@
 //! Images of the host's, fetched, read into the engine's and written back, and released on every path.
 
+use super::content;
 use super::frame::{Bounds, Frame};
 use super::host::{Host, Outcome, Properties};
+use crate::abi::guard::lock;
 use crate::abi::images::Checked;
+use isophote::engine::cpu::Threads;
 use isophote::engine::{Image, Rect};
 use isophote::graph::GraphInput;
 use isophote::spec::ImageKind;
@@ -10,6 +13,7 @@ use isophote_abi::openfx::*;
 use isophote_abi::*;
 use std::ffi::CStr;
 use std::ptr::null_mut;
+use std::sync::Mutex;
 
 /// Share of a frame below which differences are rounding.
 const ROUNDING: f64 = 1e-3;
@@ -247,6 +251,29 @@ impl<'h> Fetched<'h> {
             }
         }
         Ok(image)
+    }
+
+    /// Number of all that [`Fetched::read`] reads of `window`.
+    ///
+    /// # Errors
+    /// As [`Fetched::read`].
+    pub fn content(&self, frame: &Frame, window: Rect, threads: &dyn Threads) -> Outcome<u128> {
+        let checked = self.checked(frame)?;
+        let inside = window.intersection(&checked.window);
+        let inside = if inside.is_empty() { nearest(&window, &checked.window) } else { inside };
+        let form =
+            format!("{inside:?} {} {} {:?} {}", self.sample, self.channels, self.alpha, self.blue_first);
+        let rows: Vec<Mutex<u128>> = (inside.y0..inside.y1).map(|_| Mutex::default()).collect();
+        // SAFETY: the host gave the image, so that its memory may be read until it is released.
+        let read = unsafe {
+            checked.each_row(inside, threads, &|y, bytes| {
+                *lock(&rows[(y - inside.y0) as usize]) = content::of_bytes(bytes);
+            })
+        };
+        read.map_err(|_| kOfxStatErrMemory)?;
+        let mut all = vec![content::of_text(&form)];
+        all.extend(rows.iter().map(|row| *lock(row)));
+        Ok(content::of_all(&all))
     }
 
     /// Two channels of the pixels of `window`, as they are stored; NaN for what the image does not hold.

@@ -1,13 +1,14 @@
 //! What neighbouring frames have in common: the stages that each carries from others, and motion that is estimated
 //! between them.
 //!
-//! It is computed over the whole picture, once for all frames that need it, and kept by what it was made from: the
+//! It is computed over the whole picture, or a segment of it where a host asks for tiles, once for all frames and tiles
+//! that need it, and kept by what it was made from: the
 //! contents of the images that were read, the passes down to their uniform bytes, and what was done to the pixels in
 //! between. Whatever a host shows, and calls it, the same contents give the same bits.
 
 use super::content;
 use super::faults;
-use super::inputs::{Gathered, Inputs, Read};
+use super::inputs::{Gathered, Inputs, Read, Taken};
 use super::kept;
 use super::prepared::Prepared;
 use super::stop::Stop;
@@ -54,6 +55,50 @@ impl Stages {
     }
 }
 
+/// Images of a plan that are kept for a segment of the picture.
+pub struct Lasting {
+    /// The images.
+    pub shared: Vec<Shared>,
+    /// The part of the picture over which each is computed; the same for all, since what is a neighbour's now was the
+    /// frame's own before.
+    pub region: Rect,
+}
+
+impl Lasting {
+    /// Those of a segment of the host's pixels; none where there is nothing to share, or too much of it.
+    pub fn of(prepared: &Prepared, segment: Rect) -> Option<Self> {
+        let plan = prepared.planned.plan();
+        let shared = lasting(plan);
+        if shared.is_empty() {
+            return None;
+        }
+        let windows = plan.windows(prepared.plan_window(segment));
+        let region = shared.iter().fold(Rect::default(), |all, Shared { image, .. }| {
+            let window = windows[image.index()];
+            if window.is_empty() {
+                all
+            } else {
+                all.union(&plan.region_over(window, plan.desc(*image).level))
+            }
+        });
+        let bytes = |shared: &Shared| {
+            let shape = plan.desc(shared.image);
+            plan.region_at(region, shape.level).area() * u64::from(shape.channels) * 4
+        };
+        // The next frame must find them, beside those that it adds.
+        let fits = shared.iter().map(bytes).sum::<u64>() * 3 / 2 <= kept::most();
+        (fits && !region.is_empty()).then_some(Self { shared, region })
+    }
+
+    /// The plan of them alone, and the part of each of its images that it needs.
+    pub fn part(&self, plan: &Plan) -> (Plan, Vec<Rect>) {
+        let ids: Vec<ImageId> = self.shared.iter().map(|shared| shared.image).collect();
+        let part = plan.part(&ids);
+        let windows = part.windows(self.region);
+        (part, windows)
+    }
+}
+
 /// The shared images of a plan that the plans of other frames ask for as well.
 fn lasting(plan: &Plan) -> Vec<Shared> {
     let mut all = plan.shared();
@@ -72,69 +117,68 @@ fn lasting(plan: &Plan) -> Vec<Shared> {
 }
 
 /// A search for the stages of one frame.
-pub struct Search<'s> {
-    pub inputs: &'s Inputs<'s>,
+pub struct Search<'s, 'h> {
+    pub inputs: &'s Inputs<'h>,
     pub prepared: &'s Prepared,
+    /// The part of the host's pixels that the images are found for.
+    pub segment: Rect,
     /// What is done to pixels between their reading and the plan, beside what `prepared` does.
     pub treatment: String,
     pub threads: &'s dyn Threads,
     pub control: Control<'s>,
 }
 
-impl Search<'_> {
+impl<'h> Search<'_, 'h> {
     /// The stages of the frame, those of all frames that are near enough.
     ///
     /// # Errors
     /// As reading and running.
     pub fn run(&self, executor: &mut CpuExecutor) -> Result<Found, Stop> {
         let plan = self.prepared.planned.plan();
-        let shared = lasting(plan);
-        let [width, height] = plan.size();
-        let whole = Rect::of_size(width, height);
-        let bytes = |shared: &Shared| {
-            let shape = plan.desc(shared.image);
-            plan.region_at(whole, shape.level).area() * u64::from(shape.channels) * 4
-        };
-        // The next frame must find them, beside those that it adds.
-        if shared.is_empty() || shared.iter().map(bytes).sum::<u64>() * 3 / 2 > kept::most() {
+        let Some(lasting) = Lasting::of(self.prepared, self.segment) else {
             return Ok(Found::All(Stages::default()));
-        }
-        let mut groups: BTreeMap<[i32; 2], Vec<Shared>> = BTreeMap::new();
-        for shared in shared {
-            groups.entry(shared.frames).or_default().push(shared);
-        }
-        let ids: Vec<ImageId> = groups.values().flatten().map(|shared| shared.image).collect();
-        let part = plan.part(&ids);
-        let mut reads = match self.inputs.gather(self.prepared, &part, &part.windows(whole))? {
-            Gathered::All(reads) => reads,
+        };
+        let (part, windows) = lasting.part(plan);
+        let taken = match self.inputs.take(self.prepared, &part, &windows)? {
+            Gathered::All(taken) => taken,
             Gathered::Without(frame) => return Ok(Found::Without(frame)),
         };
-        let contents: Vec<(String, u128)> = reads
-            .iter()
-            .map(|read| (read.name.clone(), content::of_image(&read.pixels, self.threads)))
-            .collect();
+        let [width, height] = self.inputs.frame.size();
+        let is_part = self.segment != Rect::of_size(width, height);
+        let mut contents = Vec::new();
+        for taken in &taken {
+            match self.inputs.content(self.prepared, taken, is_part, self.threads)? {
+                Some(content) => contents.push((taken.name.clone(), content)),
+                None => return Ok(Found::All(Stages::default())),
+            }
+        }
+        let mut groups: BTreeMap<[i32; 2], Vec<Shared>> = BTreeMap::new();
+        for shared in lasting.shared {
+            groups.entry(shared.frames).or_default().push(shared);
+        }
+        let mut pixels = Pixels { taken, read: Vec::new() };
         let mut stages = Vec::new();
         for ([first, _], group) in groups {
-            let found = self.of_group(plan, &group, first, &contents, &mut reads, executor)?;
+            let found = self.of_group(&group, lasting.region, first, &contents, &mut pixels, executor)?;
             stages.extend(group.iter().map(|shared| shared.name).zip(found));
         }
-        reads.into_iter().for_each(Read::keep_memory);
+        pixels.read.into_iter().for_each(Read::keep_memory);
         Ok(Found::All(Stages(stages)))
     }
 
     /// The stages that are made of the same frames, from `first` on.
     fn of_group(
         &self,
-        plan: &Plan,
         group: &[Shared],
+        region: Rect,
         first: i32,
         contents: &[(String, u128)],
-        reads: &mut [Read],
+        pixels: &mut Pixels<'h>,
         executor: &mut CpuExecutor,
     ) -> Result<Vec<Arc<Image>>, Stop> {
-        let [width, height] = plan.size();
-        let whole = Rect::of_size(width, height);
-        let treatment = content::of_text(&format!("{} {:?}", self.treatment, self.prepared.square));
+        let plan = self.prepared.planned.plan();
+        let treatment =
+            content::of_text(&format!("{} {region:?} {:?}", self.treatment, self.prepared.square));
         let all = plan.names(|port| {
             let held = contents.iter().find(|(name, _)| *name == port.name).map_or(0, |(_, held)| *held);
             let place = content::of_text(&format!("{} {}", port.base(), port.frame - first));
@@ -145,14 +189,31 @@ impl Search<'_> {
         kept::obtain(&names, &stops, |missing| {
             let ids: Vec<ImageId> = missing.iter().map(|index| group[*index].image).collect();
             let part = plan.part(&ids);
-            for read in reads.iter_mut().filter(|r| part.inputs().iter().any(|port| port.name == r.name)) {
-                self.inputs.make_ready(self.prepared, read, self.threads)?;
-            }
-            let named: Vec<(&str, &Image)> = reads.iter().map(|r| (&r.name[..], &r.pixels)).collect();
-            let images = executor.run(&part, &named, whole, self.threads, self.control);
+            pixels.read(self, &part)?;
+            let named: Vec<(&str, &Image)> = pixels.read.iter().map(|r| (&r.name[..], &r.pixels)).collect();
+            let images = executor.run(&part, &named, region, self.threads, self.control);
             faults::computed(ids.len());
             Ok(images.map_err(Error::from)?)
         })
+    }
+}
+
+/// The images that were taken, and those of them that were read: what is found need not be.
+struct Pixels<'h> {
+    taken: Vec<Taken<'h>>,
+    read: Vec<Read>,
+}
+
+impl<'h> Pixels<'h> {
+    /// Reads what a plan is computed from.
+    fn read(&mut self, search: &Search<'_, 'h>, plan: &Plan) -> Result<(), Stop> {
+        let wanted = |taken: &mut Taken<'h>| plan.inputs().iter().any(|port| port.name == taken.name);
+        for taken in self.taken.extract_if(.., wanted) {
+            let mut read = search.inputs.read_taken(search.prepared, taken)?;
+            search.inputs.make_ready(search.prepared, &mut read, search.threads)?;
+            self.read.push(read);
+        }
+        Ok(())
     }
 }
 

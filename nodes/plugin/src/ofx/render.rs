@@ -1,5 +1,6 @@
 //! Rendering: the frame's plan, run over bands of rows that keep memory bounded.
 
+use super::blending::{blend, of_band, spread, take_alpha};
 use super::clips::{MASK, SOURCE};
 use super::colours::{Colours, working};
 use super::effects::Effect;
@@ -13,8 +14,9 @@ use super::instance::{self, Moment};
 use super::kept;
 use super::known::Known;
 use super::mask::MaskRule;
-use super::neighbours::{Cut, Found, Search, Stages};
+use super::neighbours::{Cut, Found, Lasting, Search, Stages};
 use super::prepared::{Prepared, Quality};
+use super::segments::{Part, parts};
 use super::settings::Settings;
 use super::stop::Stop;
 use super::threads::FrameThreads;
@@ -26,7 +28,6 @@ use isophote::engine::plan::LEAST_ROWS;
 use isophote::engine::{Error as EngineError, Image, Rect};
 use isophote::graph::GraphInput;
 use isophote::kernels::shared::host_colour::has_light;
-use isophote::kernels::shared::host_colour::scalar::beyond_coverage;
 use isophote_abi::openfx::*;
 use isophote_colour::Space;
 use std::sync::Mutex;
@@ -155,18 +156,6 @@ fn intersection(a: Bounds, b: Bounds) -> Bounds {
     [a[0].max(b[0]), a[1].max(b[1]), a[2].min(b[2]), a[3].min(b[3])]
 }
 
-/// Gives a premultiplied pixel the coverage of another, of which it takes the colour where it has none of its own. Its
-/// light beyond coverage stays.
-fn recover(pixel: &mut [f32], source: &[f32]) {
-    let ([r, g, b, now], kept) = ([pixel[0], pixel[1], pixel[2], pixel[3]], source[3]);
-    let light = beyond_coverage([r, g, b, now]);
-    let under = beyond_coverage([source[0], source[1], source[2], kept]);
-    for c in 0..3 {
-        let covered = if now > 0.0 { (pixel[c] - light[c]) * (kept / now) } else { source[c] - under[c] };
-        pixel[c] = covered + light[c];
-    }
-}
-
 /// Writes transparent black.
 fn clear(host: &Host, output: &Fetched<'_>, window: Bounds) -> Outcome<()> {
     let frame = Frame::new(host, None, [1.0; 2], 1.0, Some(output.bounds)).ok_or(kOfxStatErrImageFormat)?;
@@ -199,24 +188,42 @@ impl RenderAction<'_> {
         let aborted = || instance.lock().is_ok_and(|instance| host.aborted(instance.0));
         let control = Control { cancelled: Some(&aborted), progress: None };
         let mut plans = Plans::new(self)?;
-        let whole = Rect::of_size(frame.size()[0], frame.size()[1]);
-        let work = Bands { inside, is_whole: inside == whole, threads: threads.threads(), control };
-        while !self.run_bands(&mut plans, &mut executors, &work)? {}
+        let work = Bands { inside, threads: threads.threads(), control };
+        while !self.run_parts(&mut plans, &mut executors, &work)? {}
         executors.keep_memory();
         Ok(())
     }
 
-    /// Computes and writes band by band; false where the graphics card has failed, after which all is begun anew.
+    /// Computes and writes part by part; false where the graphics card has failed, after which all is begun anew.
+    fn run_parts(
+        &self,
+        plans: &mut Plans,
+        executors: &mut Executors<'_>,
+        work: &Bands<'_>,
+    ) -> Result<bool, Stop> {
+        let mut parts = parts(self.inputs.frame.size(), work.inside);
+        if executors.cpu().is_none() || !plans.share(&parts) {
+            parts = vec![Part::alone(work.inside)];
+        }
+        for Part { inside, segment } in parts {
+            if let (Some(segment), Some(cpu)) = (segment, executors.cpu()) {
+                plans.find_stages(self, segment, cpu, work)?;
+            }
+            if !self.run_bands(plans, executors, &Bands { inside, ..*work })? {
+                return Ok(false);
+            }
+        }
+        Ok(true)
+    }
+
+    /// Computes and writes band by band; false where the graphics card has failed.
     fn run_bands(
         &self,
         plans: &mut Plans,
         executors: &mut Executors<'_>,
         work: &Bands<'_>,
     ) -> Result<bool, Stop> {
-        let Bands { inside, is_whole, threads, control } = *work;
-        if is_whole && let Some(cpu) = executors.cpu() {
-            plans.find_stages(self, cpu, threads, control)?;
-        }
+        let Bands { inside, threads, control } = *work;
         for band in bands(inside, executors.band_rows(&plans.prepared, &plans.cut.plan, inside)) {
             let images = plans.gather(self, band, threads)?;
             let region = plans.prepared.plan_window(band);
@@ -322,8 +329,6 @@ impl RenderAction<'_> {
 /// What a frame's bands are computed of, and how.
 struct Bands<'b> {
     inside: Rect,
-    /// True where that is all of the picture.
-    is_whole: bool,
     threads: &'b dyn Threads,
     control: Control<'b>,
 }
@@ -366,21 +371,29 @@ impl Plans {
         Ok(())
     }
 
-    /// Finds what other frames have in common with this one.
+    /// True where other frames have something in common with these parts of this one, which is kept.
+    fn share(&self, parts: &[Part]) -> bool {
+        let mut segments = parts.iter().filter_map(|part| part.segment);
+        segments.any(|segment| Lasting::of(&self.prepared, segment).is_some())
+    }
+
+    /// Finds what other frames have in common with a segment of this one.
     fn find_stages(
         &mut self,
         action: &RenderAction<'_>,
+        segment: Rect,
         executor: &mut CpuExecutor,
-        threads: &dyn Threads,
-        control: Control<'_>,
+        work: &Bands<'_>,
     ) -> Result<(), Stop> {
+        let Bands { threads, control, .. } = *work;
         loop {
             let (inputs, space) = (&action.inputs, action.settings.space);
             let treatment = format!("{space:?} {}", inputs.is_straight());
-            let search = Search { inputs, prepared: &self.prepared, treatment, threads, control };
+            let search = Search { inputs, prepared: &self.prepared, segment, treatment, threads, control };
             match search.run(executor)? {
                 Found::All(stages) => {
                     self.cut = stages.cut(self.prepared.planned.plan());
+                    self.emissive = None;
                     self.stages = stages;
                     return Ok(());
                 }
@@ -430,42 +443,6 @@ struct Instance(Handle);
 
 // SAFETY: the handle is never followed here, and the standard lets any thread ask whether to stop.
 unsafe impl Send for Instance {}
-
-/// The pixels of a row of `image` that lie in `band`.
-fn of_band(image: &Image, band: Rect, y: i32) -> &[f32] {
-    let first = (band.x0 - image.window().x0) as usize * 4;
-    &image.row(y)[first..first + band.width() as usize * 4]
-}
-
-/// Gives a row of pixels the alpha of the source.
-fn take_alpha(row: &mut [f32], source: &[f32], premultiplied: bool) {
-    for (pixel, source) in row.chunks_exact_mut(4).zip(source.chunks_exact(4)) {
-        if premultiplied && pixel[3] != source[3] {
-            recover(pixel, source);
-        }
-        pixel[3] = source[3];
-    }
-}
-
-/// Blends the source into a row of pixels where the mask, which is 1 where there is none, times the mix is less than 1.
-fn blend(row: &mut [f32], source: &[f32], amounts: Option<&[f32]>, mix: f32) {
-    for (at, (pixel, source)) in row.chunks_exact_mut(4).zip(source.chunks_exact(4)).enumerate() {
-        let amount = amounts.map_or(1.0, |amounts| amounts[at]) * mix;
-        for (v, s) in pixel.iter_mut().zip(source) {
-            // Exact at both ends.
-            *v = *v * amount + *s * (1.0 - amount);
-        }
-    }
-}
-
-/// Lines as opaque grey.
-fn spread(lines: &Image) -> Outcome<Image> {
-    let mut image = Image::with_window(lines.window(), 4).map_err(|_| kOfxStatErrMemory)?;
-    for (pixel, v) in image.data_mut().chunks_exact_mut(4).zip(lines.data()) {
-        pixel.copy_from_slice(&[*v, *v, *v, 1.0]);
-    }
-    Ok(image)
-}
 
 /// Bands of `rows` rows, from the top.
 fn bands(window: Rect, rows: i32) -> impl Iterator<Item = Rect> {
