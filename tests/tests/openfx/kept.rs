@@ -66,7 +66,7 @@ impl Computed {
         Self(folder)
     }
 
-    /// Those since the last question.
+    /// Images since the last question.
     fn now(&self) -> usize {
         let path = self.0.path().join("computed");
         let text = std::fs::read_to_string(&path).unwrap_or_default();
@@ -141,6 +141,8 @@ pub fn strips_share_what_frames_have_in_common() {
         instance
     };
     let (whole, strips) = (film(), film());
+    let pictures =
+        [(0..FRAMES).map(|n| frame(size, n)).collect::<Vec<_>>(), vec![vectors(size); FRAMES as usize]];
     let frames = [2, 3].map(|time| render(&whole, size, time));
     let all = counter.now();
     assert!(all % 4 == 0, "{all} of four frames");
@@ -153,14 +155,13 @@ pub fn strips_share_what_frames_have_in_common() {
             let window = [0, y, size[0], y + 50];
             let wanted = Wanted { time: time as f64, ..Wanted::new(window) };
             // The host gives what it was asked for, and no more.
-            for name in ["Source", "Motion"] {
+            for (name, pictures) in ["Source", "Motion"].into_iter().zip(&pictures) {
                 let region = [0.0, f64::from(y), f64::from(size[0]), f64::from(y + 50)];
                 let asked = strips.regions_at(time as f64, region, 1.0).expect("regions");
                 let asked = asked.numbers(&CString::new(format!("{}{name}", ROI_PREFIX)).unwrap());
                 let asked = [0, 1, 2, 3].map(|side| asked[side] as i32);
                 assert!(asked[3] - asked[1] < size[1], "{name}: {asked:?} is no part");
-                let picture = |n| if name == "Source" { frame(size, n) } else { vectors(size) };
-                strips.connect_film(name, 0, (0..FRAMES).map(|n| picture(n).crop(asked)).collect());
+                strips.connect_film(name, 0, pictures.iter().map(|whole| whole.crop(asked)).collect());
             }
             let (status, strip) = strips.try_render(Layout::default(), size, &wanted);
             assert_eq!(status, kOfxStatOK);

@@ -16,6 +16,7 @@ use crate::pixel_aspect::multiply;
 use crate::pool;
 use isophote::Error;
 use isophote::engine::cpu::Threads;
+use isophote::engine::plan::Port;
 use isophote::engine::{Image, Plan, Rect};
 use isophote::graph::GraphInput;
 use isophote::request::Guides;
@@ -162,29 +163,19 @@ impl<'h> Inputs<'h> {
 
     /// The host's pixels that a plan, or a part of it, reads of each of its images.
     pub fn gather(&self, prepared: &Prepared, plan: &Plan, windows: &[Rect]) -> Result<Gathered<Read>, Stop> {
-        self.each(prepared, plan, windows, |taken| self.read_taken(prepared, taken))
+        self.each(prepared, plan.inputs(), windows, |taken| self.read_taken(prepared, taken))
     }
 
-    /// The images that a plan, or a part of it, reads.
-    pub fn take(
+    /// Result of `made` for the image of each of a plan's inputs. One is given back before the next is taken.
+    pub fn each<'p, T>(
         &self,
         prepared: &Prepared,
-        plan: &Plan,
-        windows: &[Rect],
-    ) -> Result<Gathered<Taken<'h>>, Stop> {
-        self.each(prepared, plan, windows, Ok)
-    }
-
-    /// What becomes of each image that a plan reads.
-    fn each<T>(
-        &self,
-        prepared: &Prepared,
-        plan: &Plan,
+        ports: impl IntoIterator<Item = &'p Port>,
         windows: &[Rect],
         made: impl Fn(Taken<'h>) -> Result<T, Stop>,
     ) -> Result<Gathered<T>, Stop> {
         let mut all = Vec::new();
-        for port in plan.inputs() {
+        for port in ports {
             let window = windows[port.image.index()];
             let Some(input) = GraphInput::from_id(port.base()).filter(|_| !window.is_empty()) else {
                 continue;

@@ -14,8 +14,9 @@ use super::prepared::Prepared;
 use super::stop::Stop;
 use isophote::Error;
 use isophote::engine::cpu::{Control, CpuExecutor, Threads};
-use isophote::engine::plan::Shared;
+use isophote::engine::plan::{Port, Shared};
 use isophote::engine::{Image, ImageId, Plan, Rect};
+use isophote_abi::openfx::kOfxStatFailed;
 use std::collections::BTreeMap;
 use std::sync::Arc;
 
@@ -51,7 +52,9 @@ impl Stages {
                 handed.push((Plan::port_name(image), Arc::clone(found)));
             }
         }
-        Cut { plan: plan.with_handed(&ids), handed }
+        // A plan as it is has the same result to the bit as with the C table, on a graphics card, too.
+        let plan = if ids.is_empty() { plan.clone() } else { plan.with_handed(&ids) };
+        Cut { plan, handed }
     }
 }
 
@@ -65,7 +68,7 @@ pub struct Lasting {
 }
 
 impl Lasting {
-    /// Those of a segment of the host's pixels; none where there is nothing to share, or too much of it.
+    /// Images for a segment of the host's pixels; none where there is nothing to share, or too much of it.
     pub fn of(prepared: &Prepared, segment: Rect) -> Option<Self> {
         let plan = prepared.planned.plan();
         let shared = lasting(plan);
@@ -128,7 +131,7 @@ pub struct Search<'s, 'h> {
     pub control: Control<'s>,
 }
 
-impl<'h> Search<'_, 'h> {
+impl Search<'_, '_> {
     /// The stages of the frame, those of all frames that are near enough.
     ///
     /// # Errors
@@ -139,31 +142,36 @@ impl<'h> Search<'_, 'h> {
             return Ok(Found::All(Stages::default()));
         };
         let (part, windows) = lasting.part(plan);
-        let taken = match self.inputs.take(self.prepared, &part, &windows)? {
-            Gathered::All(taken) => taken,
+        let content = |taken: Taken<'_>| Ok((self.content(&taken)?, taken.name));
+        let contents = match self.inputs.each(self.prepared, part.inputs(), &windows, content)? {
+            Gathered::All(contents) => contents,
             Gathered::Without(frame) => return Ok(Found::Without(frame)),
         };
-        let [width, height] = self.inputs.frame.size();
-        let is_part = self.segment != Rect::of_size(width, height);
-        let mut contents = Vec::new();
-        for taken in &taken {
-            match self.inputs.content(self.prepared, taken, is_part, self.threads)? {
-                Some(content) => contents.push((taken.name.clone(), content)),
-                None => return Ok(Found::All(Stages::default())),
-            }
+        if contents.iter().any(|(content, _)| content.is_none()) {
+            return Ok(Found::All(Stages::default()));
         }
         let mut groups: BTreeMap<[i32; 2], Vec<Shared>> = BTreeMap::new();
         for shared in lasting.shared {
             groups.entry(shared.frames).or_default().push(shared);
         }
-        let mut pixels = Pixels { taken, read: Vec::new() };
+        let mut pixels = Pixels { contents, windows, read: Vec::new(), changed: false };
         let mut stages = Vec::new();
         for ([first, _], group) in groups {
-            let found = self.of_group(&group, lasting.region, first, &contents, &mut pixels, executor)?;
-            stages.extend(group.iter().map(|shared| shared.name).zip(found));
+            match self.of_group(&group, lasting.region, first, &mut pixels, executor) {
+                Ok(found) => stages.extend(group.iter().map(|shared| shared.name).zip(found)),
+                Err(_) if pixels.changed => return Ok(Found::All(Stages::default())),
+                Err(stop) => return Err(stop),
+            }
         }
         pixels.read.into_iter().for_each(Read::keep_memory);
         Ok(Found::All(Stages(stages)))
+    }
+
+    /// Number of what an image holds; none where the host gave too little of it.
+    fn content(&self, taken: &Taken<'_>) -> Result<Option<u128>, Stop> {
+        let [width, height] = self.inputs.frame.size();
+        let is_part = self.segment != Rect::of_size(width, height);
+        Ok(self.inputs.content(self.prepared, taken, is_part, self.threads)?)
     }
 
     /// The stages that are made of the same frames, from `first` on.
@@ -172,15 +180,14 @@ impl<'h> Search<'_, 'h> {
         group: &[Shared],
         region: Rect,
         first: i32,
-        contents: &[(String, u128)],
-        pixels: &mut Pixels<'h>,
+        pixels: &mut Pixels,
         executor: &mut CpuExecutor,
     ) -> Result<Vec<Arc<Image>>, Stop> {
         let plan = self.prepared.planned.plan();
         let treatment =
             content::of_text(&format!("{} {region:?} {:?}", self.treatment, self.prepared.square));
         let all = plan.names(|port| {
-            let held = contents.iter().find(|(name, _)| *name == port.name).map_or(0, |(_, held)| *held);
+            let held = pixels.content(&port.name).unwrap_or_default();
             let place = content::of_text(&format!("{} {}", port.base(), port.frame - first));
             content::of_all(&[treatment, place, held])
         });
@@ -198,21 +205,40 @@ impl<'h> Search<'_, 'h> {
     }
 }
 
-/// The images that were taken, and those of them that were read: what is found need not be.
-struct Pixels<'h> {
-    taken: Vec<Taken<'h>>,
+/// The images that a search knows, and those of them that were read: what is found need not be.
+struct Pixels {
+    /// Numbers of what they hold, with the plan's names for them.
+    contents: Vec<(Option<u128>, String)>,
+    /// The parts of them that are read.
+    windows: Vec<Rect>,
     read: Vec<Read>,
+    /// True where an image holds something else now, so that its number must not be used.
+    changed: bool,
 }
 
-impl<'h> Pixels<'h> {
+impl Pixels {
+    fn content(&self, name: &str) -> Option<u128> {
+        self.contents.iter().find(|(_, known)| known == name).and_then(|(content, _)| *content)
+    }
+
     /// Reads what a plan is computed from.
-    fn read(&mut self, search: &Search<'_, 'h>, plan: &Plan) -> Result<(), Stop> {
-        let wanted = |taken: &mut Taken<'h>| plan.inputs().iter().any(|port| port.name == taken.name);
-        for taken in self.taken.extract_if(.., wanted) {
+    fn read(&mut self, search: &Search<'_, '_>, plan: &Plan) -> Result<(), Stop> {
+        let is_new = |port: &&Port| self.read.iter().all(|read| read.name != port.name);
+        let ports = plan.inputs().iter().filter(is_new);
+        let read = |taken: Taken<'_>| {
+            if search.content(&taken)? != self.content(&taken.name) {
+                return Ok(None);
+            }
             let mut read = search.inputs.read_taken(search.prepared, taken)?;
             search.inputs.make_ready(search.prepared, &mut read, search.threads)?;
-            self.read.push(read);
-        }
+            Ok(Some(read))
+        };
+        let all = match search.inputs.each(search.prepared, ports, &self.windows, read)? {
+            Gathered::All(all) => all.into_iter().collect::<Option<Vec<Read>>>(),
+            Gathered::Without(_) => None,
+        };
+        self.changed = all.is_none();
+        self.read.extend(all.ok_or(kOfxStatFailed)?);
         Ok(())
     }
 }

@@ -326,7 +326,7 @@ impl RenderAction<'_> {
     }
 }
 
-/// What a frame's bands are computed of, and how.
+/// Pixels of a frame that are computed at once, and the means for it.
 struct Bands<'b> {
     inside: Rect,
     threads: &'b dyn Threads,
