@@ -7,6 +7,8 @@
 mod allocations;
 #[path = "openfx/card_faults.rs"]
 mod card_faults;
+#[path = "openfx/kept.rs"]
+mod kept;
 #[path = "openfx/small.rs"]
 mod small;
 
@@ -22,6 +24,7 @@ use isophote_tests::ofx::picture::Layout;
 use isophote_tests::ofx::plugin::Binary;
 use isophote_tests::ofx::state::Behaviour;
 use isophote_tests::trials::Trials;
+use kept::*;
 use small::{SIZE, picture};
 use std::ffi::CStr;
 use std::process::{Command, ExitCode};
@@ -39,7 +42,7 @@ macro_rules! named {
     ($($test:ident)*) => { [$((stringify!($test), $test)),*] };
 }
 
-const TESTS: [(&str, fn()); 10] = named! {
+const TESTS: [(&str, fn()); 14] = named! {
     a_panic_becomes_a_status_and_the_host_goes_on
     failures_are_shown_once_through_whatever_messages_there_are
     bad_calls_are_answered
@@ -50,6 +53,10 @@ const TESTS: [(&str, fn()); 10] = named! {
     a_card_without_memory_leaves_frames_to_the_cpu
     machines_without_a_card_compute_on_the_cpu
     a_copy_of_the_process_computes_on_the_cpu
+    what_frames_have_in_common_is_computed_once
+    strips_share_what_frames_have_in_common
+    memory_is_given_back_when_caches_are_purged
+    times_of_warm_renders
 };
 
 fn main() -> ExitCode {
@@ -62,6 +69,8 @@ fn main() -> ExitCode {
     for (name, _) in TESTS {
         trials.add_plain(&format!("openfx_faults::{name}"), || in_a_process(name));
     }
+    // The last measures, and asserts nothing.
+    trials.ignore_last();
     trials.run()
 }
 

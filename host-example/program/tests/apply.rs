@@ -345,6 +345,9 @@ fn the_benchmark_reports_every_pass() {
         single
     };
     assert!(kernels(1).is_empty() || sorted(kernels(1)) == sorted(kernels(0)));
+    for way in ["upload_milliseconds", "download_milliseconds"] {
+        assert!(results[1][way].as_f64().is_some_and(|v| v > 0.0) && results[0].get(way).is_none(), "{way}");
+    }
     assert!(results[1]["bytes"].as_u64().is_some_and(|bytes| bytes > 96 * 64 * 100));
     for result in results {
         assert!(result["milliseconds"].as_f64().is_some_and(|v| v > 0.0));

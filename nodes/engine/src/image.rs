@@ -111,6 +111,17 @@ impl Image {
     /// unspecified.
     ///
     /// # Errors
+    /// [`Error::Geometry`] for a shape that no image can have, [`Error::Memory`] when there is not enough; the image has
+    /// then no pixel.
+    pub fn reshaped(mut self, window: Rect, channels: u32) -> Result<Self> {
+        check_shape(window, channels)?;
+        self.reshape(window, channels)?;
+        Ok(self)
+    }
+
+    /// The same in place, for a shape that was checked.
+    ///
+    /// # Errors
     /// [`Error::Memory`] when there is not enough; the image has then no pixel.
     pub(crate) fn reshape(&mut self, window: Rect, channels: u32) -> Result<()> {
         let len = window.width() as usize * window.height() as usize * channels as usize;
@@ -152,12 +163,8 @@ impl Image {
     /// # Errors
     /// As [`Image::new`].
     pub fn with_window(window: Rect, channels: u32) -> Result<Self> {
-        let (width, height) = (window.width(), window.height());
-        check_size(width, height)?;
-        if !(1..=4).contains(&channels) {
-            return Err(Error::Geometry(format!("an image has 1 to 4 channels, not {channels}")));
-        }
-        let data = memory::zeroed(width as usize * height as usize * channels as usize)?;
+        check_shape(window, channels)?;
+        let data = memory::zeroed(window.width() as usize * window.height() as usize * channels as usize)?;
         Ok(Self { window, channels, data })
     }
 
@@ -195,6 +202,11 @@ impl Image {
     /// Values a pixel, 1..=4.
     pub fn channels(&self) -> u32 {
         self.channels
+    }
+
+    /// Bytes of memory that it has, which may be more than its values take.
+    pub fn memory(&self) -> u64 {
+        (self.data.capacity() * size_of::<f32>()) as u64
     }
 
     /// All values, row by row.
@@ -255,6 +267,14 @@ impl Image {
         }
         Ok(out)
     }
+}
+
+fn check_shape(window: Rect, channels: u32) -> Result<()> {
+    check_size(window.width(), window.height())?;
+    if !(1..=4).contains(&channels) {
+        return Err(Error::Geometry(format!("an image has 1 to 4 channels, not {channels}")));
+    }
+    Ok(())
 }
 
 /// Refuses sizes that no image can have.

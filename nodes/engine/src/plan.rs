@@ -9,7 +9,9 @@ mod keys;
 mod memory;
 mod parts;
 mod regions;
+mod shared;
 
 pub use builder::PlanBuilder;
 pub use memory::{LEAST_ROWS, WORKING_MEMORY};
 pub use parts::{Class, ImageDesc, ImageId, Kept, Lifetimes, Pass, Plan, Port, Support};
+pub use shared::Shared;

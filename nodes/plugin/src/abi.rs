@@ -128,6 +128,7 @@ unsafe extern "C" fn trim() -> IsophoteStatus {
         || {
             threads::forget_pools();
             objects::forget_memory();
+            crate::pool::forget();
             Ok(())
         },
         |_| {},

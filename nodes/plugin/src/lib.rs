@@ -14,4 +14,5 @@ pub mod abi;
 pub mod ofx;
 mod pinned;
 mod pixel_aspect;
+mod pool;
 mod reserve;

@@ -4,12 +4,14 @@
 //! [`settings`], [`known`], [`image`] and [`inputs`] read what hosts have, [`crate::pixel_aspect`] makes their pixels square,
 //! and [`render`] runs the plan that is [`prepared`] by its [`executors`]. [`shipped`] lists the looks, [`looks`] sets the
 //! controls of a style to one, and [`look_effect`] finds what the effect for looks shows. Nothing is kept between calls but
-//! the host's functions, [`preset_files`] and the [`device`] of a graphics card, so that any action may come on any thread,
-//! in any number.
+//! the host's functions, [`preset_files`], the [`device`] of a graphics card, memory of images, and what frames have in
+//! common ([`neighbours`]), found by the contents of pictures alone; so any action may come on any thread, in any number.
 
+mod blending;
 mod card;
 mod clips;
 mod colours;
+mod content;
 mod controls;
 mod describe;
 mod device;
@@ -21,6 +23,7 @@ mod host;
 mod image;
 mod inputs;
 mod instance;
+mod kept;
 mod known;
 #[cfg(test)]
 mod labels;
@@ -29,12 +32,14 @@ mod looks;
 mod mask;
 mod motion;
 mod needed;
+mod neighbours;
 mod prepared;
 mod preset_files;
 #[cfg(test)]
 mod promised;
 mod quirks;
 mod render;
+mod segments;
 mod settings;
 mod shipped;
 mod stop;
@@ -141,19 +146,23 @@ fn act_on_library(number: usize, action: &CStr) -> Option<Outcome> {
         }
         a if a == kOfxActionUnload => {
             lock(&SLOTS[number]).fetched = None;
-            device::forget();
-            forget_pools();
-            preset_files::forget_all();
+            forget_caches();
             Some(Ok(kOfxStatOK))
         }
         a if a == kOfxActionPurgeCaches => {
-            device::forget();
-            forget_pools();
-            preset_files::forget_all();
+            forget_caches();
             Some(Ok(kOfxStatOK))
         }
         _ => None,
     }
+}
+
+/// Frees graphics devices, ends idle threads, and gives back what is kept from one render to the next.
+fn forget_caches() {
+    device::forget();
+    forget_pools();
+    preset_files::forget_all();
+    render::forget_caches();
 }
 
 /// Actions on a descriptor or an instance; [`act_on_effect`] knows each.

@@ -112,6 +112,7 @@ mod tests {
             size,
             seconds: 2e-3,
             call_seconds: None,
+            transfers: None,
             bytes: None,
             passes: kernels.map(pass).into(),
         }

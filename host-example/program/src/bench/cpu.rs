@@ -66,6 +66,7 @@ fn entry(subject: &Subject, size: (u32, u32), measured: &[(f64, Vec<PassTime>)])
         size,
         seconds: total,
         call_seconds: Some(median(measured.iter().map(|(call, _)| *call).collect())),
+        transfers: None,
         bytes: None,
         passes: passes
             .iter()

@@ -1,5 +1,7 @@
 //! Measurements of one node.
 
+use super::transfers::Transfers;
+
 /// One node on one backend.
 #[derive(Debug)]
 pub struct Entry {
@@ -13,6 +15,8 @@ pub struct Entry {
     pub seconds: f64,
     /// The whole call with the conversion of pixels in and out, where there is any.
     pub call_seconds: Option<f64>,
+    /// The picture's way to the device and the result's way back, on the GPU.
+    pub transfers: Option<Transfers>,
     /// Bytes that all passes together read from and write to textures, on the GPU.
     pub bytes: Option<u64>,
     /// The passes; empty where they are not timed apart.

@@ -5,6 +5,7 @@ use std::time::Instant;
 
 use super::entry::{Entry, PassEntry};
 use super::timer::Timer;
+use super::transfers::{self, Transfers};
 use super::{Subject, median, motion};
 use isophote_example::kernels::Kernels;
 use isophote_example::plan_runner::{ALL, PlanRunner};
@@ -53,6 +54,8 @@ impl Bench {
         let refused = |e: isophote_loader::Error| e.at(&subject.node, "leave it out with --node");
         let (plan, mut runner) = self.prepare(library, subject, picture)?;
         let totals = (0..runs).map(|_| self.once(&mut runner)).collect::<Result<Vec<f64>>>()?;
+        let texture = self.upload(picture);
+        let transfers = Transfers::measure(&self.gpu, picture, texture.texture(), runs)?;
         let mut passes = passes(&plan).map_err(refused)?;
         let bytes = passes.iter().filter_map(|pass| pass.bytes).sum();
         match Timer::new(&self.gpu, passes.len()) {
@@ -71,6 +74,7 @@ impl Bench {
             size: (picture.width(), picture.height()),
             seconds: median(totals),
             call_seconds: None,
+            transfers: Some(transfers),
             bytes: Some(bytes),
             passes,
         })
@@ -171,16 +175,7 @@ impl Bench {
                 | wgpu::TextureUsages::COPY_SRC,
             view_formats: &[],
         });
-        self.gpu.queue.write_texture(
-            texture.as_image_copy(),
-            picture.bytes(),
-            wgpu::TexelCopyBufferLayout {
-                offset: 0,
-                bytes_per_row: Some(picture.width() * picture.channels() * 4),
-                rows_per_image: None,
-            },
-            texture.size(),
-        );
+        transfers::write(&self.gpu, picture, &texture);
         texture.create_view(&wgpu::TextureViewDescriptor::default())
     }
 }

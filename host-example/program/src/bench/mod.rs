@@ -11,6 +11,7 @@ pub mod report;
 pub mod sequence;
 mod throughput;
 mod timer;
+mod transfers;
 
 use isophote_finishing::stylize::style::Setting;
 use isophote_pictures::pixels::{Pixels, Samples};

@@ -6,6 +6,7 @@ use super::compare::{self, Saved};
 use super::entry::Entry;
 use super::peak::Peak;
 use super::peers;
+use super::transfers::Transfers;
 use isophote_files::error::{Error, Result};
 use isophote_files::output;
 use isophote_loader::Library;
@@ -100,6 +101,12 @@ impl Report {
             }),
             ratio(whole)
         );
+        if let Some(Transfers { upload, download }) = entry.transfers {
+            let whole = upload + entry.seconds + download;
+            for (what, seconds) in [("upload", upload), ("download", download), ("with both", whole)] {
+                text += &format!("  {what:38}{}\n", columns(seconds, entry.megapixels() / seconds, None));
+            }
+        }
         for (at, pass) in entry.passes.iter().enumerate() {
             let rate = pass.pixels as f64 / 1e6 / pass.seconds;
             text += &format!(
@@ -243,6 +250,10 @@ fn entry(entry: &Entry, peak: Option<Peak>) -> Value {
     });
     if let Some(call) = entry.call_seconds {
         value["call_milliseconds"] = json!(call * 1e3);
+    }
+    if let Some(Transfers { upload, download }) = entry.transfers {
+        value["upload_milliseconds"] = json!(upload * 1e3);
+        value["download_milliseconds"] = json!(download * 1e3);
     }
     add_shares(&mut value, shares(peak, entry.seconds, entry.work()));
     value

@@ -30,7 +30,7 @@ const CARD_FRAMES: u32 = 12;
 /// Options of `bench`.
 #[derive(Args, Debug)]
 #[command(
-    after_help = "Times are medians of warm runs, without the conversion of pixels in and out. Nodes that are steady, such as cartoon,steadiness=0.5, are measured on frames in order of which those before are known."
+    after_help = "Times are medians of warm runs, without the conversion of pixels in and out. Nodes that are steady, such as cartoon,steadiness=0.5, are measured on frames in order of which those before are known. On the GPU, upload and download are a picture's way there and the result's way back, which OpenFX hosts wait for as well."
 )]
 pub struct BenchArgs {
     /// Prints JSON.

@@ -65,6 +65,11 @@ impl CpuExecutor {
         self.spare.push(image);
     }
 
+    /// Bytes of memory kept for the next run.
+    pub fn kept(&self) -> u64 {
+        self.spare.iter().map(Image::memory).sum()
+    }
+
     /// Gives back the memory kept for the next run.
     pub fn purge(&mut self) {
         self.spare.clear();

@@ -25,23 +25,12 @@ impl Plan {
 
     /// A number for each image, with frames counted from `home`.
     fn seen_from(&self, home: i32) -> Vec<u128> {
-        let mut numbers = vec![0; self.images.len()];
-        for port in &self.inputs {
-            numbers[port.image.index()] = hash(&(port.base(), port.frame - home, self.size));
-        }
-        for pass in &self.passes {
-            let inputs: Vec<u128> = pass.inputs.iter().map(|input| numbers[input.index()]).collect();
-            let made = (pass.kernel.name, inputs, &pass.params, &pass.supports, self.size);
-            for (place, output) in pass.outputs.iter().enumerate() {
-                numbers[output.index()] = hash(&(&made, place, self.desc(*output)));
-            }
-        }
-        numbers
+        self.names(|port| hash(&(port.base(), port.frame - home)))
     }
 }
 
 /// 128 bits, so that no two images of a run meet.
-fn hash(value: &impl Hash) -> u128 {
+pub(super) fn hash(value: &impl Hash) -> u128 {
     let half = |salt: u8| {
         let mut hasher = DefaultHasher::new();
         (salt, value).hash(&mut hasher);

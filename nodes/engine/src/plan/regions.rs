@@ -24,6 +24,11 @@ impl Plan {
         self.clip(rescale(region, 0, level), level)
     }
 
+    /// The region (level 0) whose pixels of `level` hold a window of them.
+    pub fn region_over(&self, window: Rect, level: i8) -> Rect {
+        self.clip(rescale(window, level, 0), 0)
+    }
+
     /// The window of every virtual image that is needed to compute `region` (level 0) of every
     /// output. Images that are not needed get an empty window.
     pub fn windows(&self, region: Rect) -> Vec<Rect> {

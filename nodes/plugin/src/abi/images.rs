@@ -4,12 +4,19 @@
 //! another image, or lie at any address.
 
 use super::failure::{Failure, Outcome};
+use super::guard::lock;
+use crate::pool;
+use isophote::engine::cpu::Threads;
 use isophote::engine::pixels::{Sample, read_row, read_vectors, write_row};
 use isophote::engine::{Image, Rect};
 use isophote::graph::GraphInput;
 use isophote::kernels::shared::motion::UNKNOWN;
 use isophote::spec::ImageKind;
 use isophote_abi::*;
+use std::sync::{Mutex, PoisonError};
+
+/// Rows that a thread reads one after the other.
+const ROWS: u32 = 32;
 
 /// An image of the host's whose shape was checked.
 #[derive(Clone, Copy, Debug)]
@@ -149,7 +156,7 @@ impl Checked {
     pub unsafe fn read(&self, window: Rect, input: GraphInput) -> Outcome<(Image, u64)> {
         self.must_suit(input)?;
         let channels = input.kind().channels();
-        let mut image = Image::with_window(window, channels)?;
+        let mut image = pool::image(window, channels)?;
         let mut bytes = self.row_of_bytes(&window)?;
         let mut replaced = 0;
         for y in window.y0..window.y1 {
@@ -181,6 +188,37 @@ impl Checked {
         Ok((image, replaced))
     }
 
+    /// Hands the bytes of each row of `window`, which the image must hold, to `look`, on several threads.
+    ///
+    /// # Errors
+    /// Out of memory.
+    ///
+    /// # Safety
+    /// The memory of the image must be readable.
+    pub unsafe fn each_row(
+        &self,
+        window: Rect,
+        threads: &dyn Threads,
+        look: &(dyn Fn(i32, &[u8]) + Sync),
+    ) -> Outcome<()> {
+        let image = Readable(self);
+        let failure = Mutex::new(None);
+        threads.run(window.height().div_ceil(ROWS) as usize, &|job| {
+            let checked = image.get();
+            let mut bytes = match checked.row_of_bytes(&window) {
+                Ok(bytes) => bytes,
+                Err(error) => return *lock(&failure) = Some(error),
+            };
+            let first = window.y0 + job as i32 * ROWS as i32;
+            for y in first..(first + ROWS as i32).min(window.y1) {
+                // SAFETY: as in `read`.
+                unsafe { bytes.as_mut_ptr().copy_from_nonoverlapping(checked.at(&window, y), bytes.len()) };
+                look(y, &bytes);
+            }
+        });
+        failure.into_inner().unwrap_or_else(PoisonError::into_inner).map_or(Ok(()), Err)
+    }
+
     /// Two channels of the pixels of a row, which the image must hold, as they are stored.
     ///
     /// # Errors
@@ -200,13 +238,21 @@ impl Checked {
             Failure::new(ISOPHOTE_ERROR_OUT_OF_MEMORY, format!("there is no memory for {len} vectors"))
         })?;
         pairs.resize(len, 0.0);
-        for (pixel, pair) in
-            bytes.chunks_exact(self.channels * self.sample.size()).zip(pairs.chunks_exact_mut(2))
-        {
+        let size = self.sample.size();
+        let pixels = bytes.chunks_exact(self.channels * size).zip(pairs.chunks_exact_mut(2));
+        for (pixel, pair) in pixels {
             for (value, channel) in pair.iter_mut().zip(channels) {
-                let from = &pixel[channel * self.sample.size()..][..self.sample.size()];
                 // A vector of one component, whose number is kept whatever it is.
-                read_vectors(from, self.sample, 1, std::slice::from_mut(value), 1, f32::NAN);
+                match (self.sample, pixel[channel * size..].first_chunk()) {
+                    (Sample::F32, Some(bytes)) => {
+                        let read = f32::from_ne_bytes(*bytes);
+                        *value = if read.is_finite() { read } else { f32::NAN };
+                    }
+                    _ => {
+                        let from = &pixel[channel * size..][..size];
+                        read_vectors(from, self.sample, 1, std::slice::from_mut(value), 1, f32::NAN);
+                    }
+                }
             }
         }
         Ok(pairs)
@@ -272,6 +318,18 @@ impl Checked {
         Ok(())
     }
 }
+
+/// An image that several threads read.
+struct Readable<'c>(&'c Checked);
+
+impl<'c> Readable<'c> {
+    fn get(&self) -> &'c Checked {
+        self.0
+    }
+}
+
+// SAFETY: who reads by it has been promised that the memory is readable, and nobody writes it meanwhile.
+unsafe impl Sync for Readable<'_> {}
 
 /// A rectangle for people: its size and corner.
 pub fn shown(rect: &Rect) -> String {

@@ -11,6 +11,7 @@ use super::request::{region, request};
 use super::run::{Run, must_fit};
 use super::threads::CallThreads;
 use super::warm::Warm;
+use crate::pool;
 use isophote::Request;
 use isophote::engine::{Image, Rect, Support};
 use isophote::graph::GraphInput;
@@ -184,11 +185,13 @@ impl ProcessCall<'_> {
             warm.plan_for(&self.object.snapshot(), &request)?;
             self.make_room(warm, device.is_some())?;
         }
-        let images: Vec<(&str, &Image)> = images.iter().map(|(name, image)| (*name, image)).collect();
+        let named: Vec<(&str, &Image)> = images.iter().map(|(name, image)| (*name, image)).collect();
         let precision = self.object.lock().precision();
         let (plan, cpu, gpu) = warm.parts()?;
         let run = Run { plan, precision, region: self.region, threads: self.threads, control: self.control };
-        let results = run.execute(cpu, gpu, device, &images)?;
+        let results = run.execute(cpu, gpu, device, &named);
+        images.into_iter().for_each(|(_, image)| pool::keep_image(image));
+        let results = results?;
         let result = results
             .into_iter()
             .next()
@@ -210,6 +213,7 @@ impl ProcessCall<'_> {
         };
         fits(warm).or_else(|_| {
             warm.purge();
+            pool::forget();
             fits(warm)
         })
     }

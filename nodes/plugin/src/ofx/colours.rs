@@ -84,6 +84,11 @@ impl Colours {
         }
     }
 
+    /// True where [`Colours::enter`] changes nothing.
+    pub fn enter_as_they_are(&self) -> bool {
+        self.entering.is_none()
+    }
+
     /// Makes the host's colours those of the plan.
     pub fn enter(&self, colour: &mut Image, threads: &dyn Threads) {
         change(self.entering.as_ref(), colour, threads);

@@ -5,6 +5,7 @@ use super::device;
 use super::host::Host;
 use super::prepared::Prepared;
 use super::stop::Stop;
+use crate::pool;
 use isophote::Error;
 use isophote::engine::cpu::{Control, CpuExecutor, Threads};
 use isophote::engine::plan::WORKING_MEMORY;
@@ -30,7 +31,7 @@ pub struct Work<'w> {
 impl<'h> Executors<'h> {
     /// The executors of a frame that wants this card, or none. The card's device is opened here if it has to be.
     pub fn new(host: &'h Host, instance: Handle, wanted: Option<Card>) -> Self {
-        let mut executors = Self { host, instance, card: wanted, cpu: CpuExecutor::new() };
+        let mut executors = Self { host, instance, card: wanted, cpu: pool::executor() };
         if let Some(card) = wanted
             && let Err(error) = device::ready(card)
         {
@@ -39,17 +40,16 @@ impl<'h> Executors<'h> {
         executors
     }
 
-    /// Rows of a band of `inside`. A card cuts what is too large for it into tiles, so that a band there is as much as this
+    /// Rows of a band of `inside` in a run of `plan`. A card cuts what is too large for it into tiles, so that a band there is as much as this
     /// machine should hold of pictures on their way.
-    pub fn band_rows(&self, prepared: &Prepared, inside: Rect) -> i32 {
-        let plan = prepared.planned.plan();
-        let windows = prepared.windows(inside);
+    pub fn band_rows(&self, prepared: &Prepared, plan: &Plan, inside: Rect) -> i32 {
+        let windows = plan.windows(prepared.plan_window(inside));
         let bytes = |id: ImageId| windows[id.index()].area() * u64::from(plan.desc(id).channels) * 4;
         let moved: u64 = plan.inputs().iter().chain(plan.outputs()).map(|port| bytes(port.image)).sum();
         if self.card.is_some() && moved <= WORKING_MEMORY[0] {
             inside.height() as i32
         } else {
-            prepared.band_rows(inside)
+            prepared.band_rows(plan, inside)
         }
     }
 
@@ -79,8 +79,29 @@ impl<'h> Executors<'h> {
         self.host.warn_of_card(self.instance, &format!("The CPU computes here. {error}"));
     }
 
-    /// Gives back what is kept for the next band.
+    /// The CPU's executor, where no graphics card computes.
+    pub fn cpu(&mut self) -> Option<&mut CpuExecutor> {
+        self.card.is_none().then_some(&mut self.cpu)
+    }
+
+    /// Keeps the memory of an image for the next band.
+    pub fn recycle(&mut self, image: Image) {
+        if self.card.is_some() {
+            pool::keep_image(image);
+        } else {
+            self.cpu.recycle(image);
+        }
+    }
+
+    /// Gives back what is kept for the next band, unless the next frame may have it.
     pub fn purge(&mut self) {
-        self.cpu = CpuExecutor::new();
+        if self.cpu.kept() > pool::most() {
+            self.cpu = CpuExecutor::new();
+        }
+    }
+
+    /// Leaves its memory to other frames.
+    pub fn keep_memory(self) {
+        pool::keep_executor(self.cpu);
     }
 }

@@ -1,8 +1,11 @@
 //! Images of the host's, fetched, read into the engine's and written back, and released on every path.
 
+use super::content;
 use super::frame::{Bounds, Frame};
 use super::host::{Host, Outcome, Properties};
+use crate::abi::guard::lock;
 use crate::abi::images::Checked;
+use isophote::engine::cpu::Threads;
 use isophote::engine::{Image, Rect};
 use isophote::graph::GraphInput;
 use isophote::spec::ImageKind;
@@ -10,6 +13,7 @@ use isophote_abi::openfx::*;
 use isophote_abi::*;
 use std::ffi::CStr;
 use std::ptr::null_mut;
+use std::sync::Mutex;
 
 /// Share of a frame below which differences are rounding.
 const ROUNDING: f64 = 1e-3;
@@ -210,12 +214,12 @@ impl<'h> Fetched<'h> {
     pub fn read(&self, frame: &Frame, window: Rect, input: GraphInput, beyond: Beyond) -> Outcome<Image> {
         let checked = self.checked(frame)?;
         let channels = input.kind().channels();
-        let mut image = Image::with_window(window, channels).map_err(|_| kOfxStatErrMemory)?;
+        let zeros = || Image::with_window(window, channels).map_err(|_| kOfxStatErrMemory);
         let inside = window.intersection(&checked.window);
         // Normals are read as colours: integers hold them as shares of -1..=1.
         let as_input = if input == GraphInput::Normal { GraphInput::Color } else { input };
         if inside.is_empty() && beyond == Beyond::Zero {
-            return Ok(image);
+            return zeros();
         }
         let inside = if inside.is_empty() { nearest(&window, &checked.window) } else { inside };
         // SAFETY: the host gave the image, so that its memory may be read until it is released.
@@ -231,6 +235,7 @@ impl<'h> Fetched<'h> {
         if inside == window {
             return Ok(part);
         }
+        let mut image = zeros()?;
         let c = channels as usize;
         for y in window.y0..window.y1 {
             if beyond == Beyond::Zero && !(inside.y0..inside.y1).contains(&y) {
@@ -246,6 +251,29 @@ impl<'h> Fetched<'h> {
             }
         }
         Ok(image)
+    }
+
+    /// Number of all that [`Fetched::read`] reads of `window`.
+    ///
+    /// # Errors
+    /// As [`Fetched::read`].
+    pub fn content(&self, frame: &Frame, window: Rect, threads: &dyn Threads) -> Outcome<u128> {
+        let checked = self.checked(frame)?;
+        let inside = window.intersection(&checked.window);
+        let inside = if inside.is_empty() { nearest(&window, &checked.window) } else { inside };
+        let form =
+            format!("{inside:?} {} {} {:?} {}", self.sample, self.channels, self.alpha, self.blue_first);
+        let rows: Vec<Mutex<u128>> = (inside.y0..inside.y1).map(|_| Mutex::default()).collect();
+        // SAFETY: the host gave the image, so that its memory may be read until it is released.
+        let read = unsafe {
+            checked.each_row(inside, threads, &|y, bytes| {
+                *lock(&rows[(y - inside.y0) as usize]) = content::of_bytes(bytes);
+            })
+        };
+        read.map_err(|_| kOfxStatErrMemory)?;
+        let mut all = vec![content::of_text(&form)];
+        all.extend(rows.iter().map(|row| *lock(row)));
+        Ok(content::of_all(&all))
     }
 
     /// Two channels of the pixels of `window`, as they are stored; NaN for what the image does not hold.
@@ -316,24 +344,23 @@ impl<'h> Fetched<'h> {
         Ok(amounts)
     }
 
-    /// Writes the pixels of `image` that this one holds.
+    /// Writes the pixels of `image` that this one holds; its colours may be in another order afterwards.
     ///
     /// # Errors
     /// Memory; image format, when no image can have its shape.
-    pub fn write(&self, frame: &Frame, mut image: Image) -> Outcome<()> {
+    pub fn write(&self, frame: &Frame, image: &mut Image) -> Outcome<()> {
         let checked = self.checked(frame)?;
         let inside = image.window().intersection(&checked.window);
         if inside.is_empty() {
             return Ok(());
         }
-        if inside != image.window() {
-            image = image.crop(inside).map_err(|_| kOfxStatErrMemory)?;
-        }
         if self.blue_first && image.channels() == 4 {
             image.data_mut().chunks_exact_mut(4).for_each(|p| p.swap(0, 2));
         }
+        let part = (inside != image.window()).then(|| image.crop(inside)).transpose();
+        let part = part.map_err(|_| kOfxStatErrMemory)?;
         // SAFETY: the host gave the image to be written, until it is released.
-        unsafe { checked.write(&image) }.map_err(|_| kOfxStatErrMemory)
+        unsafe { checked.write(part.as_ref().unwrap_or(image)) }.map_err(|_| kOfxStatErrMemory)
     }
 }
 

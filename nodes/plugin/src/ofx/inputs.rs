@@ -1,10 +1,11 @@
 //! Inputs of a plan: the picture and its guides, of the frame that is rendered and of those around it.
 //!
-//! The images of other frames are fetched when they are read and given back at once. None is kept from one render to the
-//! next: hosts do not tell effects when the pictures of other frames change.
+//! The images of other frames are fetched when they are read and given back at once. They are read for every render:
+//! hosts do not tell effects when the pictures of other frames change.
 
 use super::clips::{MOTION, MOTION_FORWARD, SOURCE, guide_clip};
 use super::colours::Colours;
+use super::content;
 use super::effects::Effect;
 use super::frame::{Frame, is_endless};
 use super::host::{Host, Outcome, Properties};
@@ -12,9 +13,11 @@ use super::image::{Alpha, Beyond, Clip, Fetched};
 use super::prepared::Prepared;
 use super::stop::Stop;
 use crate::pixel_aspect::multiply;
+use crate::pool;
 use isophote::Error;
 use isophote::engine::cpu::Threads;
-use isophote::engine::{Image, Rect};
+use isophote::engine::plan::Port;
+use isophote::engine::{Image, Plan, Rect};
 use isophote::graph::GraphInput;
 use isophote::request::Guides;
 use isophote_abi::openfx::*;
@@ -39,13 +42,51 @@ impl Field {
     }
 }
 
-/// Images by the names of a plan's inputs.
-pub type Named = Vec<(String, Image)>;
+/// Pixels that were read for an input of a plan.
+pub struct Read {
+    /// The plan's name for it.
+    pub name: String,
+    /// The host's pixels, or those of the plan once they are ready.
+    pub pixels: Image,
+    input: GraphInput,
+    /// The part of the plan's image.
+    window: Rect,
+    is_ready: bool,
+}
 
-/// Result of reading.
-pub enum Gathered {
+impl Read {
+    /// Keeps its memory for others.
+    pub fn keep_memory(self) {
+        pool::keep_image(self.pixels);
+    }
+}
+
+/// An image for an input of a plan, before its pixels are read.
+pub struct Taken<'h> {
+    /// The plan's name for it.
+    pub name: String,
+    input: GraphInput,
+    /// Its frame, counted from the one that is rendered.
+    offset: i32,
+    /// The part of the plan's image.
+    window: Rect,
+    pixels: Pixels<'h>,
+}
+
+/// Pixels of an image that was taken.
+enum Pixels<'h> {
+    /// The source's or a guide's, of the frame that is rendered.
+    OfFrame,
+    /// Another frame's, with what lies beyond them.
+    OfNeighbour(Fetched<'h>, Beyond),
+    /// Vectors, which are read at once.
+    Vectors(Image),
+}
+
+/// Result of taking or reading.
+pub enum Gathered<T> {
     /// Everything.
-    All(Named),
+    All(Vec<T>),
     /// Nothing, since this frame, counted from the one that is rendered, lacks an image.
     Without(i32),
 }
@@ -120,33 +161,114 @@ impl<'h> Inputs<'h> {
         self.source.alpha == Alpha::Unpremultiplied
     }
 
-    /// Images that the plan reads to compute `band`, in the plan's pixels.
-    pub fn gather(&self, prepared: &Prepared, band: Rect, threads: &dyn Threads) -> Result<Gathered, Stop> {
-        let windows = prepared.windows(band);
-        let mut images = Vec::new();
-        for port in prepared.planned.plan().inputs() {
+    /// The host's pixels that a plan, or a part of it, reads of each of its images.
+    pub fn gather(&self, prepared: &Prepared, plan: &Plan, windows: &[Rect]) -> Result<Gathered<Read>, Stop> {
+        self.each(prepared, plan.inputs(), windows, |taken| self.read_taken(prepared, taken))
+    }
+
+    /// Result of `made` for the image of each of a plan's inputs. One is given back before the next is taken.
+    pub fn each<'p, T>(
+        &self,
+        prepared: &Prepared,
+        ports: impl IntoIterator<Item = &'p Port>,
+        windows: &[Rect],
+        made: impl Fn(Taken<'h>) -> Result<T, Stop>,
+    ) -> Result<Gathered<T>, Stop> {
+        let mut all = Vec::new();
+        for port in ports {
             let window = windows[port.image.index()];
             let Some(input) = GraphInput::from_id(port.base()).filter(|_| !window.is_empty()) else {
                 continue;
             };
-            let Some(mut pixels) = self.pixels(prepared, input, port.frame, window)? else {
-                if port.frame != 0 {
-                    return Ok(Gathered::Without(port.frame));
+            match self.pixels(prepared, input, port.frame, window)? {
+                Some(pixels) => {
+                    let (name, offset) = (port.name.clone(), port.frame);
+                    all.push(made(Taken { name, input, offset, window, pixels })?);
                 }
-                continue;
-            };
-            if input == GraphInput::Color {
-                self.colours.enter(&mut pixels, threads);
+                None if port.frame != 0 => return Ok(Gathered::Without(port.frame)),
+                None => {}
             }
-            if let Some(square) = prepared.square {
-                if input == GraphInput::Color && self.is_straight() {
-                    multiply(&mut pixels);
-                }
-                pixels = square.to_square(pixels, window, input, threads).map_err(Error::from)?;
-            }
-            images.push((port.name.clone(), pixels));
         }
-        Ok(Gathered::All(images))
+        Ok(Gathered::All(all))
+    }
+
+    /// The host's pixels of an image that was taken.
+    pub fn read_taken(&self, prepared: &Prepared, taken: Taken<'h>) -> Result<Read, Stop> {
+        let Taken { name, input, window, pixels, .. } = taken;
+        let host = prepared.host_window(window);
+        let pixels = match pixels {
+            Pixels::Vectors(pixels) => pixels,
+            Pixels::OfNeighbour(image, beyond) if input == GraphInput::Color => {
+                self.read_colour(&image, host, beyond)?
+            }
+            Pixels::OfNeighbour(image, _) => self.read_guide(input, &image, host)?,
+            Pixels::OfFrame => match self.image(input) {
+                Some(image) if input != GraphInput::Color => self.read_guide(input, image, host)?,
+                _ => self.read(host)?,
+            },
+        };
+        Ok(Read { name, pixels, input, window, is_ready: false })
+    }
+
+    /// Number of what would be read of an image that was taken. None where the host gave too little of it: less than
+    /// `is_part` of the picture would need.
+    pub fn content(
+        &self,
+        prepared: &Prepared,
+        taken: &Taken<'h>,
+        is_part: bool,
+        threads: &dyn Threads,
+    ) -> Outcome<Option<u128>> {
+        let window = self.grown(prepared.host_window(taken.window));
+        let (image, beyond) = match &taken.pixels {
+            Pixels::Vectors(pixels) => return Ok(Some(content::of_image(pixels, threads))),
+            Pixels::OfNeighbour(image, beyond) => (Some(image), *beyond),
+            Pixels::OfFrame => (self.image(taken.input), Beyond::Edge),
+        };
+        let Some(image) = image.filter(|image| !is_part || self.is_covered(taken, image, window)) else {
+            return Ok(None);
+        };
+        let read = content::of_text(&format!("{window:?} {beyond:?} {:?}", self.field));
+        Ok(Some(content::of_all(&[read, image.content(&self.frame, window, threads)?])))
+    }
+
+    /// True where the host gave all of a window that its clip has.
+    fn is_covered(&self, taken: &Taken<'_>, image: &Fetched<'_>, window: Rect) -> bool {
+        let held = self.frame.inside(image.bounds);
+        let is_colour = taken.input == GraphInput::Color;
+        let defined = || {
+            let clip = Clip::of(
+                self.host,
+                self.instance,
+                if is_colour { SOURCE } else { guide_clip(taken.input)? },
+            )?;
+            self.frame.pixels(&clip.defined(self.time + f64::from(taken.offset))?)
+        };
+        held.contains(&window)
+            || defined().is_some_and(|d| held.contains(&window.intersection(&self.frame.inside(d))))
+    }
+
+    /// Makes the host's pixels those of the plan, if they are not yet.
+    pub fn make_ready(
+        &self,
+        prepared: &Prepared,
+        read: &mut Read,
+        threads: &dyn Threads,
+    ) -> Result<(), Stop> {
+        if std::mem::replace(&mut read.is_ready, true) {
+            return Ok(());
+        }
+        if read.input == GraphInput::Color {
+            self.colours.enter(&mut read.pixels, threads);
+        }
+        if let Some(square) = prepared.square {
+            if read.input == GraphInput::Color && self.is_straight() {
+                multiply(&mut read.pixels);
+            }
+            let pixels = std::mem::take(&mut read.pixels);
+            read.pixels = square.to_square(pixels, read.window, read.input, threads).map_err(Error::from)?;
+        }
+        Ok(())
     }
 
     /// The host's pixels under a window of the plan's; none where there is no image.
@@ -156,18 +278,20 @@ impl<'h> Inputs<'h> {
         input: GraphInput,
         offset: i32,
         window: Rect,
-    ) -> Result<Option<Image>, Stop> {
+    ) -> Result<Option<Pixels<'h>>, Stop> {
         let window = prepared.host_window(window);
+        let vectors = |way| Ok(self.vectors(prepared, way, offset, window)?.map(Pixels::Vectors));
         match input {
-            GraphInput::Motion => self.vectors(prepared, Way::Backward, offset, window),
-            GraphInput::MotionForward => self.vectors(prepared, Way::Forward, offset, window),
-            _ if offset != 0 => self.of_neighbour(input, offset, window),
-            GraphInput::Color => Ok(Some(self.read(window)?)),
-            guide => {
-                let image = self.guide(guide);
-                Ok(image.map(|image| self.read_guide(guide, image, window)).transpose()?)
-            }
+            GraphInput::Motion => vectors(Way::Backward),
+            GraphInput::MotionForward => vectors(Way::Forward),
+            _ if offset != 0 => self.of_neighbour(input, offset),
+            input => Ok(self.image(input).map(|_| Pixels::OfFrame)),
         }
+    }
+
+    /// The image of an input in the frame that is rendered.
+    fn image(&self, input: GraphInput) -> Option<&Fetched<'h>> {
+        if input == GraphInput::Color { Some(&self.source) } else { self.guide(input) }
     }
 
     fn guide(&self, guide: GraphInput) -> Option<&Fetched<'h>> {
@@ -200,8 +324,7 @@ impl<'h> Inputs<'h> {
         let Some(field) = self.field else { return read(window) };
         // Rows of the other field take the next of this one, as hosts that double the lines have it. Then
         // a picture of both fields and one of doubled lines come out alike.
-        let whole = Rect::of_size(self.frame.size()[0], self.frame.size()[1]);
-        let grown = Rect { y0: window.y0 - 1, y1: window.y1 + 1, ..window }.intersection(&whole);
+        let grown = self.grown(window);
         let both = read(grown)?;
         let mut one = both.crop(window).map_err(|_| kOfxStatErrMemory)?;
         for y in window.y0..window.y1 {
@@ -219,6 +342,13 @@ impl<'h> Inputs<'h> {
         Ok(one)
     }
 
+    /// The pixels that are read for a window: rows of a field have neighbours in the other.
+    fn grown(&self, window: Rect) -> Rect {
+        let whole = Rect::of_size(self.frame.size()[0], self.frame.size()[1]);
+        let grown = Rect { y0: window.y0 - 1, y1: window.y1 + 1, ..window }.intersection(&whole);
+        if self.field.is_some() { grown } else { window }
+    }
+
     /// The image of a clip in another frame; none where the clip, or the host, has none.
     fn neighbour(&self, name: &CStr, offset: i32) -> Result<Option<(Clip<'h>, Fetched<'h>)>, Stop> {
         let time = self.time + f64::from(offset);
@@ -230,18 +360,18 @@ impl<'h> Inputs<'h> {
     }
 
     /// An image of another frame.
-    fn of_neighbour(&self, input: GraphInput, offset: i32, window: Rect) -> Result<Option<Image>, Stop> {
+    fn of_neighbour(&self, input: GraphInput, offset: i32) -> Result<Option<Pixels<'h>>, Stop> {
         let name = if input == GraphInput::Color { Some(SOURCE) } else { guide_clip(input) };
         let Some(name) = name else { return Ok(None) };
-        let found = self.neighbour(name, offset)?.filter(|(_, image)| image.suits(input));
-        let Some((clip, image)) = found else { return Ok(None) };
-        present(match input {
-            GraphInput::Color => {
-                let beyond = self.beyond(clip.defined(self.time + f64::from(offset)));
-                self.read_colour(&image, window, beyond)
-            }
-            guide => self.read_guide(guide, &image, window),
-        })
+        let is_fit = |image: &Fetched<'_>| image.suits(input) && image.is_sound(&self.frame);
+        let found = self.neighbour(name, offset)?.filter(|(_, image)| is_fit(image));
+        Ok(found.map(|(clip, image)| {
+            let beyond = match input {
+                GraphInput::Color => self.beyond(clip.defined(self.time + f64::from(offset))),
+                _ => Beyond::Edge,
+            };
+            Pixels::OfNeighbour(image, beyond)
+        }))
     }
 
     /// Values outside the image of another frame, by its region: nothing, where it does not cover this one's.

@@ -7,9 +7,12 @@ use super::frame::{Frame, bounded, is_endless};
 use super::host::{Host, Outcome, Properties};
 use super::image::Clip;
 use super::known::{Known, clip_of};
+use super::neighbours::Lasting;
 use super::prepared::{Prepared, Quality};
+use super::segments::parts;
 use super::settings::{Settings, animated};
-use isophote::engine::Rect;
+use isophote::engine::plan::Port;
+use isophote::engine::{Plan, Rect};
 use isophote::graph::GraphInput;
 use isophote::spec::animates_marks;
 use isophote_abi::openfx::*;
@@ -128,18 +131,36 @@ pub fn regions_of_interest(
     {
         known.limit_to_source(host, instance, moment.time);
         let prepared = Prepared::new(&known, space, &frame, true, quality).map_err(|_| kOfxStatFailed)?;
-        let windows = prepared.windows(region);
-        for port in prepared.planned.plan().inputs() {
-            let window = prepared.host_window(windows[port.image.index()]).union(&region);
-            let clip =
-                GraphInput::from_id(port.base()).and_then(|input| clip_of(&settings, host, instance, input));
-            clip.into_iter().for_each(|clip| interest.add(clip, window));
+        for (input, window) in read_for(&prepared, frame.size(), region) {
+            let clip = clip_of(&settings, host, instance, input);
+            clip.into_iter().for_each(|clip| interest.add(clip, window.union(&region)));
         }
     }
     if is_connected(host, instance, MASK) {
         interest.add(MASK, region);
     }
     Ok(if interest.answered() { kOfxStatOK } else { kOfxStatReplyDefault })
+}
+
+/// The host's pixels that are read of each input for a region of the frame: for the region, and for what other frames and
+/// tiles share with it.
+fn read_for(prepared: &Prepared, size: [u32; 2], region: Rect) -> Vec<(GraphInput, Rect)> {
+    let plan = prepared.planned.plan();
+    let mut all = inputs(prepared, plan, &prepared.windows(region));
+    let segments = parts(size, region).into_iter().filter_map(|part| part.segment);
+    for lasting in segments.filter_map(|segment| Lasting::of(prepared, segment)) {
+        let (part, windows) = lasting.part(plan);
+        all.extend(inputs(prepared, &part, &windows));
+    }
+    all
+}
+
+fn inputs(prepared: &Prepared, plan: &Plan, windows: &[Rect]) -> Vec<(GraphInput, Rect)> {
+    let of = |port: &Port| {
+        let window = prepared.host_window(windows[port.image.index()]);
+        GraphInput::from_id(port.base()).map(|input| (input, window))
+    };
+    plan.inputs().iter().filter_map(of).collect()
 }
 
 /// The regions of interest, by clip.

@@ -111,9 +111,8 @@ impl Prepared {
         self.square.map_or(window, |square| square.host_window(window))
     }
 
-    /// Rows of the host's in one band.
-    pub fn band_rows(&self, region: Rect) -> i32 {
-        let plan = self.planned.plan();
+    /// Rows of the host's in one band of a run of `plan`, which is this one's or what is left of it.
+    pub fn band_rows(&self, plan: &Plan, region: Rect) -> i32 {
         let window = self.plan_window(region);
         let mut rows = plan.band_rows(window, WORKING_MEMORY, LEAST_ROWS);
         let first = Rect { y1: (window.y0 + rows).min(window.y1), ..window };
@@ -160,7 +159,7 @@ mod tests {
                 assert_ne!(known.frames, Frames::NONE);
                 let prepared =
                     Prepared::new(&known, ColourSpace::Linear, &frame, true, Quality::Full).unwrap();
-                let rows = prepared.band_rows(whole);
+                let rows = prepared.band_rows(prepared.planned.plan(), whole);
                 let bytes = prepared.planned.plan().peak_bytes(&prepared.windows(Rect { y1: rows, ..whole }));
                 let gib = bytes as f64 / (1_u64 << 30) as f64;
                 println!("{:?}, vectors {vectors}: {rows} rows, {gib:.2} GiB", effect.identifier);
@@ -197,7 +196,7 @@ mod tests {
                     let known = Known { graph, guides, frames: Frames::NONE };
                     let prepared =
                         Prepared::new(&known, ColourSpace::Linear, &frame, true, Quality::Full).unwrap();
-                    let rows = prepared.band_rows(whole);
+                    let rows = prepared.band_rows(prepared.planned.plan(), whole);
                     let middle = (4320 - rows) / 2;
                     let band = Rect { y0: middle, y1: middle + rows, ..whole };
                     let (plan, windows) = (prepared.planned.plan(), prepared.windows(band));

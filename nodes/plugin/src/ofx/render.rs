@@ -1,5 +1,6 @@
 //! Rendering: the frame's plan, run over bands of rows that keep memory bounded.
 
+use super::blending::{blend, of_band, spread, take_alpha};
 use super::clips::{MASK, SOURCE};
 use super::colours::{Colours, working};
 use super::effects::Effect;
@@ -8,22 +9,25 @@ use super::faults;
 use super::frame::{Bounds, Frame};
 use super::host::{Host, Outcome, Properties};
 use super::image::{Alpha, Clip, Fetched};
-use super::inputs::{Field, Gathered, Inputs, Named, fetch, fetch_guides};
+use super::inputs::{Field, Gathered, Inputs, Read, fetch, fetch_guides};
 use super::instance::{self, Moment};
+use super::kept;
 use super::known::Known;
 use super::mask::MaskRule;
+use super::neighbours::{Cut, Found, Lasting, Search, Stages};
 use super::prepared::{Prepared, Quality};
+use super::segments::{Part, parts};
 use super::settings::Settings;
 use super::stop::Stop;
 use super::threads::FrameThreads;
 use crate::pixel_aspect::divide;
-use isophote::engine::cpu::{Control, Threads};
+use crate::pool;
+use isophote::Error;
+use isophote::engine::cpu::{Control, CpuExecutor, Threads};
 use isophote::engine::plan::LEAST_ROWS;
 use isophote::engine::{Error as EngineError, Image, Rect};
 use isophote::graph::GraphInput;
 use isophote::kernels::shared::host_colour::has_light;
-use isophote::kernels::shared::host_colour::scalar::beyond_coverage;
-use isophote::{Error, Planned};
 use isophote_abi::openfx::*;
 use isophote_colour::Space;
 use std::sync::Mutex;
@@ -91,8 +95,19 @@ fn attempt(effect: &Effect, host: &Host, instance: Handle, args: Properties<'_>)
     };
     let fault = settings.look.fault.take();
     let action = RenderAction { inputs, settings, quality: Quality::of(args), output, mask };
-    faults::failure(effect).map_or_else(|| action.run(window), |error| Err(Stop::Error(error)))?;
+    let done = faults::failure(effect).map_or_else(|| action.run(window), |error| Err(Stop::Error(error)));
+    if matches!(done, Err(Stop::Error(Error::Engine(EngineError::Memory(_))))) {
+        // What is kept for other frames may be what is missing.
+        forget_caches();
+    }
+    done?;
     fault.map_or(Ok(()), |fault| Err(Stop::PassedOn(fault)))
+}
+
+/// Gives back what is kept from one render to the next.
+pub fn forget_caches() {
+    kept::forget();
+    pool::forget();
 }
 
 /// The status of a render, with a message on the effect when it failed.
@@ -141,24 +156,12 @@ fn intersection(a: Bounds, b: Bounds) -> Bounds {
     [a[0].max(b[0]), a[1].max(b[1]), a[2].min(b[2]), a[3].min(b[3])]
 }
 
-/// Gives a premultiplied pixel the coverage of another, of which it takes the colour where it has none of its own. Its
-/// light beyond coverage stays.
-fn recover(pixel: &mut [f32], source: &[f32]) {
-    let ([r, g, b, now], kept) = ([pixel[0], pixel[1], pixel[2], pixel[3]], source[3]);
-    let light = beyond_coverage([r, g, b, now]);
-    let under = beyond_coverage([source[0], source[1], source[2], kept]);
-    for c in 0..3 {
-        let covered = if now > 0.0 { (pixel[c] - light[c]) * (kept / now) } else { source[c] - under[c] };
-        pixel[c] = covered + light[c];
-    }
-}
-
 /// Writes transparent black.
 fn clear(host: &Host, output: &Fetched<'_>, window: Bounds) -> Outcome<()> {
     let frame = Frame::new(host, None, [1.0; 2], 1.0, Some(output.bounds)).ok_or(kOfxStatErrImageFormat)?;
     let channels = if output.channels == 1 { 1 } else { 4 };
-    let black = Image::with_window(frame.inside(window), channels).map_err(|_| kOfxStatErrMemory)?;
-    output.write(&frame, black)
+    let mut black = Image::with_window(frame.inside(window), channels).map_err(|_| kOfxStatErrMemory)?;
+    output.write(&frame, &mut black)
 }
 
 impl RenderAction<'_> {
@@ -174,7 +177,7 @@ impl RenderAction<'_> {
         }
         if self.inputs.identity {
             for band in bands(inside, LEAST_ROWS) {
-                self.write(self.inputs.read(band)?)?;
+                pool::keep_image(self.write(self.inputs.read(band)?)?);
             }
             return Ok(());
         }
@@ -185,30 +188,74 @@ impl RenderAction<'_> {
         let aborted = || instance.lock().is_ok_and(|instance| host.aborted(instance.0));
         let control = Control { cancelled: Some(&aborted), progress: None };
         let mut plans = Plans::new(self)?;
-        let mut rows = executors.band_rows(&plans.prepared, inside);
-        let mut next = inside.y0;
-        while next < inside.y1 {
-            let band = Rect { y0: next, y1: next.saturating_add(rows).min(inside.y1), ..inside };
-            let images = plans.gather(self, band, threads.threads())?;
+        let work = Bands { inside, threads: threads.threads(), control };
+        while !self.run_parts(&mut plans, &mut executors, &work)? {}
+        executors.keep_memory();
+        Ok(())
+    }
+
+    /// Computes and writes part by part; false where the graphics card has failed, after which all is begun anew.
+    fn run_parts(
+        &self,
+        plans: &mut Plans,
+        executors: &mut Executors<'_>,
+        work: &Bands<'_>,
+    ) -> Result<bool, Stop> {
+        let mut parts = parts(self.inputs.frame.size(), work.inside);
+        if executors.cpu().is_none() || !plans.share(&parts) {
+            parts = vec![Part::alone(work.inside)];
+        }
+        for Part { inside, segment } in parts {
+            if let (Some(segment), Some(cpu)) = (segment, executors.cpu()) {
+                plans.find_stages(self, segment, cpu, work)?;
+            }
+            if !self.run_bands(plans, executors, &Bands { inside, ..*work })? {
+                return Ok(false);
+            }
+        }
+        Ok(true)
+    }
+
+    /// Computes and writes band by band; false where the graphics card has failed.
+    fn run_bands(
+        &self,
+        plans: &mut Plans,
+        executors: &mut Executors<'_>,
+        work: &Bands<'_>,
+    ) -> Result<bool, Stop> {
+        let Bands { inside, threads, control } = *work;
+        for band in bands(inside, executors.band_rows(&plans.prepared, &plans.cut.plan, inside)) {
+            let images = plans.gather(self, band, threads)?;
             let region = plans.prepared.plan_window(band);
-            let planned = plans.planned(&images)?;
-            let named: Vec<(&str, &Image)> = images.iter().map(|(name, image)| (&name[..], image)).collect();
-            let work = Work { plan: planned.plan(), images: &named, region, control };
-            let Some(results) = executors.run(&work, threads.threads())? else {
-                rows = executors.band_rows(&plans.prepared, inside);
-                next = inside.y0;
-                continue;
-            };
-            drop(images);
+            let cut = plans.planned(&images)?;
+            let read = images.iter().map(|read| (&read.name[..], &read.pixels));
+            let handed = cut.handed.iter().map(|(name, image)| (&name[..], &**image));
+            let named: Vec<(&str, &Image)> = read.chain(handed).collect();
+            let work = Work { plan: &cut.plan, images: &named, region, control };
+            let Some(results) = executors.run(&work, threads)? else { return Ok(false) };
+            let source = self.untouched(&plans.prepared, images);
             if band.y1 == inside.y1 {
                 executors.purge();
             }
             let result = results.into_iter().next().ok_or(kOfxStatFailed)?;
-            let result = self.to_host(&plans.prepared, result, band, threads.threads())?;
-            self.write(self.finished(result, band)?)?;
-            next = band.y1;
+            let result = self.to_host(&plans.prepared, result, band, threads)?;
+            executors.recycle(self.write(self.finished(result, band, source)?)?);
         }
-        Ok(())
+        Ok(true)
+    }
+
+    /// The source as it was read for the plan, where that changed nothing of it. The memory of the other images is kept.
+    fn untouched(&self, prepared: &Prepared, images: Vec<Read>) -> Option<Image> {
+        let is_untouched = prepared.square.is_none() && self.inputs.colours.enter_as_they_are();
+        let mut source = None;
+        for read in images {
+            if is_untouched && read.name == GraphInput::Color.id() {
+                source = Some(read.pixels);
+            } else {
+                read.keep_memory();
+            }
+        }
+        source
     }
 
     /// The plan's result in the host's pixels and colours of `band`.
@@ -229,59 +276,73 @@ impl RenderAction<'_> {
         Ok(result)
     }
 
-    /// The filter's result with the source's alpha, unless alpha is filtered too, and under the mask.
-    fn finished(&self, result: Image, band: Rect) -> Outcome<Image> {
+    /// The filter's result with the source's alpha, unless alpha is filtered too, and under the mask. `source` holds what
+    /// was read of the source, if that is at hand.
+    fn finished(&self, result: Image, band: Rect, source: Option<Image>) -> Outcome<Image> {
         let keep_alpha = !self.settings.process_alpha && self.inputs.source.alpha != Alpha::Opaque;
         let mix = self.settings.look.mix;
         if !keep_alpha && self.mask.is_none() && mix == 1.0 {
+            source.into_iter().for_each(pool::keep_image);
             return Ok(result);
         }
-        let source = self.inputs.read(band)?;
+        let source = match source.filter(|source| source.window().contains(&band)) {
+            Some(source) => source,
+            None => self.inputs.read(band)?,
+        };
         let mut image = if result.channels() == 4 { result } else { spread(&result)? };
-        let premultiplied = self.inputs.source.alpha == Alpha::Premultiplied;
         if keep_alpha {
-            for (pixel, source) in image.data_mut().chunks_exact_mut(4).zip(source.data().chunks_exact(4)) {
-                if premultiplied && pixel[3] != source[3] {
-                    recover(pixel, source);
-                }
-                pixel[3] = source[3];
+            let premultiplied = self.inputs.source.alpha == Alpha::Premultiplied;
+            for y in band.y0..band.y1 {
+                take_alpha(image.row_mut(y), of_band(&source, band, y), premultiplied);
             }
         }
         if self.mask.is_some() || mix != 1.0 {
             let mask = self.mask.as_ref().map(|(rule, mask)| rule.read(mask, &self.inputs.frame, band));
             let mask = mask.transpose()?;
-            let pixels = image.data_mut().chunks_exact_mut(4).zip(source.data().chunks_exact(4));
-            for (at, (pixel, source)) in pixels.enumerate() {
-                let amount = mask.as_ref().map_or(1.0, |mask| mask[at]) * mix;
-                for (v, s) in pixel.iter_mut().zip(source) {
-                    // Exact at both ends.
-                    *v = *v * amount + *s * (1.0 - amount);
-                }
+            let width = band.width() as usize;
+            for (at, y) in (band.y0..band.y1).enumerate() {
+                let amounts = mask.as_ref().map(|mask| &mask[at * width..(at + 1) * width]);
+                blend(image.row_mut(y), of_band(&source, band, y), amounts, mix);
+            }
+        }
+        pool::keep_image(source);
+        Ok(image)
+    }
+
+    /// Writes what was computed: all rows, or those of the field. Gives its memory back.
+    fn write(&self, mut image: Image) -> Outcome<Image> {
+        let Some(field) = self.inputs.field else {
+            self.output.write(&self.inputs.frame, &mut image)?;
+            return Ok(image);
+        };
+        let window = image.window();
+        for y in window.y0..window.y1 {
+            if (self.inputs.frame.picture[3] - 1 - y).rem_euclid(2) == field.parity {
+                let row = image.crop(Rect { y0: y, y1: y + 1, ..window });
+                self.output.write(&self.inputs.frame, &mut row.map_err(|_| kOfxStatErrMemory)?)?;
             }
         }
         Ok(image)
     }
+}
 
-    /// Writes what was computed: all rows, or those of the field.
-    fn write(&self, image: Image) -> Outcome<()> {
-        let Some(field) = self.inputs.field else { return self.output.write(&self.inputs.frame, image) };
-        let window = image.window();
-        for y in window.y0..window.y1 {
-            if (self.inputs.frame.picture[3] - 1 - y).rem_euclid(2) == field.parity {
-                let row = image.crop(Rect { y0: y, y1: y + 1, ..window }).map_err(|_| kOfxStatErrMemory)?;
-                self.output.write(&self.inputs.frame, row)?;
-            }
-        }
-        Ok(())
-    }
+/// Pixels of a frame that are computed at once, and the means for it.
+struct Bands<'b> {
+    inside: Rect,
+    threads: &'b dyn Threads,
+    control: Control<'b>,
 }
 
 /// The plans of a frame.
 struct Plans {
     known: Known,
     prepared: Prepared,
+    /// What other frames have in common with this one, where it was looked for.
+    stages: Stages,
+    /// The plan for what is not found there.
+    cut: Cut,
     /// The one for light beyond coverage, once a band has any.
-    emissive: Option<Planned>,
+    emissive: Option<Cut>,
 }
 
 impl Plans {
@@ -291,12 +352,54 @@ impl Plans {
         let mut known = Known::of(&settings.graph, settings.motion_from, has, inputs.host.temporal)?;
         known.limit_to_source(inputs.host, inputs.instance, inputs.time);
         let prepared = Self::prepared(&known, action)?;
-        Ok(Self { known, prepared, emissive: None })
+        let stages = Stages::default();
+        let cut = stages.cut(prepared.planned.plan());
+        Ok(Self { known, prepared, stages, cut, emissive: None })
     }
 
     fn prepared(known: &Known, action: &RenderAction<'_>) -> isophote::Result<Prepared> {
         let RenderAction { inputs, settings, quality, .. } = action;
         Prepared::new(known, working(settings.space), &inputs.frame, !inputs.is_straight(), *quality)
+    }
+
+    /// Goes on without a frame that lacks an image, and those behind it.
+    fn forget_from(&mut self, missing: i32, action: &RenderAction<'_>) -> Result<(), Stop> {
+        self.known.forget_from(missing);
+        self.prepared = Self::prepared(&self.known, action)?;
+        self.cut = self.stages.cut(self.prepared.planned.plan());
+        self.emissive = None;
+        Ok(())
+    }
+
+    /// True where other frames have something in common with these parts of this one, which is kept.
+    fn share(&self, parts: &[Part]) -> bool {
+        let mut segments = parts.iter().filter_map(|part| part.segment);
+        segments.any(|segment| Lasting::of(&self.prepared, segment).is_some())
+    }
+
+    /// Finds what other frames have in common with a segment of this one.
+    fn find_stages(
+        &mut self,
+        action: &RenderAction<'_>,
+        segment: Rect,
+        executor: &mut CpuExecutor,
+        work: &Bands<'_>,
+    ) -> Result<(), Stop> {
+        let Bands { threads, control, .. } = *work;
+        loop {
+            let (inputs, space) = (&action.inputs, action.settings.space);
+            let treatment = format!("{space:?} {}", inputs.is_straight());
+            let search = Search { inputs, prepared: &self.prepared, segment, treatment, threads, control };
+            match search.run(executor)? {
+                Found::All(stages) => {
+                    self.cut = stages.cut(self.prepared.planned.plan());
+                    self.emissive = None;
+                    self.stages = stages;
+                    return Ok(());
+                }
+                Found::Without(missing) => self.forget_from(missing, action)?,
+            }
+        }
     }
 
     /// Images that a band is computed from. Frames are known up to the first that lacks an image.
@@ -305,30 +408,33 @@ impl Plans {
         action: &RenderAction<'_>,
         band: Rect,
         threads: &dyn Threads,
-    ) -> Result<Named, Stop> {
+    ) -> Result<Vec<Read>, Stop> {
         loop {
-            match action.inputs.gather(&self.prepared, band, threads)? {
-                Gathered::All(images) => return Ok(images),
-                Gathered::Without(missing) => {
-                    self.known.forget_from(missing);
-                    self.prepared = Self::prepared(&self.known, action)?;
-                    self.emissive = None;
+            let (prepared, plan) = (&self.prepared, &self.cut.plan);
+            match action.inputs.gather(prepared, plan, &plan.windows(prepared.plan_window(band)))? {
+                Gathered::All(mut images) => {
+                    for read in &mut images {
+                        action.inputs.make_ready(prepared, read, threads)?;
+                    }
+                    return Ok(images);
                 }
+                Gathered::Without(missing) => self.forget_from(missing, action)?,
             }
         }
     }
 
     /// The plan for what was read.
-    fn planned(&mut self, images: &Named) -> Result<&Planned, Stop> {
-        let color = images.iter().find(|(name, _)| name == GraphInput::Color.id());
+    fn planned(&mut self, images: &[Read]) -> Result<&Cut, Stop> {
+        let color = images.iter().find(|read| read.name == GraphInput::Color.id());
         let premultiplied = self.prepared.planned.request().premultiplied;
-        if !(premultiplied && color.is_some_and(|(_, image)| has_light(image.data()))) {
-            return Ok(&self.prepared.planned);
+        if !(premultiplied && color.is_some_and(|read| has_light(read.pixels.data()))) {
+            return Ok(&self.cut);
         }
         if self.emissive.is_none() {
-            self.emissive = Some(self.prepared.emissive(&self.known)?);
+            let planned = self.prepared.emissive(&self.known)?;
+            self.emissive = Some(self.stages.cut(planned.plan()));
         }
-        Ok(self.emissive.as_ref().unwrap_or(&self.prepared.planned))
+        Ok(self.emissive.as_ref().unwrap_or(&self.cut))
     }
 }
 
@@ -337,15 +443,6 @@ struct Instance(Handle);
 
 // SAFETY: the handle is never followed here, and the standard lets any thread ask whether to stop.
 unsafe impl Send for Instance {}
-
-/// Lines as opaque grey.
-fn spread(lines: &Image) -> Outcome<Image> {
-    let mut image = Image::with_window(lines.window(), 4).map_err(|_| kOfxStatErrMemory)?;
-    for (pixel, v) in image.data_mut().chunks_exact_mut(4).zip(lines.data()) {
-        pixel.copy_from_slice(&[*v, *v, *v, 1.0]);
-    }
-    Ok(image)
-}
 
 /// Bands of `rows` rows, from the top.
 fn bands(window: Rect, rows: i32) -> impl Iterator<Item = Rect> {

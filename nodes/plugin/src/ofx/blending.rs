@@ -1,0 +1,57 @@
+//! What was computed and the source, blended: alpha, masks and amounts.
+
+use super::host::Outcome;
+use isophote::engine::{Image, Rect};
+use isophote::kernels::shared::host_colour::scalar::beyond_coverage;
+use isophote_abi::openfx::*;
+
+/// Gives a premultiplied pixel the coverage of another, of which it takes the colour where it has none of its own. Its
+/// light beyond coverage stays.
+fn recover(pixel: &mut [f32], source: &[f32]) {
+    let ([r, g, b, now], kept) = ([pixel[0], pixel[1], pixel[2], pixel[3]], source[3]);
+    let light = beyond_coverage([r, g, b, now]);
+    let under = beyond_coverage([source[0], source[1], source[2], kept]);
+    for c in 0..3 {
+        let covered = if now > 0.0 { (pixel[c] - light[c]) * (kept / now) } else { source[c] - under[c] };
+        pixel[c] = covered + light[c];
+    }
+}
+
+/// The pixels of a row of `image` that lie in `band`.
+pub fn of_band(image: &Image, band: Rect, y: i32) -> &[f32] {
+    let first = (band.x0 - image.window().x0) as usize * 4;
+    &image.row(y)[first..first + band.width() as usize * 4]
+}
+
+/// Gives a row of pixels the alpha of the source.
+pub fn take_alpha(row: &mut [f32], source: &[f32], premultiplied: bool) {
+    for (pixel, source) in row.chunks_exact_mut(4).zip(source.chunks_exact(4)) {
+        if premultiplied && pixel[3] != source[3] {
+            recover(pixel, source);
+        }
+        pixel[3] = source[3];
+    }
+}
+
+/// Blends the source into a row of pixels where the mask, which is 1 where there is none, times the mix is less than 1.
+pub fn blend(row: &mut [f32], source: &[f32], amounts: Option<&[f32]>, mix: f32) {
+    for (at, (pixel, source)) in row.chunks_exact_mut(4).zip(source.chunks_exact(4)).enumerate() {
+        let amount = amounts.map_or(1.0, |amounts| amounts[at]) * mix;
+        for (v, s) in pixel.iter_mut().zip(source) {
+            // Exact at both ends.
+            *v = *v * amount + *s * (1.0 - amount);
+        }
+    }
+}
+
+/// Lines as opaque grey.
+///
+/// # Errors
+/// Memory.
+pub fn spread(lines: &Image) -> Outcome<Image> {
+    let mut image = Image::with_window(lines.window(), 4).map_err(|_| kOfxStatErrMemory)?;
+    for (pixel, v) in image.data_mut().chunks_exact_mut(4).zip(lines.data()) {
+        pixel.copy_from_slice(&[*v, *v, *v, 1.0]);
+    }
+    Ok(image)
+}

@@ -1,0 +1,288 @@
+//! What neighbouring frames have in common: the stages that each carries from others, and motion that is estimated
+//! between them.
+//!
+//! It is computed over the whole picture, or a segment of it where a host asks for tiles, once for all frames and tiles
+//! that need it, and kept by what it was made from: the
+//! contents of the images that were read, the passes down to their uniform bytes, and what was done to the pixels in
+//! between. Whatever a host shows, and calls it, the same contents give the same bits.
+
+use super::content;
+use super::faults;
+use super::inputs::{Gathered, Inputs, Read, Taken};
+use super::kept;
+use super::prepared::Prepared;
+use super::stop::Stop;
+use isophote::Error;
+use isophote::engine::cpu::{Control, CpuExecutor, Threads};
+use isophote::engine::plan::{Port, Shared};
+use isophote::engine::{Image, ImageId, Plan, Rect};
+use isophote_abi::openfx::kOfxStatFailed;
+use std::collections::BTreeMap;
+use std::sync::Arc;
+
+/// Images that were found, by their numbers among all of a frame.
+#[derive(Debug, Default)]
+pub struct Stages(Vec<(u128, Arc<Image>)>);
+
+/// A plan, cut where images are at hand.
+#[derive(Debug)]
+pub struct Cut {
+    /// The plan that is run.
+    pub plan: Plan,
+    /// The images that are handed to it, by its names for them.
+    pub handed: Vec<(String, Arc<Image>)>,
+}
+
+/// Result of a search for stages.
+pub enum Found {
+    /// All that there are.
+    All(Stages),
+    /// None, since this frame, counted from the one that is rendered, lacks an image.
+    Without(i32),
+}
+
+impl Stages {
+    /// A plan, without the passes that made them.
+    pub fn cut(&self, plan: &Plan) -> Cut {
+        let shared = if self.0.is_empty() { Vec::new() } else { plan.shared() };
+        let (mut ids, mut handed) = (Vec::new(), Vec::new());
+        for Shared { image, name, .. } in shared {
+            if let Some((_, found)) = self.0.iter().find(|(of, _)| *of == name) {
+                ids.push(image);
+                handed.push((Plan::port_name(image), Arc::clone(found)));
+            }
+        }
+        // A plan as it is has the same result to the bit as with the C table, on a graphics card, too.
+        let plan = if ids.is_empty() { plan.clone() } else { plan.with_handed(&ids) };
+        Cut { plan, handed }
+    }
+}
+
+/// Images of a plan that are kept for a segment of the picture.
+pub struct Lasting {
+    /// The images.
+    pub shared: Vec<Shared>,
+    /// The part of the picture over which each is computed; the same for all, since what is a neighbour's now was the
+    /// frame's own before.
+    pub region: Rect,
+}
+
+impl Lasting {
+    /// Images for a segment of the host's pixels; none where there is nothing to share, or too much of it.
+    pub fn of(prepared: &Prepared, segment: Rect) -> Option<Self> {
+        let plan = prepared.planned.plan();
+        let shared = lasting(plan);
+        if shared.is_empty() {
+            return None;
+        }
+        let windows = plan.windows(prepared.plan_window(segment));
+        let region = shared.iter().fold(Rect::default(), |all, Shared { image, .. }| {
+            let window = windows[image.index()];
+            if window.is_empty() {
+                all
+            } else {
+                all.union(&plan.region_over(window, plan.desc(*image).level))
+            }
+        });
+        let bytes = |shared: &Shared| {
+            let shape = plan.desc(shared.image);
+            plan.region_at(region, shape.level).area() * u64::from(shape.channels) * 4
+        };
+        // The next frame must find them, beside those that it adds.
+        let fits = shared.iter().map(bytes).sum::<u64>() * 3 / 2 <= kept::most();
+        (fits && !region.is_empty()).then_some(Self { shared, region })
+    }
+
+    /// The plan of them alone, and the part of each of its images that it needs.
+    pub fn part(&self, plan: &Plan) -> (Plan, Vec<Rect>) {
+        let ids: Vec<ImageId> = self.shared.iter().map(|shared| shared.image).collect();
+        let part = plan.part(&ids);
+        let windows = part.windows(self.region);
+        (part, windows)
+    }
+}
+
+/// The shared images of a plan that the plans of other frames ask for as well.
+fn lasting(plan: &Plan) -> Vec<Shared> {
+    let mut all = plan.shared();
+    let mut relative = Vec::new();
+    for Shared { image, frames: [first, _], .. } in &all {
+        let name = |from: i32| content::of_text(&format!("{from}"));
+        let names =
+            plan.names(|port| content::of_all(&[content::of_text(port.base()), name(port.frame - first)]));
+        relative.push(names[image.index()]);
+    }
+    let mut places = relative.iter();
+    all.retain(|_| {
+        places.next().is_some_and(|name| relative.iter().filter(|other| *other == name).count() > 1)
+    });
+    all
+}
+
+/// A search for the stages of one frame.
+pub struct Search<'s, 'h> {
+    pub inputs: &'s Inputs<'h>,
+    pub prepared: &'s Prepared,
+    /// The part of the host's pixels that the images are found for.
+    pub segment: Rect,
+    /// What is done to pixels between their reading and the plan, beside what `prepared` does.
+    pub treatment: String,
+    pub threads: &'s dyn Threads,
+    pub control: Control<'s>,
+}
+
+impl Search<'_, '_> {
+    /// The stages of the frame, those of all frames that are near enough.
+    ///
+    /// # Errors
+    /// As reading and running.
+    pub fn run(&self, executor: &mut CpuExecutor) -> Result<Found, Stop> {
+        let plan = self.prepared.planned.plan();
+        let Some(lasting) = Lasting::of(self.prepared, self.segment) else {
+            return Ok(Found::All(Stages::default()));
+        };
+        let (part, windows) = lasting.part(plan);
+        let content = |taken: Taken<'_>| Ok((self.content(&taken)?, taken.name));
+        let contents = match self.inputs.each(self.prepared, part.inputs(), &windows, content)? {
+            Gathered::All(contents) => contents,
+            Gathered::Without(frame) => return Ok(Found::Without(frame)),
+        };
+        if contents.iter().any(|(content, _)| content.is_none()) {
+            return Ok(Found::All(Stages::default()));
+        }
+        let mut groups: BTreeMap<[i32; 2], Vec<Shared>> = BTreeMap::new();
+        for shared in lasting.shared {
+            groups.entry(shared.frames).or_default().push(shared);
+        }
+        let mut pixels = Pixels { contents, windows, read: Vec::new(), changed: false };
+        let mut stages = Vec::new();
+        for ([first, _], group) in groups {
+            match self.of_group(&group, lasting.region, first, &mut pixels, executor) {
+                Ok(found) => stages.extend(group.iter().map(|shared| shared.name).zip(found)),
+                Err(_) if pixels.changed => return Ok(Found::All(Stages::default())),
+                Err(stop) => return Err(stop),
+            }
+        }
+        pixels.read.into_iter().for_each(Read::keep_memory);
+        Ok(Found::All(Stages(stages)))
+    }
+
+    /// Number of what an image holds; none where the host gave too little of it.
+    fn content(&self, taken: &Taken<'_>) -> Result<Option<u128>, Stop> {
+        let [width, height] = self.inputs.frame.size();
+        let is_part = self.segment != Rect::of_size(width, height);
+        Ok(self.inputs.content(self.prepared, taken, is_part, self.threads)?)
+    }
+
+    /// The stages that are made of the same frames, from `first` on.
+    fn of_group(
+        &self,
+        group: &[Shared],
+        region: Rect,
+        first: i32,
+        pixels: &mut Pixels,
+        executor: &mut CpuExecutor,
+    ) -> Result<Vec<Arc<Image>>, Stop> {
+        let plan = self.prepared.planned.plan();
+        let treatment =
+            content::of_text(&format!("{} {region:?} {:?}", self.treatment, self.prepared.square));
+        let all = plan.names(|port| {
+            let held = pixels.content(&port.name).unwrap_or_default();
+            let place = content::of_text(&format!("{} {}", port.base(), port.frame - first));
+            content::of_all(&[treatment, place, held])
+        });
+        let names: Vec<u128> = group.iter().map(|shared| all[shared.image.index()]).collect();
+        let stops = || self.control.cancelled.is_some_and(|cancelled| cancelled());
+        kept::obtain(&names, &stops, |missing| {
+            let ids: Vec<ImageId> = missing.iter().map(|index| group[*index].image).collect();
+            let part = plan.part(&ids);
+            pixels.read(self, &part)?;
+            let named: Vec<(&str, &Image)> = pixels.read.iter().map(|r| (&r.name[..], &r.pixels)).collect();
+            let images = executor.run(&part, &named, region, self.threads, self.control);
+            faults::computed(ids.len());
+            Ok(images.map_err(Error::from)?)
+        })
+    }
+}
+
+/// The images that a search knows, and those of them that were read: what is found need not be.
+struct Pixels {
+    /// Numbers of what they hold, with the plan's names for them.
+    contents: Vec<(Option<u128>, String)>,
+    /// The parts of them that are read.
+    windows: Vec<Rect>,
+    read: Vec<Read>,
+    /// True where an image holds something else now, so that its number must not be used.
+    changed: bool,
+}
+
+impl Pixels {
+    fn content(&self, name: &str) -> Option<u128> {
+        self.contents.iter().find(|(_, known)| known == name).and_then(|(content, _)| *content)
+    }
+
+    /// Reads what a plan is computed from.
+    fn read(&mut self, search: &Search<'_, '_>, plan: &Plan) -> Result<(), Stop> {
+        let is_new = |port: &&Port| self.read.iter().all(|read| read.name != port.name);
+        let ports = plan.inputs().iter().filter(is_new);
+        let read = |taken: Taken<'_>| {
+            if search.content(&taken)? != self.content(&taken.name) {
+                return Ok(None);
+            }
+            let mut read = search.inputs.read_taken(search.prepared, taken)?;
+            search.inputs.make_ready(search.prepared, &mut read, search.threads)?;
+            Ok(Some(read))
+        };
+        let all = match search.inputs.each(search.prepared, ports, &self.windows, read)? {
+            Gathered::All(all) => all.into_iter().collect::<Option<Vec<Read>>>(),
+            Gathered::Without(_) => None,
+        };
+        self.changed = all.is_none();
+        self.read.extend(all.ok_or(kOfxStatFailed)?);
+        Ok(())
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::super::effects::EFFECTS;
+    use super::super::frame::Frame;
+    use super::super::known::Known;
+    use super::super::motion::MotionFrom;
+    use super::super::prepared::Quality;
+    use super::*;
+    use isophote::ColourSpace;
+    use isophote::request::Guides;
+
+    #[test]
+    fn plans_are_cut_at_what_other_frames_ask_for_as_well() {
+        let picture = [0, 0, 64, 48];
+        let frame = Frame { picture, ratio: [1.0; 2], scale: 1.0, top: None, number: 7, reference_height: 0 };
+        for effect in EFFECTS.iter().filter(|effect| effect.temporal) {
+            let (mut graph, ids) = effect.graph(false).unwrap();
+            let prepared = |graph: &_, has: Guides| {
+                let known = Known::of(graph, MotionFrom::default(), has, true).unwrap();
+                Prepared::new(&known, ColourSpace::Srgb, &frame, true, Quality::Full).unwrap()
+            };
+            let vectors = Guides { motion: true, motion_forward: true, ..Guides::default() };
+            graph.set(ids[0], "steadiness", isophote::Value::Float(0.0)).unwrap();
+            assert_eq!(lasting(prepared(&graph, vectors).planned.plan()), [], "{:?}", effect.identifier);
+            graph.set(ids[0], "steadiness", isophote::Value::Float(0.5)).unwrap();
+            for has in [vectors, Guides::default()] {
+                let prepared = prepared(&graph, has);
+                let plan = prepared.planned.plan();
+                let shared = lasting(plan);
+                let of = |frames: [i32; 2]| shared.iter().filter(|shared| shared.frames == frames).count();
+                assert!(of([0, 0]) > 0, "{:?}", effect.identifier);
+                assert!((-2..=2).all(|n| of([n, n]) == of([0, 0])), "{:?}: {shared:?}", effect.identifier);
+                assert_eq!(of([-1, 0]) > 0, !has.motion, "{:?}: {shared:?}", effect.identifier);
+                let image = Arc::new(Image::new(1, 1, 1).unwrap());
+                let stages = Stages(shared.iter().map(|shared| (shared.name, Arc::clone(&image))).collect());
+                let cut = stages.cut(plan);
+                assert!(cut.handed.len() == shared.len() && cut.plan.passes().len() < plan.passes().len());
+                let others = cut.plan.inputs().iter().filter(|p| p.base() == "color" && p.frame != 0);
+                assert_eq!(others.count(), 0, "{:?}", effect.identifier);
+            }
+        }
+    }
+}
