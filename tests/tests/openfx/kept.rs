@@ -89,7 +89,7 @@ pub fn what_frames_have_in_common_is_computed_once() {
     let instances = [steadied(&described, size), steadied(&described, size)];
     let first = render(&instances[0], size, 3);
     let all = computed();
-    assert!(all > 0 && all % 5 == 0, "{all} of five frames");
+    assert!(all > 0 && all.is_multiple_of(5), "{all} of five frames");
     let each = all / 5;
     let second = render(&instances[0], size, 4);
     assert_eq!(computed(), each, "one frame is new");
@@ -145,7 +145,7 @@ pub fn strips_share_what_frames_have_in_common() {
         [(0..FRAMES).map(|n| frame(size, n)).collect::<Vec<_>>(), vec![vectors(size); FRAMES as usize]];
     let frames = [2, 3].map(|time| render(&whole, size, time));
     let all = counter.now();
-    assert!(all % 4 == 0, "{all} of four frames");
+    assert!(all.is_multiple_of(4), "{all} of four frames");
     let each = all / 4;
     purge(plugin);
     let packed = |time: usize| Picture::packed_in(Layout::default(), size[0], size[1], &frames[time - 2]);
