@@ -21,8 +21,8 @@ crate::kernel!(local_contrast {
         absolute: 1e-4,
         relative: 1e-3,
         outliers: 1e-2,
-        reason: "the difference of the mean square and the squared mean loses digits that the floor does not hide for the \
-                 lightness of highlights",
+        reason: "the difference of the mean square and the squared mean loses digits, which the floor does not hide \
+                 everywhere",
     },
 });
 
