@@ -130,14 +130,15 @@ fn surroundings(plan: &mut PlanBuilder, image: ImageId, sigma: f32) -> ImageId {
     /// Least standard deviation at a level, pixels of it.
     const LEAST_SIGMA: f32 = 2.0;
     const MOST_LEVELS: usize = 8;
-    let mut levels = vec![image];
-    let mut left = sigma;
-    while left >= 2.0 * LEAST_SIGMA && levels.len() < MOST_LEVELS {
-        let finer = levels[levels.len() - 1];
-        levels.push(tensor_restrict::pass_mean(plan, finer));
+    // Plans are described without allocating.
+    let mut levels = [image; MOST_LEVELS];
+    let (mut count, mut left) = (1, sigma);
+    while left >= 2.0 * LEAST_SIGMA && count < MOST_LEVELS {
+        levels[count] = tensor_restrict::pass_mean(plan, levels[count - 1]);
+        count += 1;
         left *= 0.5;
     }
-    let coarsest = levels[levels.len() - 1];
-    let mean = gaussian_blur::pass(plan, coarsest, left, Class::Field);
-    levels.iter().rev().skip(1).fold(mean, |coarse, fine| tensor_interpolate::pass_to(plan, *fine, coarse))
+    let mean = gaussian_blur::pass(plan, levels[count - 1], left, Class::Field);
+    let finer = levels[..count - 1].iter().rev();
+    finer.fold(mean, |coarse, fine| tensor_interpolate::pass_to(plan, *fine, coarse))
 }
