@@ -126,7 +126,8 @@ pub static NODE: NodeSpec = NodeSpec {
         WINDOW,
         HOLD,
         RENEWAL,
-        line_context::LOCAL_CONTRAST.with_default(Value::Float(1.0)).group(ADVANCED),
+        // Less than other styles have: shading draws masses of its own.
+        line_context::LOCAL_CONTRAST.with_default(Value::Float(0.6)).group(ADVANCED),
         line_context::INHIBITION.with_default(Value::Float(1.0)).group(ADVANCED),
         line_context::COLOUR_EDGES.with_default(Value::Float(0.5)).group(ADVANCED),
     ],
