@@ -132,3 +132,47 @@ fn the_astronaut_becomes_a_cartoon() {
 fn the_cat_becomes_a_cartoon() {
     check("chelsea.png");
 }
+
+/// Share of the pixels of a box of a blueprint that are line.
+fn line_share(blueprint: &Image, [x0, y0, x1, y1]: [i32; 4]) -> f32 {
+    let pixels = (y0..y1).flat_map(|y| (x0..x1).map(move |x| (x, y)));
+    let lines = pixels.filter(|(x, y)| blueprint.pixel(*x, *y)[0] > 0.5).count();
+    lines as f32 / ((x1 - x0) * (y1 - y0)) as f32
+}
+
+/// A photograph as lines alone, as [`run::single`] sets `params`.
+fn line_drawing(name: &str, params: &[(&str, &str)]) -> Option<Image> {
+    let photo = png::read(&png::assets()?.join("photo").join(name)).unwrap();
+    let plain = [("fill", "0"), ("grid", "0"), ("paper_texture", "0")];
+    let graph = run::single("blueprint", &[&plain, params].concat());
+    let scale = photo.height() as f32 / 1080.0;
+    Some(run::graph(&graph, Request { scale, ..Request::new(photo.width(), photo.height()) }, &photo))
+}
+
+/// Local contrast, inhibition and colours as styles had them not.
+const WITHOUT: [(&str, &str); 3] = [("local_contrast", "0"), ("inhibition", "0"), ("colour_edges", "0")];
+
+#[test]
+fn eyes_and_mouths_are_drawn_and_fur_and_hair_are_not() {
+    let Some(now) = line_drawing("astronaut.png", &[]) else { return };
+    for (part, place) in [
+        ("left eye", [190, 94, 214, 108]),
+        ("right eye", [236, 96, 260, 109]),
+        ("mouth", [203, 137, 249, 155]),
+    ] {
+        let share = line_share(&now, place);
+        println!("astronaut, {part}: {:.1} %", 100.0 * share);
+        assert!(share > 0.1, "{part}: {share}");
+    }
+    let (Some(now), Some(before)) = (line_drawing("chelsea.png", &[]), line_drawing("chelsea.png", &WITHOUT))
+    else {
+        return;
+    };
+    let contrast = [("inhibition", "0")];
+    let Some(uninhibited) = line_drawing("chelsea.png", &contrast) else { return };
+    let (eye, fur) = ([130, 80, 210, 150], [200, 0, 310, 70]);
+    let [eye, fur] =
+        [eye, fur].map(|place| [&now, &before, &uninhibited].map(|lines| line_share(lines, place)));
+    println!("cat: eye {eye:?}, fur {fur:?} now, before, without inhibition");
+    assert!(eye[0] > 0.9 * eye[1] && fur[0] < 0.5 * fur[2], "an eye stays, fur yields");
+}

@@ -20,7 +20,15 @@ const LEAST_FLAT: f64 = 30.0;
 const LEAST_SHARPENED: f64 = 44.0;
 
 fn plan(node: &str, size: [u32; 2]) -> Plan {
-    let graph = Graph::single(node).expect("the node is there");
+    plan_with(node, size, &[])
+}
+
+fn plan_with(node: &str, size: [u32; 2], params: &[(&str, &str)]) -> Plan {
+    let mut graph = Graph::single(node).expect("the node is there");
+    let id = graph.node(0).expect("it is in the graph");
+    for (param, value) in params {
+        graph.set_text(id, param, value).expect("the parameter is there");
+    }
     Planned::new(&graph, Request::new(size[0], size[1])).expect("it can be planned").plan().clone()
 }
 
@@ -72,14 +80,6 @@ fn plans_move_fewer_bytes_in_fewer_passes() {
             spec.id
         );
         assert!(before * 5 > after * 6, "{}: {before} bytes, and still {after}", spec.id);
-        if spec.id == "cartoon" {
-            // A frame of it is what a viewer computes all the time.
-            let (dispatches, bytes, mebibytes) = (half.dispatches.len(), a_pixel(after), memory(&half));
-            assert!(
-                dispatches <= 14 && bytes <= 345.0 && mebibytes <= 122,
-                "{dispatches}, {bytes}, {mebibytes}"
-            );
-        }
         let names = half.dispatches.iter().map(|dispatch| &dispatch.shader.name);
         let filtered = names.filter(|name| name.contains("/filtered")).count();
         assert!(
@@ -87,6 +87,27 @@ fn plans_move_fewer_bytes_in_fewer_passes() {
             "{} samples nothing",
             spec.id
         );
+    }
+}
+
+/// Cartoons with lines as the thesis has them, and with lines that are weighed by what is around them, which needs windows at
+/// several levels and three differences of Gaussians: the most dispatches, bytes a pixel and MiB of textures.
+type Bounds = (usize, f64, u64);
+const CARTOONS: [(&[(&str, &str)], Bounds); 2] = [
+    (&[("local_contrast", "0"), ("inhibition", "0"), ("colour_edges", "0")], (14, 345.0, 122)),
+    (&[], (37, 735.0, 270)),
+];
+
+#[test]
+fn a_frame_of_a_cartoon_moves_few_bytes() {
+    // It is what a viewer computes all the time.
+    let size = [1920, 1080];
+    for (params, most) in CARTOONS {
+        let half = program(&plan_with("cartoon", size, params), Precision::Fast);
+        let bytes = half.bytes_moved() as f64 / f64::from(size[0] * size[1]);
+        let mebibytes = half.textures.iter().map(|t| t.bytes()).sum::<u64>() >> 20;
+        let found = (half.dispatches.len(), bytes, mebibytes);
+        assert!(found.0 <= most.0 && found.1 <= most.1 && found.2 <= most.2, "{found:?} of {most:?}");
     }
 }
 

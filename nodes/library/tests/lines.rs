@@ -188,6 +188,72 @@ fn flow_suppresses_noise_that_the_isotropic_filter_draws() {
     assert!(flow * 3 < isotropic.max(3), "{flow} dark pixels along the flow, {isotropic} without");
 }
 
+/// Pixels of line in columns of an edge image.
+fn line_pixels(edges: &Image, columns: std::ops::Range<i32>) -> usize {
+    let height = edges.height() as i32;
+    columns.map(|x| (0..height).filter(|y| edges.pixel(x, *y)[0] < 0.5).count()).sum()
+}
+
+#[test]
+fn local_contrast_draws_soft_edges_and_leaves_what_is_empty() {
+    let of = |amount: &str, image: &Image| {
+        let settings = [("tau", "0.975"), ("local_contrast", amount)];
+        line_pixels(&apply("flow_dog", &settings, &[("color", image)]), 0..80)
+    };
+    let soft = picture(80, 60, 4, |x, _| grey(if x < 40 { 63.0 } else { 70.0 }));
+    assert_eq!(of("0", &soft), 0);
+    assert!(of("1", &soft) >= 60, "{} pixels of line", of("1", &soft));
+    // A ramp under 2/255, light and dark, with noise of half a step.
+    for lightness in [10.0, 60.0, 95.0] {
+        let empty = picture(80, 60, 4, |x, y| {
+            grey(lightness).map(|v| v + x as f32 * 1e-4 + (noise(x, y, 5) - 0.5) / 255.0)
+        });
+        assert_eq!(of("1", &empty), 0, "L {lightness}");
+    }
+}
+
+#[test]
+fn inhibition_takes_textures_and_leaves_contours() {
+    let image = picture(240, 120, 4, |x, y| match x {
+        0..100 => grey(40.0 + 50.0 * noise(x / 3, y / 3, 7)),
+        180..184 => grey(30.0),
+        _ => grey(65.0),
+    });
+    let of = |amount: &str, columns| {
+        let settings = [("tau", "0.975"), ("local_contrast", "1"), ("inhibition", amount)];
+        line_pixels(&apply("flow_dog", &settings, &[("color", &image)]), columns)
+    };
+    let (texture, contour) = (10..90, 160..220);
+    assert!(3 * of("1", texture.clone()) < of("0", texture), "texture yields");
+    assert!(5 * of("1", contour.clone()) > 4 * of("0", contour), "a contour stays");
+}
+
+#[test]
+fn colours_of_one_lightness_have_lines_between_them() {
+    let luminance = |c: [f32; 3]| {
+        let linear = c.map(|v| if v <= 0.040_45 { v / 12.92 } else { ((v + 0.055) / 1.055).powf(2.4) });
+        0.212_67 * linear[0] + 0.715_15 * linear[1] + 0.072_18 * linear[2]
+    };
+    let (red, blue) = ([0.75, 0.2, 0.2], [0.25, 0.45, 0.8]);
+    let (mut dark, mut light) = (0.0f32, 1.0f32);
+    for _ in 0..40 {
+        let middle = 0.5 * (dark + light);
+        let bound = if luminance(blue.map(|v| v * middle)) < luminance(red) { &mut dark } else { &mut light };
+        *bound = middle;
+    }
+    let blue = blue.map(|v| v * dark);
+    let image = picture(60, 40, 4, |x, _| {
+        let [r, g, b] = if x < 30 { red } else { blue };
+        [r, g, b, 1.0]
+    });
+    let of = |amount: &str| {
+        let out = apply("flow_dog", &[("tau", "0.975"), ("colour_edges", amount)], &[("color", &image)]);
+        line_pixels(&out, 0..60)
+    };
+    assert_eq!(of("0"), 0);
+    assert!(of("1") >= 40, "{} pixels of line", of("1"));
+}
+
 #[test]
 fn iterations_make_lines_no_lighter() {
     let image = textured();
@@ -405,7 +471,9 @@ fn a_proxy_of_a_blueprint_shows_the_same_sheet() {
 fn look_controls_do_what_they_say() {
     let image = textured();
     let light = |image: &Image, settings: &[(&str, &str)]| {
-        let out = apply("cartoon", settings, &[("color", image)]);
+        // All of the pictures are texture, which inhibits itself.
+        let settings = [&[("inhibition", "0")], settings].concat();
+        let out = apply("cartoon", &settings, &[("color", image)]);
         out.data().chunks_exact(4).map(|p| f64::from(p[0] + p[1] + p[2])).sum::<f64>()
     };
     let sum = |settings: &[(&str, &str)]| light(&image, settings);

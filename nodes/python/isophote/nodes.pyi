@@ -48,6 +48,9 @@ def blueprint(
     guide_weight: float = 1.0,
     steadiness: float = 0.0,
     window: int = 2,
+    local_contrast: float = 1.0,
+    inhibition: float = 1.0,
+    colour_edges: float = 0.0,
     mix: float = 1.0,
     out: Any = None,
     frame: int = 0,
@@ -130,6 +133,17 @@ def blueprint(
             of the window count alike. 0 to 1.
         window: Neighbouring frames that count, to each side. They count as far as they and the
             motion from them are known. 0 to 8.
+        local_contrast: Judges edges against what is around them, so that soft light has lines and
+            hard light is not black. Share by which the response is divided by the local deviation
+            of lightness, in a window of about 16 pixels with a floor (Heeger 1992); 0 leaves it as
+            the thesis has it. 0 to 1.
+        inhibition: Leaves out lines where there are many, as in grass, hair and cloth; single ones
+            stay. Strength of surround inhibition (Grigorescu, Petkov, Westenberg 2003): the
+            threshold rises with the lines in a neighbourhood of about 60 pixels around, those along
+            the own orientation counting less, and not where lines stand alone. 0 to 1.
+        colour_edges: Draws lines between colours that are equally light, such as red on blue.
+            Weight of a and b against L in the difference across an edge, which is found in CIELAB;
+            0 is lightness alone. 0 to 1.
         mix: Blends the result with the picture: 0 leaves the picture as it was, 1 shows the result
             alone. 0 to 1.
 
@@ -184,6 +198,9 @@ def cartoon(
     sigma_a: float = 1.5,
     steadiness: float = 0.0,
     window: int = 2,
+    local_contrast: float = 1.0,
+    inhibition: float = 1.0,
+    colour_edges: float = 0.5,
     mix: float = 1.0,
     out: Any = None,
     frame: int = 0,
@@ -296,6 +313,17 @@ def cartoon(
             of the window count alike. 0 to 1.
         window: Neighbouring frames that count, to each side. They count as far as they and the
             motion from them are known. 0 to 8.
+        local_contrast: Judges edges against what is around them, so that soft light has lines and
+            hard light is not black. Share by which the response is divided by the local deviation
+            of lightness, in a window of about 16 pixels with a floor (Heeger 1992); 0 leaves it as
+            the thesis has it. 0 to 1.
+        inhibition: Leaves out lines where there are many, as in grass, hair and cloth; single ones
+            stay. Strength of surround inhibition (Grigorescu, Petkov, Westenberg 2003): the
+            threshold rises with the lines in a neighbourhood of about 60 pixels around, those along
+            the own orientation counting less, and not where lines stand alone. 0 to 1.
+        colour_edges: Draws lines between colours that are equally light, such as red on blue.
+            Weight of a and b against L in the difference across an edge, which is found in CIELAB;
+            0 is lightness alone. 0 to 1.
         mix: Blends the result with the picture: 0 leaves the picture as it was, 1 shows the result
             alone. 0 to 1.
 
@@ -686,6 +714,9 @@ def ink(
     window: int = 2,
     hold: int = 0,
     renewal: int = 8,
+    local_contrast: float = 0.6,
+    inhibition: float = 1.0,
+    colour_edges: float = 0.5,
     mix: float = 1.0,
     out: Any = None,
     frame: int = 0,
@@ -787,6 +818,17 @@ def ink(
             and no rest positions are known, before they begin anew; two layers take turns. A frame
             depends on the motion of as many frames before it, less two. 0 or 1 leaves marks on the
             screen. 0 to 16.
+        local_contrast: Judges edges against what is around them, so that soft light has lines and
+            hard light is not black. Share by which the response is divided by the local deviation
+            of lightness, in a window of about 16 pixels with a floor (Heeger 1992); 0 leaves it as
+            the thesis has it. 0 to 1.
+        inhibition: Leaves out lines where there are many, as in grass, hair and cloth; single ones
+            stay. Strength of surround inhibition (Grigorescu, Petkov, Westenberg 2003): the
+            threshold rises with the lines in a neighbourhood of about 60 pixels around, those along
+            the own orientation counting less, and not where lines stand alone. 0 to 1.
+        colour_edges: Draws lines between colours that are equally light, such as red on blue.
+            Weight of a and b against L in the difference across an edge, which is found in CIELAB;
+            0 is lightness alone. 0 to 1.
         mix: Blends the result with the picture: 0 leaves the picture as it was, 1 shows the result
             alone. 0 to 1.
 
@@ -1491,6 +1533,9 @@ def flow_dog(
     guide_weight: float = 0.0,
     steadiness: float = 0.0,
     window: int = 2,
+    local_contrast: float = 0.0,
+    inhibition: float = 0.0,
+    colour_edges: float = 0.0,
     out: Any = None,
     frame: int = 0,
     **picture: Unpack[Picture],
@@ -1562,6 +1607,17 @@ def flow_dog(
             of the window count alike. 0 to 1.
         window: Neighbouring frames that count, to each side. They count as far as they and the
             motion from them are known. 0 to 8.
+        local_contrast: Judges edges against what is around them, so that soft light has lines and
+            hard light is not black. Share by which the response is divided by the local deviation
+            of lightness, in a window of about 16 pixels with a floor (Heeger 1992); 0 leaves it as
+            the thesis has it. 0 to 1.
+        inhibition: Leaves out lines where there are many, as in grass, hair and cloth; single ones
+            stay. Strength of surround inhibition (Grigorescu, Petkov, Westenberg 2003): the
+            threshold rises with the lines in a neighbourhood of about 60 pixels around, those along
+            the own orientation counting less, and not where lines stand alone. 0 to 1.
+        colour_edges: Draws lines between colours that are equally light, such as red on blue.
+            Weight of a and b against L in the difference across an edge, which is found in CIELAB;
+            0 is lightness alone. 0 to 1.
 
     The other arguments are those of `isophote.apply`.
     """

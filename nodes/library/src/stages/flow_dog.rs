@@ -5,10 +5,12 @@ use crate::declare::spec::{ImageKind, Param, Port, Scope};
 use crate::kernels::lines::edge_area::{self, Shares};
 use crate::kernels::lines::flow_dog_two_dimensional::{self, Stepping};
 use crate::kernels::lines::{
-    darken_by_lines, dog_columns, flow_dog_cabral_leedom, flow_dog_gradient, flow_dog_tangent, guide_lines,
+    colour_edges, darken_by_lines, dog_columns, flow_dog_cabral_leedom, flow_dog_gradient, flow_dog_tangent,
+    guide_lines, lab_channel,
 };
 use crate::kernels::shared::edge_threshold::{Threshold, Xdog};
 use crate::kernels::structure::orientation_field;
+use crate::stages::line_context::{Ground, LineContext};
 use crate::stages::line_width;
 use crate::stages::structure_tensor::of_color_and_guides;
 use crate::stages::tensor_options::{Guides, TensorOptions};
@@ -65,6 +67,19 @@ pub(crate) struct FlowDog {
     pub guided: [Guided; 2],
     /// Lines narrower than a pixel are fainter.
     pub fades: bool,
+    /// What is around lines, as far as it counts; it does in the separable filter.
+    pub context: LineContext,
+    /// Weight of the colour axes beside lightness; 0 leaves them unread. It counts in the separable filter.
+    pub colour: f32,
+}
+
+/// Picture that lines are found in.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Seen {
+    /// (L alpha, alpha).
+    pub lightness: ImageId,
+    /// The same picture in CIELAB, where colours count.
+    pub lab: Option<ImageId>,
 }
 
 /// Kind of lines that guides draw.
@@ -106,18 +121,19 @@ impl FlowDog {
         }
     }
 
-    /// The edge image of (L alpha, alpha) along the stream lines of `tensor`.
+    /// The edge image of a picture along the stream lines of `tensor`.
     pub(crate) fn edges(
         &self,
         plan: &mut PlanBuilder,
-        lightness: ImageId,
+        seen: Seen,
         tensor: ImageId,
         guides: &Guides,
     ) -> ImageId {
         let field = orientation_field::pass(plan, tensor);
-        self.iterate(plan, lightness, |plan, source, xdog| match self.kernel {
+        self.iterate(plan, seen.lightness, |plan, source, xdog| match self.kernel {
             Kernel::Separable => {
-                let response = self.across(plan, source, field, guides, xdog);
+                let seen = Seen { lightness: source, ..seen };
+                let response = self.across(plan, seen, field, guides, xdog);
                 self.along(plan, response, field, &xdog)
             }
             Kernel::TwoDimensional => {
@@ -139,18 +155,17 @@ impl FlowDog {
     pub(crate) fn response(
         &self,
         plan: &mut PlanBuilder,
-        lightness: ImageId,
+        mut seen: Seen,
         tensor: ImageId,
         guides: &Guides,
     ) -> ImageId {
         let field = orientation_field::pass(plan, tensor);
-        let mut source = lightness;
         if self.iterations > 1 {
             let before = Self { iterations: self.iterations - 1, xdog: self.deciding(), ..*self };
-            let edges = before.edges(plan, lightness, tensor, guides);
-            source = darken_by_lines::pass(plan, lightness, edges);
+            let edges = before.edges(plan, seen, tensor, guides);
+            seen.lightness = darken_by_lines::pass(plan, seen.lightness, edges);
         }
-        self.across(plan, source, field, guides, self.xdog)
+        self.across(plan, seen, field, guides, self.xdog)
     }
 
     /// The edge image of a response, along the stream lines of `tensor`; over areas where it is steadied.
@@ -174,14 +189,33 @@ impl FlowDog {
     fn across(
         &self,
         plan: &mut PlanBuilder,
-        source: ImageId,
+        seen: Seen,
         field: ImageId,
         guides: &Guides,
         xdog: Xdog,
     ) -> ImageId {
-        let own = Xdog { edge: xdog.edge * self.texture, ..xdog };
+        let mut own = Xdog { edge: xdog.edge * self.texture, ..xdog };
+        let Xdog { base, edge, .. } = own;
+        let lab = seen.lab.filter(|_| self.colour > 0.0);
+        let is_plain = lab.is_none() && self.context.is_off();
+        if !is_plain {
+            // Lightness is added to what the differences come to.
+            own.base = 0.0;
+        }
         let options = flow_dog_gradient::Options { sigma: self.sigma_e, k: self.k, xdog: own };
-        let response = flow_dog_gradient::pass(plan, source, field, &options);
+        let mut response = flow_dog_gradient::pass(plan, seen.lightness, field, &options);
+        if let Some(lab) = lab {
+            let [a, b] = [0, 1].map(|axis| {
+                let channel = lab_channel::pass(plan, lab, axis);
+                flow_dog_gradient::pass(plan, channel, field, &options)
+            });
+            let params = colour_edges::Params { weight: self.colour };
+            response = colour_edges::pass(plan, [response, a, b], &params);
+        }
+        if !is_plain {
+            let ground = Ground { lightness: seen.lightness, field, base, edge };
+            response = self.context.weighed(plan, response, &ground);
+        }
         self.with_guides(plan, response, field, guides)
     }
 

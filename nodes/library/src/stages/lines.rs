@@ -5,6 +5,7 @@ use crate::kernels::lines::flow_dog_two_dimensional::Stepping;
 use crate::kernels::shared::edge_threshold::{Threshold, Xdog};
 use crate::kernels::shared::stream::Integrator;
 use crate::stages::flow_dog::{FlowDog, Guided, Kernel};
+use crate::stages::line_context::{self, LineContext};
 use crate::stages::{ADVANCED, LOOK};
 
 pub(crate) const LINE_WIDTH: Param = Param::length("line_width", "Line width", 2.0, [0.2, 40.0])
@@ -101,6 +102,8 @@ pub(crate) fn flow_dog(scope: &Scope<'_>, guide_weight: f32) -> FlowDog {
         texture: scope.float(TEXTURE_LINES.id),
         guided: guided(scope, lines.sigma_e),
         fades: true,
+        context: LineContext::of(scope, scope.float(TEXTURE_LINES.id)),
+        colour: scope.float(line_context::COLOUR_EDGES.id),
     }
     .on_pixels(scope)
 }

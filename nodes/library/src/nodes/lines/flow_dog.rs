@@ -4,12 +4,15 @@
 use crate::declare::choice::choice;
 use crate::declare::ports;
 use crate::declare::spec::{NodeSpec, Param, STEADINESS, Scope, WINDOW};
-use crate::kernels::colour::lightness;
+use crate::kernels::colour::{lightness, rgb_to_lab};
 use crate::kernels::lines::flow_dog_two_dimensional::Stepping;
 use crate::kernels::shared::stream::Integrator;
-use crate::stages::difference_of_gaussians as dog;
-use crate::stages::flow_dog::{DEPTH, FlowDog, Guided, Kernel, NORMAL, OBJECT_ID, SIGMA_M, guides, tensor};
+use crate::stages::flow_dog::{
+    DEPTH, FlowDog, Guided, Kernel, NORMAL, OBJECT_ID, SIGMA_M, Seen, guides, tensor,
+};
+use crate::stages::line_context::{COLOUR_EDGES, INHIBITION, LOCAL_CONTRAST, LineContext};
 use crate::stages::steady::{Agreement, COLOUR_AGREEMENT, Steadied, compared, steadied};
+use crate::stages::{ADVANCED, difference_of_gaussians as dog};
 use isophote_engine::ImageId;
 
 /// The node.
@@ -47,6 +50,9 @@ pub static NODE: NodeSpec = NodeSpec {
             .hint("Strength of the lines that normals, depth and object ids draw; 0 leaves these out.").doc("Strength of lines where normal, depth or object id break; 0 leaves the guides unread."),
         STEADINESS,
         WINDOW,
+        LOCAL_CONTRAST.group(ADVANCED),
+        INHIBITION.group(ADVANCED),
+        COLOUR_EDGES.group(ADVANCED),
     ],
     build,
 };
@@ -94,6 +100,8 @@ fn build(scope: &mut Scope<'_>) -> ImageId {
         texture: 1.0,
         guided: [Guided::new(sigma_e); 2],
         fades: dog::fades(scope),
+        context: LineContext::of(scope, 1.0),
+        colour: scope.float(COLOUR_EDGES.id),
     }
     .on_pixels(scope);
     let guides_of = |scope: &Scope<'_>| guides(scope, lines.guide_weight);
@@ -106,5 +114,6 @@ fn build(scope: &mut Scope<'_>) -> ImageId {
         [compared(scope, color), color, found]
     });
     let lightness = lightness::pass(scope.plan, color);
-    lines.edges(scope.plan, lightness, tensor, &guides)
+    let lab = (lines.colour > 0.0).then(|| rgb_to_lab::pass(scope.plan, color, 1.0));
+    lines.edges(scope.plan, Seen { lightness, lab }, tensor, &guides)
 }

@@ -7,7 +7,9 @@ use crate::kernels::colour::blueprint_paper::{self, Sheet};
 use crate::kernels::colour::{lightness, rgb_to_lab};
 use crate::stages::abstraction::{self, Abstraction};
 use crate::stages::steady::{Agreement, COLOUR_AGREEMENT, Steadied, steadied};
-use crate::stages::{ADVANCED, LOOK, difference_of_gaussians as dog, flow_dog, flow_map, lines};
+use crate::stages::{
+    ADVANCED, LOOK, difference_of_gaussians as dog, flow_dog, flow_map, line_context, lines,
+};
 use isophote_engine::ImageId;
 
 /// The node.
@@ -63,6 +65,9 @@ pub static NODE: NodeSpec = NodeSpec {
         lines::GUIDE_WEIGHT,
         STEADINESS,
         WINDOW,
+        line_context::LOCAL_CONTRAST.with_default(Value::Float(1.0)).group(ADVANCED),
+        line_context::INHIBITION.with_default(Value::Float(1.0)).group(ADVANCED),
+        line_context::COLOUR_EDGES.group(ADVANCED),
     ],
     build,
 };
@@ -81,7 +86,8 @@ fn build(scope: &mut Scope<'_>) -> ImageId {
             let lab = rgb_to_lab::pass(scope.plan, color, 1.0);
             let smooth = abstraction.apply(scope.plan, lab, tensor, n_e);
             let lightness = lightness::pass_lab(scope.plan, smooth);
-            [smooth, tensor, flow.response(scope.plan, lightness, tensor, &guides)]
+            let seen = flow_dog::Seen { lightness, lab: Some(smooth) };
+            [smooth, tensor, flow.response(scope.plan, seen, tensor, &guides)]
         });
     let lightness = lightness::pass_lab(scope.plan, smooth);
     let edges = flow.decided(scope.plan, response, tensor, shares);

@@ -10,8 +10,9 @@ use crate::kernels::smoothing::line_integral_convolution::{self, Options as Lic}
 use crate::stages::abstraction::{self, Abstraction};
 use crate::stages::steady::{Agreement, COLOUR_AGREEMENT, Steadied, steadied};
 use crate::stages::{
-    ADVANCED, LOOK, difference_of_gaussians as dog, flow_dog, flow_map, line_integral_convolution as lic,
-    lines, quantization as levels, quantize_luminance as quantization, tone, warp_sharpen,
+    ADVANCED, LOOK, difference_of_gaussians as dog, flow_dog, flow_map, line_context,
+    line_integral_convolution as lic, lines, quantization as levels, quantize_luminance as quantization,
+    tone, warp_sharpen,
 };
 use isophote_engine::ImageId;
 
@@ -80,6 +81,9 @@ pub static NODE: NodeSpec = NodeSpec {
         SIGMA_A,
         STEADINESS,
         WINDOW,
+        line_context::LOCAL_CONTRAST.with_default(Value::Float(1.0)).group(ADVANCED),
+        line_context::INHIBITION.with_default(Value::Float(1.0)).group(ADVANCED),
+        line_context::COLOUR_EDGES.with_default(Value::Float(0.5)).group(ADVANCED),
     ],
     build,
 };
@@ -139,7 +143,10 @@ fn build(scope: &mut Scope<'_>) -> ImageId {
         let for_lines = abstraction.apply(scope.plan, lab, tensor, n_e);
         let lightness = lightness::pass_lab(scope.plan, for_lines);
         let undecided = match line_filter {
-            LineFilter::Flow => flow.response(scope.plan, lightness, tensor, &guides),
+            LineFilter::Flow => {
+                let seen = flow_dog::Seen { lightness, lab: Some(for_lines) };
+                flow.response(scope.plan, seen, tensor, &guides)
+            }
             LineFilter::Isotropic => lightness,
         };
         [flat, tensor, undecided]

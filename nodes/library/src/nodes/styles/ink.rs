@@ -5,6 +5,7 @@ mod preset;
 use self::preset::{Controls, GRAIN, Preset, Style, TONE};
 use crate::declare::ports;
 use crate::declare::spec::{HOLD, NodeSpec, Param, RENEWAL, STEADINESS, Scope, WINDOW};
+use crate::declare::value::Value;
 use crate::kernels::colour::composite_lines::{self, Params as Composite};
 use crate::kernels::colour::ink_sheet::{self, Drawing, Sheet};
 use crate::kernels::colour::tone_marks::{self, HATCHING, Inputs, Tones};
@@ -17,13 +18,14 @@ use crate::kernels::structure::contrast;
 use crate::kernels::structure::solid_noise::Marks;
 use crate::kernels::structure::tensor_display::least_significant;
 use crate::stages::abstraction::{self, Abstraction};
-use crate::stages::flow_dog::{self, FlowDog, Kernel};
+use crate::stages::flow_dog::{self, FlowDog, Kernel, Seen};
+use crate::stages::line_context::LineContext;
 use crate::stages::steady::{Agreement, COLOUR_AGREEMENT, Steadied, steadied};
 use crate::stages::structure_tensor::of_color_and_guides;
 use crate::stages::tensor_options::TensorOptions;
 use crate::stages::{
-    ADVANCED, LOOK, difference_of_gaussians as dog, flow_map, line_integral_convolution as lic, lines, marks,
-    tone,
+    ADVANCED, LOOK, difference_of_gaussians as dog, flow_map, line_context, line_integral_convolution as lic,
+    lines, marks, tone,
 };
 use isophote_engine::{ImageId, math};
 
@@ -124,6 +126,10 @@ pub static NODE: NodeSpec = NodeSpec {
         WINDOW,
         HOLD,
         RENEWAL,
+        // Less than other styles have: shading draws masses of its own.
+        line_context::LOCAL_CONTRAST.with_default(Value::Float(0.6)).group(ADVANCED),
+        line_context::INHIBITION.with_default(Value::Float(1.0)).group(ADVANCED),
+        line_context::COLOUR_EDGES.with_default(Value::Float(0.5)).group(ADVANCED),
     ],
     build,
 };
@@ -192,6 +198,8 @@ fn flow(scope: &Scope<'_>, drawing: &Preset, guide_weight: f32) -> FlowDog {
         texture: scope.float(lines::TEXTURE_LINES.id),
         guided: lines::guided(scope, sigma_e),
         fades: true,
+        context: LineContext::of(scope, scope.float(lines::TEXTURE_LINES.id)),
+        colour: scope.float(line_context::COLOUR_EDGES.id),
     }
     .on_pixels(scope)
 }
@@ -238,7 +246,8 @@ fn build(scope: &mut Scope<'_>) -> ImageId {
             let lab = rgb_to_lab::pass(scope.plan, color, 1.0);
             let smooth = abstraction.apply(scope.plan, lab, tensor, n_e + own.flattening);
             let lightness = lightness::pass_lab(scope.plan, smooth);
-            [smooth, tensor, flow.response(scope.plan, lightness, tensor, &guides)]
+            let seen = Seen { lightness, lab: Some(smooth) };
+            [smooth, tensor, flow.response(scope.plan, seen, tensor, &guides)]
         });
     let edges = flow.decided(scope.plan, response, tensor, shares);
     // Where no own colour shows, saturation has no part in the plan, so that panels can tell.
