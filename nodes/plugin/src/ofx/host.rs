@@ -237,10 +237,10 @@ type Show = unsafe extern "C" fn(*mut c_void, *const c_char, *const c_char, *con
 
 /// Hands a text to a function of the message suite.
 fn say(show: Show, effect: Handle, kind: &CStr, message: &str) {
-    // The text is an argument and not the format, in which a `%` would be one of the host's.
-    let text = CString::new(message.replace('\0', " ")).unwrap_or_default();
-    // SAFETY: strings with a closing zero that live during the call, as the format says.
-    unsafe { show(effect, kind.as_ptr(), null(), c"%s".as_ptr(), text.as_ptr()) };
+    // The text is the format, since Natron loses the arguments of one that has any.
+    let text = CString::new(message.replace('\0', " ").replace('%', "%%")).unwrap_or_default();
+    // SAFETY: strings with a closing zero that live during the call; the format asks for no arguments.
+    unsafe { show(effect, kind.as_ptr(), null(), text.as_ptr()) };
 }
 
 /// A property set.
