@@ -6,6 +6,7 @@
 //! style to one, and [`look_effect`] finds what the effect for looks shows. Nothing is kept between calls but the host's
 //! functions and [`preset_files`], so that any action may come on any thread, in any number.
 
+mod before;
 mod clips;
 mod colours;
 mod controls;

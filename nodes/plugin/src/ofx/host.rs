@@ -3,6 +3,7 @@
 //! Hosts leave functions out, refuse properties and free strings early. Everything here answers with
 //! `None` then, or does nothing.
 
+use super::before::Before;
 use super::quirks::Quirks;
 use crate::abi::guard::lock;
 use isophote_abi::openfx::*;
@@ -35,6 +36,8 @@ pub struct Host {
     noticed: Mutex<BTreeSet<usize>>,
     /// Addresses of the instances whose values the effect itself sets.
     edited: Mutex<BTreeSet<usize>>,
+    /// Values of before the looks of instances, by their addresses.
+    before: Mutex<BTreeMap<usize, Before>>,
     pub quirks: Quirks,
     /// True where images may hold only a part of the picture.
     pub tiles: bool,
@@ -82,6 +85,7 @@ impl Host {
                 showing: Mutex::default(),
                 noticed: Mutex::default(),
                 edited: Mutex::default(),
+                before: Mutex::default(),
                 quirks: Quirks::default(),
                 tiles: true,
                 temporal: false,
@@ -195,6 +199,7 @@ impl Host {
     /// Forgets an instance that ends, and clears what it shows.
     pub fn forget(&self, effect: Handle) {
         lock(&self.noticed).remove(&effect.addr());
+        lock(&self.before).remove(&effect.addr());
         self.clear(effect, &[Shown::Failure, Shown::Notice]);
     }
 
@@ -208,6 +213,20 @@ impl Host {
     /// True while the effect itself sets values of an instance.
     pub fn is_editing(&self, effect: Handle) -> bool {
         lock(&self.edited).contains(&effect.addr())
+    }
+
+    /// Values that an instance had before its look, where they are kept.
+    pub fn before(&self, effect: Handle) -> Option<Before> {
+        lock(&self.before).get(&effect.addr()).cloned()
+    }
+
+    /// Keeps values of before a look, or none.
+    pub fn keep_before(&self, effect: Handle, before: Option<Before>) {
+        let mut kept = lock(&self.before);
+        match before {
+            Some(before) => kept.insert(effect.addr(), before),
+            None => kept.remove(&effect.addr()),
+        };
     }
 
     fn clear(&self, effect: Handle, what: &[Shown]) {
