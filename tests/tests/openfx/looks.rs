@@ -237,6 +237,17 @@ pub fn a_look_is_undone_by_its_choice_in_hosts_that_break_steps(binary: &Binary)
     instance.edit("look", 3);
     instance.edit("look", 0);
     assert_eq!(state(), edited);
+    // All controls are reset at once, told of afterwards, and that is undone.
+    instance.edit("look", 2);
+    instance.set("look", 0);
+    instance.set("line_width", 2.0);
+    let reset = state();
+    instance.touch("look");
+    assert_eq!(state(), reset);
+    instance.set("line_width", clear[1][0].clone());
+    instance.edit("look", 2);
+    instance.edit("look", 0);
+    assert_eq!(state(), edited);
     assert!(instance.steps().iter().all(|step| step.label.is_none()), "a step with a begin");
     host.no_faults();
 }

@@ -42,33 +42,39 @@ fn at(effect: &'static Effect, option: usize) -> Option<&'static Shipped> {
 /// Sets all controls to what they are in the look that was chosen.
 fn chosen(effect: &'static Effect, values: &Values<'_>, instance: Handle, option: usize) -> Outcome<()> {
     let host = values.host;
-    let kept = host.before(instance).filter(|before| !before.edited);
+    let kept = host.before(instance);
     let Some(look) = at(effect, option) else { return back(effect, values, instance, kept) };
     let settings = settings(effect, look, values)?;
+    let differs = settings.iter().any(Setting::differs);
     let set = || settings.iter().filter(|s| s.differs()).for_each(|s| values.set_value(s.name, s.wanted));
     if host.quirks.keeps_steps {
-        if settings.iter().any(Setting::differs) {
+        if differs {
             host.editing(instance, || values.in_one_step(c"Look", set));
         }
         return Ok(());
     }
-    // The choice is the only step, so that what it replaces is kept here.
+    // The choice is the only step, so that what it replaces is kept here; a look that an undo brings back replaces nothing.
     let now = || settings.iter().map(|setting| (setting.name, setting.now)).collect();
+    let kept = kept.filter(|before| !before.edited || (before.option == option && !differs));
     let before = kept.map_or_else(now, |before| before.values);
     host.keep_before(instance, Some(Before { option, values: before, edited: false }));
     host.editing(instance, set);
     Ok(())
 }
 
-/// Sets all controls to what they were before the look, in hosts that leave that to the effect.
+/// Sets all controls to what they were before the look, in hosts that leave that to the effect, unless they are another's by now.
 fn back(effect: &'static Effect, values: &Values<'_>, instance: Handle, kept: Option<Before>) -> Outcome<()> {
-    let Some((before, look)) = kept.and_then(|before| at(effect, before.option).map(|look| (before, look)))
-    else {
+    let Some(before) = kept else { return Ok(()) };
+    let Some(look) = at(effect, before.option) else { return Ok(()) };
+    let settings = settings(effect, look, values)?;
+    let host = values.host;
+    if settings.iter().any(Setting::differs) {
+        host.keep_before(instance, Some(Before { edited: true, ..before }));
         return Ok(());
-    };
-    let now: Vec<Named> = settings(effect, look, values)?.iter().map(|s| (s.name, s.now)).collect();
-    values.host.keep_before(instance, None);
-    values.host.editing(instance, || {
+    }
+    host.keep_before(instance, None);
+    let now: Vec<Named> = settings.iter().map(|setting| (setting.name, setting.now)).collect();
+    host.editing(instance, || {
         let other = before.values.iter().filter(|named| !now.contains(named));
         other.for_each(|(name, value)| values.set_value(name, *value));
     });
