@@ -237,7 +237,16 @@ pub fn a_look_is_undone_by_its_choice_in_hosts_that_break_steps(binary: &Binary)
     instance.edit("look", 3);
     instance.edit("look", 0);
     assert_eq!(state(), edited);
-    // All controls are reset at once, told of afterwards, and that is undone.
+    // A reset of all controls that is told of as it goes, undone without a word.
+    instance.edit("look", 2);
+    instance.steps();
+    instance.edit("look", 0);
+    instance.steps().iter().rev().for_each(|step| instance.undo(step));
+    instance.set("look", 2);
+    assert_eq!(state(), clear);
+    instance.edit("look", 0);
+    assert_eq!(state(), edited);
+    // One that is told of afterwards, and undone.
     instance.edit("look", 2);
     instance.set("look", 0);
     instance.set("line_width", 2.0);

@@ -67,17 +67,15 @@ fn back(effect: &'static Effect, values: &Values<'_>, instance: Handle, kept: Op
     let Some(before) = kept else { return Ok(()) };
     let Some(look) = at(effect, before.option) else { return Ok(()) };
     let settings = settings(effect, look, values)?;
-    let host = values.host;
-    if settings.iter().any(Setting::differs) {
-        host.keep_before(instance, Some(Before { edited: true, ..before }));
-        return Ok(());
-    }
-    host.keep_before(instance, None);
     let now: Vec<Named> = settings.iter().map(|setting| (setting.name, setting.now)).collect();
-    host.editing(instance, || {
-        let other = before.values.iter().filter(|named| !now.contains(named));
-        other.for_each(|(name, value)| values.set_value(name, *value));
-    });
+    if !settings.iter().any(Setting::differs) {
+        values.host.editing(instance, || {
+            let other = before.values.iter().filter(|named| !now.contains(named));
+            other.for_each(|(name, value)| values.set_value(name, *value));
+        });
+    }
+    // Kept for undos that the effect does not hear of, such as that of a reset.
+    values.host.keep_before(instance, Some(Before { edited: true, ..before }));
     Ok(())
 }
 
