@@ -67,12 +67,19 @@ int ofx_shim_set(void *param, ...) {
   return set(param, count, whole, numbers, text);
 }
 
+// Natron takes the list of arguments for the first of them, so that a format that asks for any shows nothing of it.
+static int asks_for_arguments(const char *format) {
+  for (; *format; format++)
+    if (*format == '%' && *++format != '%') return 1;
+  return 0;
+}
+
 int ofx_shim_message(void *handle, const char *type, const char *id, const char *format, ...) {
   char text[1024];
   va_list list;
   (void)id;
   va_start(list, format);
-  vsnprintf(text, sizeof text, format, list);
+  vsnprintf(text, sizeof text, asks_for_arguments(format) ? "" : format, list);
   va_end(list);
   return said(handle, type, text);
 }

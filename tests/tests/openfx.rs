@@ -89,6 +89,7 @@ const OF_THE_BINARY: &[OfTheBinary] = named! {
     describe::a_host_without_a_needed_suite_is_told,
     looks::hosts_that_tell_of_no_edits_have_no_choice_of_looks,
     looks::an_edit_makes_a_look_custom,
+    looks::a_look_is_undone_by_its_choice_in_hosts_that_break_steps,
     looks::the_effect_for_looks_shows_all_that_ships,
     looks::the_effect_for_looks_is_mixed_and_steadied,
     looks::lengths_of_looks_are_those_of_apply,

@@ -7,6 +7,7 @@
 //! the host's functions, [`preset_files`], the [`device`] of a graphics card, memory of images, and what frames have in
 //! common ([`neighbours`]), found by the contents of pictures alone; so any action may come on any thread, in any number.
 
+mod before;
 mod blending;
 mod card;
 mod clips;

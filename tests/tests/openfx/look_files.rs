@@ -55,8 +55,8 @@ pub fn files_are_shown_and_faults_of_theirs_told(binary: &Binary) {
         of_file.choose(&file(name, text));
         of_file.shows(None, words);
     }
-    of_file.choose(&folder.path().join("missing.json"));
-    of_file.shows(None, "is missing");
+    of_file.choose(&folder.path().join("at 100 %s.json"));
+    of_file.shows(None, "at 100 %s.json is missing");
     of_file.choose(&preset);
     of_file.shows(Some(&graph), "");
     // Keyframes of a preset are followed.

@@ -202,6 +202,65 @@ pub fn an_edit_makes_a_look_custom(binary: &Binary) {
     host.no_faults();
 }
 
+pub fn a_look_is_undone_by_its_choice_in_hosts_that_break_steps(binary: &Binary) {
+    let host = Host::new(Behaviour { name: c"fr.inria.Natron", ..Behaviour::default() });
+    let shown = Described::new(&host, binary.plugin("org.isophote.cartoon")).in_context(CONTEXTS[1]);
+    let undone = with_param(&shown, "look", |_, set| set.int(kOfxParamPropEvaluateOnChange));
+    assert_eq!(undone, Some(Some(1)), "the host undoes what it renders for");
+    let instance = in_host(&host, binary, "org.isophote.cartoon", CONTEXTS[1]);
+    let state =
+        || ["look", "line_width", "posterize", "line_color", "reference_height"].map(|n| instance.get(n));
+    instance.edit("line_width", 1.25);
+    let first = state();
+    instance.edit("look", 2);
+    let clear = state();
+    assert!(clear[1..] != first[1..]);
+    // Chosen, and back over two looks.
+    instance.edit("look", 3);
+    assert!(state()[1..] != clear[1..]);
+    instance.edit("look", 2);
+    assert_eq!(state(), clear);
+    instance.edit("look", 0);
+    assert_eq!(state(), first);
+    // An edit and the look before it, undone one after the other, and the look chosen again.
+    instance.edit("look", 2);
+    instance.edit("line_width", 5.5);
+    assert_eq!(instance.get("look"), [Value::Int(0)]);
+    instance.edit("line_width", clear[1][0].clone());
+    assert_eq!(state(), clear);
+    instance.edit("look", 0);
+    assert_eq!(state(), first);
+    // After an edit, the values of before the next look are those of the edit.
+    instance.edit("look", 2);
+    instance.edit("line_width", 5.5);
+    let edited = state();
+    instance.edit("look", 3);
+    instance.edit("look", 0);
+    assert_eq!(state(), edited);
+    // A reset of all controls that is told of as it goes, undone without a word.
+    instance.edit("look", 2);
+    instance.steps();
+    instance.edit("look", 0);
+    instance.steps().iter().rev().for_each(|step| instance.undo(step));
+    instance.set("look", 2);
+    assert_eq!(state(), clear);
+    instance.edit("look", 0);
+    assert_eq!(state(), edited);
+    // One that is told of afterwards, and undone.
+    instance.edit("look", 2);
+    instance.set("look", 0);
+    instance.set("line_width", 2.0);
+    let reset = state();
+    instance.touch("look");
+    assert_eq!(state(), reset);
+    instance.set("line_width", clear[1][0].clone());
+    instance.edit("look", 2);
+    instance.edit("look", 0);
+    assert_eq!(state(), edited);
+    assert!(instance.steps().iter().all(|step| step.label.is_none()), "a step with a begin");
+    host.no_faults();
+}
+
 pub fn the_effect_for_looks_shows_all_that_ships(binary: &Binary) {
     let host = Host::new(Behaviour::default());
     let layout = Layout::default();

@@ -220,7 +220,7 @@ fn define_control(
             Value::Color(_) => colour(define(kOfxParamTypeRGBA)?, param),
         },
         Target::Own(param) => own(number(define(kOfxParamTypeDouble)?, param), param),
-        Target::Look => look(choice(define(kOfxParamTypeChoice)?, control, 0), host.quirks.tells_of_edits),
+        Target::Look => look(choice(define(kOfxParamTypeChoice)?, control, 0), host),
         Target::Shown => choice(define(kOfxParamTypeChoice)?, control, DEFAULT),
         Target::File => file(define(kOfxParamTypeString)?),
         Target::Reload => define(kOfxParamTypePushButton)?,
@@ -307,9 +307,10 @@ fn choice<'h>(set: Properties<'h>, control: &'static Control, default: usize) ->
 }
 
 /// The choice of a look, hidden where the effect would not hear of it.
-fn look(set: Properties<'_>, is_heard: bool) -> Properties<'_> {
-    set.set_int(kOfxParamPropEvaluateOnChange, 0);
-    if is_heard { set } else { hidden(set) }
+fn look<'h>(set: Properties<'h>, host: &Host) -> Properties<'h> {
+    // Natron undoes nothing that it does not render for, and the choice is the step there.
+    set.set_int(kOfxParamPropEvaluateOnChange, (!host.quirks.keeps_steps).into());
+    if host.quirks.tells_of_edits { set } else { hidden(set) }
 }
 
 /// The path of a file that must be there.

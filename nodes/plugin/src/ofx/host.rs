@@ -3,6 +3,7 @@
 //! Hosts leave functions out, refuse properties and free strings early. Everything here answers with
 //! `None` then, or does nothing.
 
+use super::before::Before;
 use super::quirks::Quirks;
 use crate::abi::guard::lock;
 use isophote_abi::openfx::*;
@@ -35,6 +36,8 @@ pub struct Host {
     noticed: Mutex<BTreeSet<usize>>,
     /// Addresses of the instances whose values the effect itself sets.
     edited: Mutex<BTreeSet<usize>>,
+    /// Values of before the looks of instances, by their addresses.
+    before: Mutex<BTreeMap<usize, Before>>,
     pub quirks: Quirks,
     /// True where images may hold only a part of the picture.
     pub tiles: bool,
@@ -82,6 +85,7 @@ impl Host {
                 showing: Mutex::default(),
                 noticed: Mutex::default(),
                 edited: Mutex::default(),
+                before: Mutex::default(),
                 quirks: Quirks::default(),
                 tiles: true,
                 temporal: false,
@@ -209,6 +213,7 @@ impl Host {
     /// Forgets an instance that ends, and clears what it shows.
     pub fn forget(&self, effect: Handle) {
         lock(&self.noticed).remove(&effect.addr());
+        lock(&self.before).remove(&effect.addr());
         self.clear(effect, &[Shown::Failure, Shown::Notice, Shown::Card]);
     }
 
@@ -222,6 +227,20 @@ impl Host {
     /// True while the effect itself sets values of an instance.
     pub fn is_editing(&self, effect: Handle) -> bool {
         lock(&self.edited).contains(&effect.addr())
+    }
+
+    /// Values that an instance had before its look, where they are kept.
+    pub fn before(&self, effect: Handle) -> Option<Before> {
+        lock(&self.before).get(&effect.addr()).cloned()
+    }
+
+    /// Keeps values of before a look, or none.
+    pub fn keep_before(&self, effect: Handle, before: Option<Before>) {
+        let mut kept = lock(&self.before);
+        match before {
+            Some(before) => kept.insert(effect.addr(), before),
+            None => kept.remove(&effect.addr()),
+        };
     }
 
     fn clear(&self, effect: Handle, what: &[Shown]) {
@@ -253,10 +272,10 @@ type Show = unsafe extern "C" fn(*mut c_void, *const c_char, *const c_char, *con
 
 /// Hands a text to a function of the message suite.
 fn say(show: Show, effect: Handle, kind: &CStr, message: &str) {
-    // The text is an argument and not the format, in which a `%` would be one of the host's.
-    let text = CString::new(message.replace('\0', " ")).unwrap_or_default();
-    // SAFETY: strings with a closing zero that live during the call, as the format says.
-    unsafe { show(effect, kind.as_ptr(), null(), c"%s".as_ptr(), text.as_ptr()) };
+    // The text is the format, since Natron loses the arguments of one that has any.
+    let text = CString::new(message.replace('\0', " ").replace('%', "%%")).unwrap_or_default();
+    // SAFETY: strings with a closing zero that live during the call; the format asks for no arguments.
+    unsafe { show(effect, kind.as_ptr(), null(), text.as_ptr()) };
 }
 
 /// A property set.

@@ -2,6 +2,7 @@
 //!
 //! Projects hold the values, so that a look that becomes another changes none of them; the choice decides about no pixel.
 
+use super::before::{Before, Named};
 use super::effects::{Effect, Form, Target};
 use super::host::{Host, Outcome};
 use super::look_effect::{self, LOOK};
@@ -25,22 +26,73 @@ pub fn edited(effect: &'static Effect, host: &Host, instance: Handle, name: &CSt
     if !effect.controls.iter().any(|control| matches!(control.target, Target::Look)) {
         return Ok(());
     }
-    let chosen = values.index(LOOK).and_then(|option| option.checked_sub(1));
-    let Some(look) = chosen.and_then(|at| of_style(effect.nodes[0].id).nth(at)) else { return Ok(()) };
-    let other = others(effect, look, &values)?;
-    if other.is_empty() {
+    let Some(option) = values.index(LOOK) else { return Ok(()) };
+    if name == LOOK {
+        chosen(effect, &values, instance, option)
+    } else {
+        adjusted(effect, &values, instance, option)
+    }
+}
+
+/// The look of an option, unless it is "Custom".
+fn at(effect: &'static Effect, option: usize) -> Option<&'static Shipped> {
+    of_style(effect.nodes[0].id).nth(option.checked_sub(1)?)
+}
+
+/// Sets all controls to what they are in the look that was chosen.
+fn chosen(effect: &'static Effect, values: &Values<'_>, instance: Handle, option: usize) -> Outcome<()> {
+    let host = values.host;
+    let kept = host.before(instance);
+    let Some(look) = at(effect, option) else { return back(effect, values, instance, kept) };
+    let settings = settings(effect, look, values)?;
+    let differs = settings.iter().any(Setting::differs);
+    let set = || settings.iter().filter(|s| s.differs()).for_each(|s| values.set_value(s.name, s.wanted));
+    if host.quirks.keeps_steps {
+        if differs {
+            host.editing(instance, || values.in_one_step(c"Look", set));
+        }
         return Ok(());
     }
-    host.editing(instance, || {
-        if name == LOOK {
-            values.in_one_step(c"Look", || {
-                other.iter().for_each(|(name, value)| values.set_value(name, *value))
-            });
-        } else {
-            // Not a step of its own: it is a part of the user's.
-            values.set_int(LOOK, 0);
-        }
-    });
+    // The choice is the only step, so that what it replaces is kept here; a look that an undo brings back replaces nothing.
+    let now = || settings.iter().map(|setting| (setting.name, setting.now)).collect();
+    let kept = kept.filter(|before| !before.edited || (before.option == option && !differs));
+    let before = kept.map_or_else(now, |before| before.values);
+    host.keep_before(instance, Some(Before { option, values: before, edited: false }));
+    host.editing(instance, set);
+    Ok(())
+}
+
+/// Sets all controls to what they were before the look, in hosts that leave that to the effect, unless they are another's by now.
+fn back(effect: &'static Effect, values: &Values<'_>, instance: Handle, kept: Option<Before>) -> Outcome<()> {
+    let Some(before) = kept else { return Ok(()) };
+    let Some(look) = at(effect, before.option) else { return Ok(()) };
+    let settings = settings(effect, look, values)?;
+    let now: Vec<Named> = settings.iter().map(|setting| (setting.name, setting.now)).collect();
+    if !settings.iter().any(Setting::differs) {
+        values.host.editing(instance, || {
+            let other = before.values.iter().filter(|named| !now.contains(named));
+            other.for_each(|(name, value)| values.set_value(name, *value));
+        });
+    }
+    // Kept for undos that the effect does not hear of, such as that of a reset.
+    values.host.keep_before(instance, Some(Before { edited: true, ..before }));
+    Ok(())
+}
+
+/// Makes a look custom when something that it sets is edited, and the look again when such an edit is undone.
+fn adjusted(effect: &'static Effect, values: &Values<'_>, instance: Handle, option: usize) -> Outcome<()> {
+    let host = values.host;
+    let kept = host.before(instance);
+    let last =
+        kept.as_ref().filter(|before| option == 0 && before.edited).map_or(option, |before| before.option);
+    let Some(look) = at(effect, last) else { return Ok(()) };
+    let is_custom = settings(effect, look, values)?.iter().any(Setting::differs);
+    let now = if is_custom { 0 } else { last };
+    if now != option {
+        // Not a step of its own: it is a part of the user's.
+        host.editing(instance, || values.set_int(LOOK, now as c_int));
+    }
+    host.keep_before(instance, kept.map(|before| Before { edited: is_custom, ..before }));
     Ok(())
 }
 
@@ -49,33 +101,43 @@ fn is_the_users(param: &Param) -> bool {
     param.id == MIX.id || param.group == "time"
 }
 
-/// The controls that are not as a look has them, with its values.
-fn others(
-    effect: &'static Effect,
-    look: &Shipped,
-    values: &Values<'_>,
-) -> Outcome<Vec<(&'static CStr, Value)>> {
+/// A control that looks set.
+struct Setting {
+    name: &'static CStr,
+    now: Value,
+    wanted: Value,
+    is_animated: bool,
+}
+
+impl Setting {
+    /// True where it is not as the look has it.
+    fn differs(&self) -> bool {
+        self.now != self.wanted || self.is_animated
+    }
+}
+
+/// The controls that a look sets.
+fn settings(effect: &'static Effect, look: &Shipped, values: &Values<'_>) -> Outcome<Vec<Setting>> {
     let node = look.graph.node(0).map_err(|_| kOfxStatFailed)?;
-    let mut others = Vec::new();
+    let mut settings = Vec::new();
     for control in &effect.controls {
         let name = control.name.as_c_str();
-        match control.target {
+        let (now, wanted) = match control.target {
             Target::Param(0, param) if !is_the_users(param) => {
                 let wanted = look.graph.value(node, param.id).map_err(|_| kOfxStatFailed)?;
-                if values.value(name, param).is_some_and(|now| now != wanted) || values.is_animated(name) {
-                    others.push((name, wanted));
-                }
+                (values.value(name, param), wanted)
             }
             Target::ReferenceHeight => {
                 let wanted = look.settings.lengths().reference_height() as c_int;
-                if values.int(name).is_some_and(|now| now != wanted) {
-                    others.push((name, Value::Int(wanted)));
-                }
+                (values.int(name).map(Value::Int), Value::Int(wanted))
             }
-            _ => {}
+            _ => continue,
+        };
+        if let Some(now) = now {
+            settings.push(Setting { name, now, wanted, is_animated: values.is_animated(name) });
         }
     }
-    Ok(others)
+    Ok(settings)
 }
 
 #[cfg(test)]

@@ -17,6 +17,8 @@ pub struct Quirks {
     pub all_connected: bool,
     /// True where effects hear of what the user edits.
     pub tells_of_edits: bool,
+    /// True where a step to undo holds all that an effect sets between its begin and its end.
+    pub keeps_steps: bool,
 }
 
 impl Default for Quirks {
@@ -28,6 +30,7 @@ impl Default for Quirks {
             threads: true,
             all_connected: false,
             tells_of_edits: true,
+            keeps_steps: true,
         }
     }
 }
@@ -53,6 +56,10 @@ impl Quirks {
         if named(&["mlt", "kdenlive", "shotcut"]) {
             // Instances are made anew for each frame, with the values that there are.
             return Self { space: Space::Srgb, tells_of_edits: false, ..general };
+        }
+        if named(&["natron"]) {
+            // It ends a step when it tells the effect of the first value.
+            return Self { keeps_steps: false, ..general };
         }
         // Editors work on pictures as they are displayed.
         if named(&["vegas", "premiere", "hitfilm"]) {
