@@ -247,15 +247,90 @@ fn models_cast_a_shadow_on_the_ground_and_nothing_else() {
     assert!(soft > 100, "{soft} pixels are in half shadow");
     let (on, off) = (render(&cube, "on.exr", &[]), render(&cube, "off.exr", &["--no-ground"]));
     assert_ne!(channel(&on, "G"), channel(&off, "G"));
-    for name in ["N.X", "N.Y", "N.Z", "Z", "id", "backward.u", "Pref.X", "A"] {
+    // A shadow has no outline, and nothing else is elsewhere for it.
+    for name in ["N.X", "N.Y", "N.Z", "Z", "id", "A"] {
         assert_eq!(channel(&on, name), channel(&off, name), "{name}");
     }
+    let [rest, without, id] = [channel(&on, "Pref.Y"), channel(&off, "Pref.Y"), channel(&off, "id")];
+    assert!(rest.iter().zip(&without).zip(&id).all(|((on, off), id)| *id == 0.0 || on == off));
+    // Its marks stick to the ground, which lies just below the model.
+    let ground: Vec<f32> =
+        rest.iter().zip(&id).filter(|(y, id)| **id == 0.0 && **y != 0.0).map(|(y, _)| *y).collect();
+    let low = without.iter().copied().fold(0.0, f32::min);
+    assert!(ground.len() > 100, "{} pixels are on the ground", ground.len());
+    assert!(ground.iter().all(|y| *y < low && *y > low - 0.01 && (y - ground[0]).abs() < 1e-5), "{low}");
     // From below, and with the sun below, there is none.
     for more in [["--elevation", "-20"], ["--light", "0,-20"]] {
         let both =
             [&[][..], &["--no-ground"][..]].map(|ground| picture(&cube, &[&more[..], ground].concat()));
         assert_eq!(both[0], both[1], "{more:?}");
     }
+}
+
+#[test]
+fn the_shadow_on_the_ground_is_smooth() {
+    let folder = folder();
+    let ball = ball(folder.path());
+    let view = ["--size", "320x200", "--elevation", "50", "--background", "transparent", "--depth", "float"];
+    let file = render(&ball, "shadow.exr", &view);
+    let (alpha, id) = (channel(&file, "A"), channel(&file, "id"));
+    // That of a ball grows and falls along every line, once.
+    let (mut ripples, mut heights) = (0.0, 0.0);
+    for (alpha, id) in alpha.chunks(320).zip(id.chunks(320)) {
+        let (first, last) = (id.iter().position(|id| *id > 0.0), id.iter().rposition(|id| *id > 0.0));
+        // Beside the ball, pixels are in part of it.
+        let (left, right) =
+            (first.map_or(320, |x| x.saturating_sub(2)), last.map_or(320, |x| (x + 3).min(320)));
+        for part in [&alpha[..left], &alpha[right..]] {
+            let (Some(first), Some(last)) = (part.first(), part.last()) else { continue };
+            let height = part.iter().copied().fold(0.0, f32::max);
+            let changes: f32 = part.windows(2).map(|pair| (pair[1] - pair[0]).abs()).sum();
+            ripples += changes - (2.0 * height - first - last);
+            heights += height;
+        }
+    }
+    assert!(heights > 5.0, "{heights}");
+    assert!(ripples < 0.01 * heights, "{} of the shadow's height are ripples", ripples / heights);
+}
+
+#[test]
+fn drawn_shadows_on_the_ground_move_with_it() {
+    let folder = folder();
+    let ball = ball(folder.path());
+    // A turn of three degrees a frame, of which so many are rendered.
+    let turn = ["--turntable", "--size", "320x200", "--elevation", "40", "--frames", "1-4,120"];
+    let [plain, drawn] = [&[][..], &["--style", "ink", "--lengths", "pixels"]].map(|style| {
+        let out = if style.is_empty() { "plain.####.exr" } else { "ink.####.png" };
+        render(&ball, out, &[&turn[..], style].concat());
+        folder.path().join(out)
+    });
+    let frame = |file: &Path, number: u32| {
+        PathBuf::from(file.to_string_lossy().replace("####", &format!("{number:04}")))
+    };
+    let (mut changed, mut all) = (0, 0);
+    for number in 2..=4 {
+        let [before, now] =
+            [number - 1, number].map(|n| image::open(frame(&drawn, n)).expect("a frame").into_rgb8());
+        let guides = frame(&plain, number);
+        let [id, u, v] = ["id", "backward.u", "backward.v"].map(|name| channel(&guides, name));
+        let was = channel(&frame(&plain, number - 1), "id");
+        for (x, y) in (6..314).flat_map(|x| (6..194).map(move |y| (x, y))) {
+            let at = |x: usize, y: usize| 320 * y + x;
+            let [i, j] = [x as f32 + u[at(x, y)], y as f32 + v[at(x, y)]].map(|v| v.round() as usize);
+            let around = |all: &[f32], x: usize, y: usize| {
+                (x - 4..=x + 4).any(|x| (y - 4..=y + 4).any(|y| all[at(x, y)] > 0.0))
+            };
+            if !(4..316).contains(&i) || !(4..196).contains(&j) || around(&id, x, y) || around(&was, i, j) {
+                continue;
+            }
+            let [now, before] = [now.get_pixel(x as u32, y as u32), before.get_pixel(i as u32, j as u32)];
+            all += 1;
+            changed += i32::from(now[0].abs_diff(before[0]) > 25);
+        }
+    }
+    assert!(all > 100_000, "{all} pixels are compared");
+    let share = changed as f32 / all as f32;
+    assert!(share < 0.004, "{share} of the background changes with every frame");
 }
 
 #[test]
