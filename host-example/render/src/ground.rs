@@ -100,50 +100,20 @@ impl Ground {
             min_filter: wgpu::FilterMode::Linear,
             ..Default::default()
         });
-        let picture =
-            module(device, "ground", &[SCENE, PLANE, include_str!("../shaders/ground_picture.wgsl")]);
-        let known = |entry, targets: &[_]| {
-            pipeline(device, [&layouts.frame, &layout], (&picture, entry), targets, Some(1))
+        let compiled = |shader| module(device, "ground", &[SCENE, PLANE, shader]);
+        let finds = compiled(include_str!("../shaders/ground_shadow.wgsl"));
+        let shows = compiled(include_str!("../shaders/ground_picture.wgsl"));
+        let drawn = |entry, targets: &[_], samples| {
+            pipeline(device, [&layouts.frame, &layout], (&shows, entry), targets, Some(samples))
         };
         let target = shadow_target(device, size);
         let group = bind(device, &layout, &sampler, &target);
+        let maps = [&layouts.frame, &layouts.shadow];
         Self {
-            shadow: {
-                let module = module(
-                    device,
-                    "ground shadow",
-                    &[SCENE, PLANE, include_str!("../shaders/ground_shadow.wgsl")],
-                );
-                let groups = [&layouts.frame, &layouts.shadow];
-                pipeline(device, groups, (&module, "ground_fragment"), &[Some(SHADOW_FORMAT.into())], None)
-            },
-            surface: {
-                let over = wgpu::ColorTargetState {
-                    format: COLOR_FORMAT,
-                    blend: Some(wgpu::BlendState::PREMULTIPLIED_ALPHA_BLENDING),
-                    write_mask: wgpu::ColorWrites::ALL,
-                };
-                let entry = (&picture, "ground_surface_fragment");
-                pipeline(device, [&layouts.frame, &layout], entry, &[Some(over)], Some(SAMPLES))
-            },
-            motion: {
-                // Normals, depths and numbers of objects would draw outlines around shadows.
-                let kept = |format| {
-                    Some(wgpu::ColorTargetState {
-                        format,
-                        blend: None,
-                        write_mask: wgpu::ColorWrites::empty(),
-                    })
-                };
-                let targets = [
-                    kept(NORMAL_FORMAT),
-                    kept(LINEAR_DEPTH_FORMAT),
-                    kept(OBJECT_ID_FORMAT),
-                    Some(MOTION_FORMAT.into()),
-                ];
-                known("ground_motion_fragment", &targets)
-            },
-            rest: known("ground_rest_fragment", &[Some(REST_FORMAT.into())]),
+            shadow: pipeline(device, maps, (&finds, "ground_fragment"), &[Some(SHADOW_FORMAT.into())], None),
+            surface: drawn("ground_surface_fragment", &[Some(over())], SAMPLES),
+            motion: drawn("ground_motion_fragment", &motion_alone(), 1),
+            rest: drawn("ground_rest_fragment", &[Some(REST_FORMAT.into())], 1),
             target,
             layout,
             sampler,
@@ -187,6 +157,23 @@ impl Ground {
         pass.set_bind_group(1, &self.group, &[]);
         pass.draw(0..4, 0..1);
     }
+}
+
+/// Colours that are laid over others.
+fn over() -> wgpu::ColorTargetState {
+    wgpu::ColorTargetState {
+        format: COLOR_FORMAT,
+        blend: Some(wgpu::BlendState::PREMULTIPLIED_ALPHA_BLENDING),
+        write_mask: wgpu::ColorWrites::ALL,
+    }
+}
+
+/// Of the geometry buffer, motion: normals, depths and numbers of objects would draw outlines around shadows.
+fn motion_alone() -> [Option<wgpu::ColorTargetState>; 4] {
+    let kept =
+        |format| Some(wgpu::ColorTargetState { format, blend: None, write_mask: wgpu::ColorWrites::empty() });
+    let [normal, depth, object_id] = [NORMAL_FORMAT, LINEAR_DEPTH_FORMAT, OBJECT_ID_FORMAT].map(kept);
+    [normal, depth, object_id, Some(MOTION_FORMAT.into())]
 }
 
 fn shadow_target(device: &wgpu::Device, size: (u32, u32)) -> Target {
