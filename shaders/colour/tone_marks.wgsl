@@ -86,6 +86,12 @@ fn stroke(z: f32, d: f32) -> f32 {
     return clamp((wide - h) / params.softness + 0.5, 0.0, 1.0);
 }
 
+// The mean of strokes that are asked for a density: where they are thinner than their soft edges they cover less.
+fn stroke_mean(d: f32) -> f32 {
+    let wide = d * (1.0 + params.softness);
+    return select(wide - 0.5 * params.softness, 0.5 * wide * wide / params.softness, wide < params.softness);
+}
+
 // By how much fewer grains a stroke averages beside the picture's border, where its line is cut: the root of the
 // variance that it gains.
 fn border_gain(p: vec2f, t: vec2f) -> f32 {
@@ -122,15 +128,23 @@ fn main(@builtin(global_invocation_id) id: vec3u) {
         let first = rest - 0.5 * max(rest - 0.45, 0.0);
         let second = 1.0 - (1.0 - rest) / max(1.0 - first, 1e-6);
         var hatches = vec2f(0.0);
+        var means = vec2f(first, second);
         if params.given_gain > 0.0 {
             let a = (fetch(first_hatching, 3u, p).x - 0.5) * params.given_gain;
             let b = (fetch(second_hatching, 4u, p).x - 0.5) * params.given_gain;
             hatches = vec2f(stroke(a, first), stroke(b, second));
+            means = vec2f(stroke_mean(first), stroke_mean(second));
         } else {
             let q = (vec2f(p) + HALF + params.origin) * params.inverse_scale;
             hatches = vec2f(hatch(q, vec2f(0.8, -0.6), first, 301u), hatch(q, vec2f(0.96, 0.28), second, 701u));
         }
-        let drawn = 1.0 - (1.0 - stroke(z, followed)) * (1.0 - hatches.x) * (1.0 - hatches.y);
+        var bare = (1.0 - stroke(z, followed)) * (1.0 - hatches.x) * (1.0 - hatches.y);
+        if params.rubbed > 0.0 {
+            // What strokes leave bare of light tones is rubbed in, or paper would glow where smooth tones end.
+            let left = (1.0 - stroke_mean(followed)) * (1.0 - means.x) * (1.0 - means.y);
+            bare *= min((1.0 - d) / max(left, 1e-6), 1.0);
+        }
+        let drawn = 1.0 - bare;
         density = d + marked * (drawn - d);
     }
     let grained = rise((params.smooth_from - lightness) * params.inverse_fade);

@@ -11,9 +11,13 @@ use support::{fails, folder, isophote, succeeds};
 
 /// Renders a scene, 96 by 64 pixels large, to a file of the same folder.
 fn render(scene: &Path, out: &str, more: &[&str]) -> PathBuf {
+    render_in(scene, out, "96x64", more)
+}
+
+fn render_in(scene: &Path, out: &str, size: &str, more: &[&str]) -> PathBuf {
     let out = scene.parent().expect("a folder").join(out);
     let mut command = isophote();
-    command.arg("render").arg(scene).arg(&out).args(["--force", "--size", "96x64"]).args(more);
+    command.arg("render").arg(scene).arg(&out).args(["--force", "--size", size]).args(more);
     succeeds(&mut command);
     out
 }
@@ -161,7 +165,7 @@ fn backgrounds_are_transparent_or_exactly_their_colour() {
         }
         assert!(channel(&linear, "A").iter().all(|a| *a == 1.0));
     }
-    let (sky, none) = (render(&cube, "sky.exr", &[]), render(&cube, "none.exr", &BARE));
+    let (sky, none) = (render(&cube, "sky.exr", &["--no-ground"]), render(&cube, "none.exr", &BARE));
     let (alpha, ids) = (channel(&none, "A"), channel(&none, "id"));
     assert!(alpha.iter().zip(&ids).all(|(a, id)| *id == 0.0 || *a > 0.0) && alpha[0] == 0.0);
     for name in ["N.X", "Z", "id", "Pref.Y"] {
@@ -247,15 +251,91 @@ fn models_cast_a_shadow_on_the_ground_and_nothing_else() {
     assert!(soft > 100, "{soft} pixels are in half shadow");
     let (on, off) = (render(&cube, "on.exr", &[]), render(&cube, "off.exr", &["--no-ground"]));
     assert_ne!(channel(&on, "G"), channel(&off, "G"));
-    for name in ["N.X", "N.Y", "N.Z", "Z", "id", "backward.u", "Pref.X", "A"] {
+    // A shadow has no outline, and nothing else is elsewhere for it.
+    for name in ["N.X", "N.Y", "N.Z", "Z", "id", "A"] {
         assert_eq!(channel(&on, name), channel(&off, name), "{name}");
     }
+    let [rest, without, id] = [channel(&on, "Pref.Y"), channel(&off, "Pref.Y"), channel(&off, "id")];
+    assert!(rest.iter().zip(&without).zip(&id).all(|((on, off), id)| *id == 0.0 || on == off));
+    // Its marks stick to the ground, which lies just below the model.
+    let ground: Vec<f32> =
+        rest.iter().zip(&id).filter(|(y, id)| **id == 0.0 && **y != 0.0).map(|(y, _)| *y).collect();
+    let low = without.iter().copied().fold(0.0, f32::min);
+    assert!(ground.len() > 100, "{} pixels are on the ground", ground.len());
+    assert!(ground.iter().all(|y| *y < low && *y > low - 0.01 && (y - ground[0]).abs() < 1e-5), "{low}");
     // From below, and with the sun below, there is none.
     for more in [["--elevation", "-20"], ["--light", "0,-20"]] {
         let both =
             [&[][..], &["--no-ground"][..]].map(|ground| picture(&cube, &[&more[..], ground].concat()));
         assert_eq!(both[0], both[1], "{more:?}");
     }
+}
+
+#[test]
+fn the_shadow_on_the_ground_is_smooth() {
+    let folder = folder();
+    let ball = ball(folder.path());
+    let view = ["--elevation", "50", "--background", "transparent", "--depth", "float"];
+    let file = render_in(&ball, "shadow.exr", "320x200", &view);
+    let (alpha, id) = (channel(&file, "A"), channel(&file, "id"));
+    // That of a ball grows and falls along every line, once.
+    let (mut ripples, mut heights) = (0.0, 0.0);
+    for (alpha, id) in alpha.chunks(320).zip(id.chunks(320)) {
+        let (first, last) = (id.iter().position(|id| *id > 0.0), id.iter().rposition(|id| *id > 0.0));
+        // Beside the ball, pixels are in part of it.
+        let (left, right) =
+            (first.map_or(320, |x| x.saturating_sub(2)), last.map_or(320, |x| (x + 3).min(320)));
+        for part in [&alpha[..left], &alpha[right..]] {
+            let (Some(first), Some(last)) = (part.first(), part.last()) else { continue };
+            let height = part.iter().copied().fold(0.0, f32::max);
+            let changes: f32 = part.windows(2).map(|pair| (pair[1] - pair[0]).abs()).sum();
+            ripples += changes - (2.0 * height - first - last);
+            heights += height;
+        }
+    }
+    assert!(heights > 5.0, "{heights}");
+    assert!(ripples < 0.01 * heights, "{} of the shadow's height are ripples", ripples / heights);
+}
+
+#[test]
+fn drawn_shadows_on_the_ground_move_with_it() {
+    let folder = folder();
+    let ball = ball(folder.path());
+    // A turn of three degrees a frame, of which so many are rendered.
+    let turn = ["--turntable", "--elevation", "40", "--distance", "1.6"];
+    for (out, style) in [("a.####.exr", &[][..]), ("a.####.png", &["--style", "ink", "--lengths", "pixels"])]
+    {
+        render_in(&ball, out, "320x200", &[&turn[..], &["--frames", "1-4,120"], style].concat());
+    }
+    let file = |number: u32, kind: &str| folder.path().join(format!("a.{number:04}.{kind}"));
+    let drawn = |number| image::open(file(number, "png")).expect("a frame").into_rgb8();
+    let (mut moved, mut still, mut all) = (0, 0, 0);
+    for number in 2..=4 {
+        let (before, now, guides) = (drawn(number - 1), drawn(number), file(number, "exr"));
+        let [id, u, v] = ["id", "backward.u", "backward.v"].map(|name| channel(&guides, name));
+        let was = channel(&file(number - 1, "exr"), "id");
+        // True where the ball is neither there nor beside.
+        let is_free = |id: &[f32], [x, y]: [usize; 2]| {
+            let mut around = (y - 4..=y + 4).flat_map(|y| (x - 4..=x + 4).map(move |x| 320 * y + x));
+            around.all(|at| id[at] == 0.0)
+        };
+        for [x, y] in (6..194).flat_map(|y| (6..314).map(move |x| [x, y])) {
+            let at = 320 * y + x;
+            let from = [x as f32 + u[at], y as f32 - v[at]].map(|v| v.round() as usize);
+            let inside = (4..316).contains(&from[0]) && (4..196).contains(&from[1]);
+            if !inside || !is_free(&id, [x, y]) || !is_free(&was, from) {
+                continue;
+            }
+            let now = now.get_pixel(x as u32, y as u32)[0];
+            let changes = |[x, y]: [usize; 2]| now.abs_diff(before.get_pixel(x as u32, y as u32)[0]) > 25;
+            (moved, still) = (moved + u32::from(changes(from)), still + u32::from(changes([x, y])));
+            all += 1;
+        }
+    }
+    assert!(all > 100_000, "{all} pixels are compared");
+    let [moved, still] = [moved, still].map(|count| count as f32 / all as f32);
+    assert!(moved < 0.015, "{moved} of the background changes with every frame");
+    assert!(2.0 * moved < still, "{moved} changes where the ground goes, {still} on the screen");
 }
 
 #[test]

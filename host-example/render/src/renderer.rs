@@ -8,6 +8,7 @@
 use glam::Mat4;
 
 use crate::background::{Backdrop, Background};
+use crate::ground::Ground;
 use crate::layouts::{Layouts, bind_buffer};
 use crate::lighting::Lighting;
 use crate::pipelines::{Pass, Pipelines, Variant};
@@ -32,7 +33,7 @@ pub struct Renderer {
     pipelines: Pipelines,
     backdrop: Backdrop,
     /// Draws the shadow on the ground, where there is to be one.
-    ground: Option<wgpu::RenderPipeline>,
+    ground: Option<Ground>,
     /// True where this frame has one.
     shows_ground: bool,
     targets: Targets,
@@ -150,6 +151,9 @@ impl Renderer {
             if has_rest {
                 self.add_rest_positions();
             }
+            if let Some(ground) = &mut self.ground {
+                ground.resize(&self.device, size);
+            }
             self.tone_map.bind(&self.device, &self.targets);
             self.forget_motion();
         }
@@ -177,7 +181,8 @@ impl Renderer {
 
     /// Lets the scene cast its shadow on an invisible ground at its lowest point from now on.
     pub fn add_ground(&mut self) {
-        self.ground.get_or_insert_with(|| ground::pipeline(&self.device, &self.layouts));
+        let size = (self.targets.width, self.targets.height);
+        self.ground.get_or_insert_with(|| Ground::new(&self.device, &self.layouts, size));
     }
 
     /// Makes the next frame the first of a sequence: its motion vectors are 0.
@@ -213,6 +218,9 @@ impl Renderer {
         let eye = frame.eye.truncate();
         self.visible.update(scene, &self.primitives, pose, eye, frame.view_projection);
         self.shadow_passes(encoder, scene);
+        if let Some(ground) = self.shown_ground() {
+            ground.shadow_pass(encoder, &self.buffers.bind_group, &self.shadow_maps.group);
+        }
         self.surface_pass(encoder, scene);
         let targets = &self.targets;
         let geometry = [&targets.normal, &targets.depth, &targets.object_id, &targets.motion];
@@ -338,10 +346,8 @@ impl Renderer {
             self.draw(&mut pass, scene, index, Pass::Surface);
         }
         self.backdrop.draw(&mut pass, &self.pipelines.background);
-        if let Some(ground) = self.ground.as_ref().filter(|_| self.shows_ground) {
-            pass.set_pipeline(ground);
-            pass.set_bind_group(1, &self.shadow_maps.group, &[]);
-            pass.draw(0..4, 0..1);
+        if let Some(ground) = self.shown_ground() {
+            ground.draw(&mut pass, Pass::Surface);
         }
         for &(_, index) in &self.visible.blended {
             self.draw(&mut pass, scene, index, Pass::Surface);
@@ -370,6 +376,14 @@ impl Renderer {
         for &(_, index) in self.visible.solid.iter().chain(&self.visible.blended) {
             self.draw(&mut pass, scene, index, kind);
         }
+        if let Some(ground) = self.shown_ground() {
+            ground.draw(&mut pass, kind);
+        }
+    }
+
+    /// The ground, where this frame has one.
+    fn shown_ground(&self) -> Option<&Ground> {
+        self.ground.as_ref().filter(|_| self.shows_ground)
     }
 }
 

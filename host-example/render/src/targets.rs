@@ -72,10 +72,11 @@ pub struct Targets {
     pub depth: Target,
     /// Number of the draw, from 1, exact as a float; 0 on the background.
     pub object_id: Target,
-    /// Pixels from where the surface is to where it was one frame ago, x right and y down; 0 on the background.
+    /// Pixels from where the surface is to where it was one frame ago, x right and y down; 0 on the background but where a
+    /// shadow falls on the ground.
     pub motion: Target,
-    /// Position in the scene before anything moves in x, y, z, where w is 1; all 0 on the background. Missing
-    /// until [`crate::renderer::Renderer::add_rest_positions`] asks for it.
+    /// Position in the scene before anything moves in x, y, z, where w is 1; all 0 on the background but where a shadow
+    /// falls on the ground. Missing until [`crate::renderer::Renderer::add_rest_positions`] asks for it.
     pub rest: Option<Target>,
     pub(super) multisampled: Target,
     pub(super) multisampled_depth: Target,

@@ -146,7 +146,9 @@ fn drawn<S: Simd>(simd: S, pass: &CpuPass<'_>, params: &Params, block: &Block, d
     let rest = one - (one - d) / (one - followed).at_least(least);
     let first = rest - (rest - 0.45).at_least(0.0) * 0.5;
     let second = one - (one - rest) / (one - first).at_least(least);
+    let mut means = [first, second];
     let hatches = if params.given_gain > 0.0 {
+        means = [stroke_mean(first, params), stroke_mean(second, params)];
         let [a, ..]: [f32x8<S>; 4] = block.read(simd, &pass.inputs[3]);
         let [b, ..]: [f32x8<S>; 4] = block.read(simd, &pass.inputs[4]);
         [(a, first), (b, second)].map(|(v, d)| stroke((v - 0.5) * params.given_gain, d, params))
@@ -157,7 +159,13 @@ fn drawn<S: Simd>(simd: S, pass: &CpuPass<'_>, params: &Params, block: &Block, d
             hatch(simd, q, HATCHING[1], (second, 701), params),
         ]
     };
-    one - (one - stroke(z, followed, params)) * (one - hatches[0]) * (one - hatches[1])
+    let mut bare = (one - stroke(z, followed, params)) * (one - hatches[0]) * (one - hatches[1]);
+    if params.rubbed > 0.0 {
+        // What strokes leave bare of light tones is rubbed in, or paper would glow where smooth tones end.
+        let left = (one - stroke_mean(followed, params)) * (one - means[0]) * (one - means[1]);
+        bare *= ((one - d) / left.at_least(least)).at_most(one);
+    }
+    one - bare
 }
 
 /// A ramp from 0 to 1.
@@ -208,6 +216,14 @@ fn stroke<S: Simd>(z: f32x8<S>, d: f32x8<S>, params: &Params) -> f32x8<S> {
     let h = (z * 0.8).within(-8.0, 8.0).tanh() * 0.5 + 0.5;
     let wide = d * (1.0 + params.softness) - 0.5 * params.softness;
     ((wide - h) / params.softness + 0.5).within(0.0, 1.0)
+}
+
+/// The mean of strokes that are asked for a density: where they are thinner than their soft edges they cover less.
+#[inline(always)]
+fn stroke_mean<S: Simd>(d: f32x8<S>, params: &Params) -> f32x8<S> {
+    let wide = d * (1.0 + params.softness);
+    let thin = wide * wide * (0.5 / params.softness);
+    wide.simd_lt(params.softness).select(thin, wide - 0.5 * params.softness)
 }
 
 /// By how much fewer grains a stroke averages beside the picture's border, where its line is cut: 1 over the root of the
@@ -279,6 +295,26 @@ mod tests {
         for d in [0.0, 0.05, 0.2, 0.5, 0.7, 0.95, 1.0] {
             let found = mean(d);
             assert!((found - d).abs() < 0.025, "{d}: {found}");
+        }
+    }
+
+    #[test]
+    fn the_mean_of_strokes_is_known() {
+        for d in [0.0, 0.05, 0.1, 0.2, 0.35, 0.5] {
+            let (mut sum, mut weights, mut known) = (0.0, 0.0, 0.0);
+            for step in -400..=400 {
+                let z = step as f32 * 0.01;
+                let weight = (-0.5 * z * z).exp();
+                dispatch!(Level::new(), simd => {
+                    let [z, d] = [z, d].map(|v| f32x8::splat(simd, v));
+                    sum += weight * <[f32; 8]>::from(stroke(z, d, &PARAMS))[0];
+                    known = <[f32; 8]>::from(stroke_mean(d, &PARAMS))[0];
+                });
+                weights += weight;
+            }
+            let found = sum / weights;
+            assert!((found - known).abs() < 0.02, "{d}: {found} instead of {known}");
+            assert!(known <= d, "{d}: {known}");
         }
     }
 }
