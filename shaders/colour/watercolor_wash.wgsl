@@ -79,7 +79,7 @@ fn of_pixel(id: vec3u, v: vec4f, blurred: vec4f, wide: vec4f, given_clouds: vec4
     let gathered = params.edges * (clamp(excess, 0.0, 0.1) + 0.05 * clamp(-excess, 0.0, 0.12)) * (1.0 - 0.8 * wet);
     let rim = 20.0 * (cloud - 0.66);
     let outside_rim = max(-rim, 0.0);
-    let pushed = 0.7 * max(1.0 - 0.5 * outside_rim * outside_rim, 0.0);
+    let pushed = 0.5 * max(1.0 - 0.5 * outside_rim * outside_rim, 0.0);
     let water = rise(rim, -0.2, 1.4);
     let backrun = params.backruns * calm * (pushed * (1.0 - water) - water * (1.0 - 0.8 * rise(rim, 0.5, 0.28)));
     let uneven = params.clouds * (2.0 * cloud - 1.0) + params.grain * (2.0 * grain - 1.0);

@@ -154,7 +154,7 @@ fn painted<S: Simd>(
     let gathered = gathered * params.edges * (wet * -0.8 + 1.0);
     let rim = (cloud - 0.66) * 20.0;
     let outside = (-rim).at_least(0.0);
-    let pushed = (outside * outside * -0.5 + 1.0).at_least(0.0) * 0.7;
+    let pushed = (outside * outside * -0.5 + 1.0).at_least(0.0) * 0.5;
     let water = rise(rim, -0.2, 1.4);
     let thinned = water * (rise(rim, 0.5, 0.28) * -0.8 + 1.0);
     let backrun = calm * params.backruns * (pushed * (one - water) - thinned);

@@ -39,7 +39,7 @@ pub static NODE: NodeSpec = NodeSpec {
         Param::length("wash_size", "Wash size", 1.5, [0.0, 30.0])
             .slider(0.0, 12.0)
             .group(LOOK)
-            .hint("Size of the smallest patches of colour that are painted.").doc("Radius of these patches."),
+            .hint("Size of the smallest patches of colour that are painted.").doc("Their radius is 1.5 times this at a mark size of 1."),
         abstraction::DETAIL,
         Param::float("pigment", "Pigment", 0.95, [0.0, 1.0])
             .slider(0.3, 1.0)
@@ -48,7 +48,7 @@ pub static NODE: NodeSpec = NodeSpec {
         Param::float("edge_darkening", "Edge darkening", 0.5, [0.0, 1.0])
             .group(LOOK)
             .hint("How much paint gathers at the borders of dark areas."),
-        Param::float("white_paper", "White paper", 0.5, [0.0, 1.0])
+        Param::float("white_paper", "White paper", 0.6, [0.0, 1.0])
             .group(LOOK)
             .hint("How much of the light is paper without paint."),
         Param::float("bleeding", "Bleeding", 0.8, [0.0, 1.0])
@@ -117,16 +117,20 @@ pub static NODE: NodeSpec = NodeSpec {
 const MOST_EDGES: f32 = 20.0;
 const MOST_CLOUDS: f32 = 1.2;
 const MOST_GRAIN: f32 = 0.72;
-const MOST_BACKRUNS: f32 = 0.64;
+const MOST_BACKRUNS: f32 = 0.56;
 
 /// Share of the paper that the darkest paint covers: transparent paint is never black.
 const DARKEST: f32 = 0.87;
 
 /// Darkness that paper keeps to itself at the most.
-const WHITEST: f32 = 0.5;
+const WHITEST: f32 = 0.8;
 
 /// Strength of colours, which the paper that shines through makes paler.
 const VIVID: f32 = 1.2;
+
+/// Factors on `sigma_r` and on the radius of the smallest washes: a brush for washes is broader than one for lines.
+const TOLERANCE: f32 = 2.0;
+const BROAD: f32 = 1.5;
 
 /// Differences that a wash passes over, and those that a finer brush paints, at the default detail.
 const PAINTED: [f32; 2] = [0.05, 0.16];
@@ -171,7 +175,7 @@ fn build(scope: &mut Scope<'_>) -> ImageId {
 /// Washes in a few tones, without what is small and faint.
 fn patches(scope: &mut Scope<'_>) -> ImageId {
     let options = TensorOptions::at_scale(scope.scale());
-    let [mut flat, tensors] = abstraction::steady_regions(scope, &options);
+    let [mut flat, tensors] = abstraction::steady_washes(scope, &options, TOLERANCE);
     flat = tone::curve(scope, flat);
     let glazes = scope.int("glazes");
     if glazes > 0 {
@@ -182,7 +186,7 @@ fn patches(scope: &mut Scope<'_>) -> ImageId {
     let rgb = lab_to_rgb::pass(scope.plan, flat, saturation);
 
     // Closing first: watercolours are light (5.1).
-    let radius = scope.float("wash_size") * scope.float("mark_size");
+    let radius = scope.float("wash_size") * scope.float("mark_size") * BROAD;
     let closed = morphology::close(scope.plan, rgb, radius);
     let simple = morphology::open(scope.plan, closed, radius);
     let [_, factor] = abstraction::detail_factors(scope.float("detail"));
