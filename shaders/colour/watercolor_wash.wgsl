@@ -23,8 +23,8 @@ struct Params {
     origin: vec2f,
     /// Nonzero: clouds are those of the fourth image.
     given: u32,
-    /// 1 / darkness from which on paint covers the paper in full.
-    inverse_white: f32,
+    /// Square of the darkness of which paint covers half, against the light that is left.
+    white: f32,
     /// Share of the colours around that wet places take.
     bleeding: f32,
     /// Share of the paint that is missing beside dark shapes.
@@ -71,9 +71,11 @@ fn of_pixel(id: vec3u, v: vec4f, blurred: vec4f, wide: vec4f, given_clouds: vec4
     let excess = luma(blurred.rgb) - tone;
     let darkness = 1.0 - luma(color);
     let gap = params.gaps * (1.0 - rise(cloud, 0.42, 6.0)) * rise(-excess, 0.035, 18.0) * rise(grain, 0.25, 4.0);
-    let peak = params.dry * rise(grain + 0.6 * (0.36 - cloud), 0.74, 10.0);
+    let peak = params.dry * rise(grain + 0.6 * (0.36 - cloud), 0.7, 10.0);
     let bare = peak * calm * rise(darkness, 0.03, 14.0) * (1.0 - rise(darkness, 0.35, 3.3));
-    let covered = rise(darkness, 0.0, params.inverse_white) * (1.0 - gap) * (1.0 - bare);
+    let dark = darkness * darkness;
+    let light = params.white * (1.0 - darkness) * (1.0 - darkness);
+    let covered = dark / max(dark + light, 1e-6) * (1.0 - gap) * (1.0 - bare);
 
     // Density above that of the plain colour; thin paint cannot lose more than it has.
     let gathered = params.edges * (clamp(excess, 0.0, 0.1) + 0.05 * clamp(-excess, 0.0, 0.12)) * (1.0 - 0.8 * wet);
@@ -83,7 +85,7 @@ fn of_pixel(id: vec3u, v: vec4f, blurred: vec4f, wide: vec4f, given_clouds: vec4
     let water = rise(rim, -0.2, 1.4);
     let backrun = params.backruns * calm * (pushed * (1.0 - water) - water * (1.0 - 0.8 * rise(rim, 0.5, 0.28)));
     let uneven = params.clouds * (2.0 * cloud - 1.0) + params.grain * (2.0 * grain - 1.0);
-    let density = max(0.4 + gathered + backrun + uneven, -0.7);
+    let density = max(0.6 + gathered + backrun + uneven, -0.7);
 
     // What is brighter than paper stays.
     let absorbed = 1.0 - color;

@@ -42,7 +42,7 @@ pub struct Wash {
     pub grain_size: f32,
     /// Position of the picture in the canonical one, pixels.
     pub origin: [f32; 2],
-    /// Darkness below which paper shines through more than colours say.
+    /// Paper in the lights: square of the darkness of which paint covers half, against the light that is left.
     pub white: f32,
     /// Share of the colours around that wet places take.
     pub bleeding: f32,
@@ -79,7 +79,7 @@ pub fn pass(plan: &mut PlanBuilder, drawn: &Drawn, clouds: Option<ImageId>, wash
         grain_frequency: 1.0 / wash.grain_size.max(0.5),
         origin: wash.origin,
         given: clouds.is_some().into(),
-        inverse_white: 1.0 / wash.white.max(1e-3),
+        white: wash.white,
         bleeding: wash.bleeding,
         gaps: wash.gaps,
         dry: wash.dry,
@@ -145,9 +145,11 @@ fn painted<S: Simd>(
     let darkness = one - luma(&color);
     let dryness = one - rise(cloud, 0.42, 6.0);
     let gap = dryness * params.gaps * rise(-excess, 0.035, 18.0) * rise(grain, 0.25, 4.0);
-    let peak = rise(grain + (cloud * -1.0 + 0.36) * 0.6, 0.74, 10.0) * params.dry;
+    let peak = rise(grain + (cloud * -1.0 + 0.36) * 0.6, 0.7, 10.0) * params.dry;
     let bare = peak * calm * rise(darkness, 0.03, 14.0) * (one - rise(darkness, 0.35, 3.3));
-    let covered = rise(darkness, 0.0, params.inverse_white) * (one - gap) * (one - bare);
+    let (dark, left) = (darkness * darkness, one - darkness);
+    let light = left * left * params.white;
+    let covered = dark / (dark + light).at_least(1e-6) * (one - gap) * (one - bare);
 
     // Density above that of the plain colour; thin paint cannot lose more than it has.
     let gathered = excess.within(0.0, 0.1) + (-excess).within(0.0, 0.12) * 0.05;
@@ -159,7 +161,7 @@ fn painted<S: Simd>(
     let thinned = water * (rise(rim, 0.5, 0.28) * -0.8 + 1.0);
     let backrun = calm * params.backruns * (pushed * (one - water) - thinned);
     let uneven = (cloud * 2.0 - 1.0) * params.clouds + (grain * 2.0 - 1.0) * params.grain;
-    let density = (gathered + backrun + uneven + 0.4).at_least(-0.7);
+    let density = (gathered + backrun + uneven + 0.6).at_least(-0.7);
 
     // What is brighter than paper stays.
     let through = |c: f32x8<S>| {

@@ -115,25 +115,25 @@ pub static NODE: NodeSpec = NodeSpec {
 
 /// Densities and shares of the look controls at 1.
 const MOST_EDGES: f32 = 20.0;
-const MOST_CLOUDS: f32 = 1.2;
-const MOST_GRAIN: f32 = 0.72;
+const MOST_CLOUDS: f32 = 1.4;
+const MOST_GRAIN: f32 = 0.8;
 const MOST_BACKRUNS: f32 = 0.56;
 
 /// Share of the paper that the darkest paint covers: transparent paint is never black.
-const DARKEST: f32 = 0.87;
+const DARKEST: f32 = 0.85;
 
-/// Darkness that paper keeps to itself at the most.
-const WHITEST: f32 = 0.8;
+/// Square of the darkness of which the paper keeps half at the most, against the light that is left.
+const WHITEST: f32 = 0.18;
 
 /// Strength of colours, which the paper that shines through makes paler.
 const VIVID: f32 = 1.2;
 
 /// Factors on `sigma_r` and on the radius of the smallest washes: a brush for washes is broader than one for lines.
-const TOLERANCE: f32 = 2.0;
+const TOLERANCE: f32 = 2.4;
 const BROAD: f32 = 1.5;
 
 /// Differences that a wash passes over, and those that a finer brush paints, at the default detail.
-const PAINTED: [f32; 2] = [0.05, 0.16];
+const PAINTED: [f32; 2] = [0.06, 0.19];
 
 /// Steepness of the borders of glazes against their height, and the gradient, in L per pixel of the full-size picture,
 /// that borders follow.
