@@ -85,7 +85,7 @@ fn of_pixel(id: vec3u, v: vec4f, blurred: vec4f, wide: vec4f, given_clouds: vec4
     let water = rise(rim, -0.2, 1.4);
     let backrun = params.backruns * calm * (pushed * (1.0 - water) - water * (1.0 - 0.8 * rise(rim, 0.5, 0.28)));
     let uneven = params.clouds * (2.0 * cloud - 1.0) + params.grain * (2.0 * grain - 1.0);
-    let density = max(0.6 + gathered + backrun + uneven, -0.7);
+    let density = max(0.55 + gathered + backrun + uneven, -0.7);
 
     // What is brighter than paper stays.
     let absorbed = 1.0 - color;

@@ -545,7 +545,7 @@ def watercolor(
     motion_forward: Any = None,
     depth: Any = None,
     object_id: Any = None,
-    mark_size: float = 2.0,
+    mark_size: float = 2.5,
     wash_size: float = 1.5,
     detail: float = 0.5,
     pigment: float = 0.95,

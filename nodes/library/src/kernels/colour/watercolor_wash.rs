@@ -161,7 +161,7 @@ fn painted<S: Simd>(
     let thinned = water * (rise(rim, 0.5, 0.28) * -0.8 + 1.0);
     let backrun = calm * params.backruns * (pushed * (one - water) - thinned);
     let uneven = (cloud * 2.0 - 1.0) * params.clouds + (grain * 2.0 - 1.0) * params.grain;
-    let density = (gathered + backrun + uneven + 0.6).at_least(-0.7);
+    let density = (gathered + backrun + uneven + 0.55).at_least(-0.7);
 
     // What is brighter than paper stays.
     let through = |c: f32x8<S>| {

@@ -31,7 +31,7 @@ pub static NODE: NodeSpec = NodeSpec {
     inputs: &[ports::COLOR, ports::REST_POSITION],
     output: ports::color_output("The watercolour."),
     own_params: &[
-        Param::float("mark_size", "Mark size", 2.0, [0.1, 10.0])
+        Param::float("mark_size", "Mark size", 2.5, [0.1, 10.0])
             .slider(0.5, 5.0)
             .group(LOOK)
             .hint("Size of all that paint and paper leave: washes, borders, bleeding, waves and grain.")
@@ -114,16 +114,16 @@ pub static NODE: NodeSpec = NodeSpec {
 };
 
 /// Densities and shares of the look controls at 1.
-const MOST_EDGES: f32 = 20.0;
+const MOST_EDGES: f32 = 22.0;
 const MOST_CLOUDS: f32 = 1.4;
-const MOST_GRAIN: f32 = 0.8;
+const MOST_GRAIN: f32 = 0.85;
 const MOST_BACKRUNS: f32 = 0.56;
 
 /// Share of the paper that the darkest paint covers: transparent paint is never black.
-const DARKEST: f32 = 0.85;
+const DARKEST: f32 = 0.855;
 
 /// Square of the darkness of which the paper keeps half at the most, against the light that is left.
-const WHITEST: f32 = 0.18;
+const WHITEST: f32 = 0.15;
 
 /// Strength of colours, which the paper that shines through makes paler.
 const VIVID: f32 = 1.2;
