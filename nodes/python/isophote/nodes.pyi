@@ -567,7 +567,7 @@ def watercolor(
     sigma_r: float = 4.25,
     sigma_a: float = 2.0,
     edge_width: float = 2.0,
-    bleeding_width: float = 5.0,
+    bleeding_width: float = 2.2,
     glazes: int = 6,
     wavelength: float = 24.0,
     grain_size: float = 2.5,
@@ -605,7 +605,7 @@ def watercolor(
         mark_size: Size of all that paint and paper leave: washes, borders, bleeding, waves and
             grain. Factor on `wash_size`, `edge_width`, `bleeding_width`, `wavelength` and
             `grain_size`. 0.1 to 10.
-        wash_size: Size of the smallest patches of colour that are painted. Their radius is 1.5
+        wash_size: Size of the smallest patches of colour that are painted. Their radius is 1.1
             times this at a mark size of 1. 0 to 30 px.
         detail: How much of the picture's detail stays: low values give flat areas, high ones keep
             small things. Scales `sigma_r` from 3 to 1/3 times and `sigma_d` from 2 to 1/2. 0 to 1.

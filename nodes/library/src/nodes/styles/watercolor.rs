@@ -39,7 +39,7 @@ pub static NODE: NodeSpec = NodeSpec {
         Param::length("wash_size", "Wash size", 1.5, [0.0, 30.0])
             .slider(0.0, 12.0)
             .group(LOOK)
-            .hint("Size of the smallest patches of colour that are painted.").doc("Their radius is 1.5 times this at a mark size of 1."),
+            .hint("Size of the smallest patches of colour that are painted.").doc("Their radius is 1.1 times this at a mark size of 1."),
         abstraction::DETAIL,
         Param::float("pigment", "Pigment", 0.95, [0.0, 1.0])
             .slider(0.3, 1.0)
@@ -88,7 +88,7 @@ pub static NODE: NodeSpec = NodeSpec {
             .slider(0.0, 10.0)
             .group(ADVANCED)
             .hint("Width of the dark borders.").doc("Standard deviation of a Gaussian."),
-        Param::length("bleeding_width", "Bleeding width", 5.0, [0.0, 50.0])
+        Param::length("bleeding_width", "Bleeding width", 2.2, [0.0, 50.0])
             .slider(0.0, 20.0)
             .group(ADVANCED)
             .hint("How far colours run where the paper is wet.").doc("Standard deviation of a Gaussian."),
@@ -130,7 +130,7 @@ const VIVID: f32 = 1.2;
 
 /// Factors on `sigma_r` and on the radius of the smallest washes: a brush for washes is broader than one for lines.
 const TOLERANCE: f32 = 2.4;
-const BROAD: f32 = 1.5;
+const BROAD: f32 = 1.1;
 
 /// Differences that a wash passes over, and those that a finer brush paints, at the default detail.
 const PAINTED: [f32; 2] = [0.06, 0.19];
