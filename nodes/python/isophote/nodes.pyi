@@ -573,10 +573,16 @@ def watercolor(
     motion_forward: Any = None,
     depth: Any = None,
     object_id: Any = None,
+    mark_size: float = 2.5,
     wash_size: float = 1.5,
     detail: float = 0.5,
     pigment: float = 0.95,
     edge_darkening: float = 0.5,
+    white_paper: float = 0.6,
+    bleeding: float = 0.8,
+    gaps: float = 0.8,
+    dry_brush: float = 0.3,
+    backruns: float = 0.5,
     clouds: float = 0.5,
     granulation: float = 0.5,
     wobble: float = 2.0,
@@ -589,6 +595,8 @@ def watercolor(
     sigma_r: float = 4.25,
     sigma_a: float = 2.0,
     edge_width: float = 2.0,
+    bleeding_width: float = 2.2,
+    glazes: int = 6,
     wavelength: float = 24.0,
     grain_size: float = 2.5,
     steadiness: float = 0.0,
@@ -599,10 +607,13 @@ def watercolor(
     frame: int = 0,
     **picture: Unpack[Picture],
 ) -> Array:
-    """Watercolour. Washes of thin paint with wavering outlines, pigment at their borders and the grain
-    of the paper. Washes of thin paint: the bilateral filter along the local structure and a closing
-    followed by an opening simplify the picture, outlines waver, pigment gathers at the borders, in
-    clouds and in the grain of the paper. (thesis § 1.2, 5.1)
+    """Watercolour. Transparent washes on white paper, with wavering outlines, pigment at their
+    borders, and bare or wet places. Transparent washes on white paper: the bilateral filter along
+    the local structure, a few glazes and a closing followed by an opening simplify the picture, and
+    what is small but plain to see is painted over it; outlines waver. Pigment gathers at borders,
+    in clouds, in the grain of the paper and at the rims of backruns (Bousseau et al. 2006); wet
+    places bleed, and dry ones leave gaps and bare grain (Montesdeoca et al. 2017). The darkest wash
+    keeps some paper, and the lights are paper. (thesis § 1.2, 5.1)
 
     Inputs:
         image: The picture.
@@ -619,13 +630,21 @@ def watercolor(
         object_id: Object numbers: neighbouring frames count where they agree.
 
     Parameters:
-        wash_size: Size of the smallest patches of colour that are painted. Radius of these patches.
-            0 to 30 px.
+        mark_size: Size of all that paint and paper leave: washes, borders, bleeding, waves and
+            grain. Factor on `wash_size`, `edge_width`, `bleeding_width`, `wavelength` and
+            `grain_size`. 0.1 to 10.
+        wash_size: Size of the smallest patches of colour that are painted. Their radius is 1.1
+            times this at a mark size of 1. 0 to 30 px.
         detail: How much of the picture's detail stays: low values give flat areas, high ones keep
             small things. Scales `sigma_r` from 3 to 1/3 times and `sigma_d` from 2 to 1/2. 0 to 1.
-        pigment: How much paint is in the water: 1 keeps the colours, less lets the paper shine
-            through, 0 leaves it white. 0 to 1.
+        pigment: How much paint is in the water: 1 is the darkest that still shows some paper, 0
+            leaves it white. 0 to 1.
         edge_darkening: How much paint gathers at the borders of dark areas. 0 to 1.
+        white_paper: How much of the light is paper without paint. 0 to 1.
+        bleeding: How much colours run into each other where the paper is wet. 0 to 1.
+        gaps: How much paper is left bare beside dark shapes where the brush is dry. 0 to 1.
+        dry_brush: How much paint skips the grain of the paper where the brush is dry. 0 to 1.
+        backruns: How much water runs back into drying paint and pushes it to a rim. 0 to 1.
         clouds: How unevenly the water carries the paint. 0 to 1.
         granulation: How much paint settles in the grain of the paper. 0 to 1.
         wobble: How far outlines waver. Far ones waver in waves that are longer than `wavelength`,
@@ -648,6 +667,10 @@ def watercolor(
         sigma_a: How far patches are smoothed along their outlines. Standard deviation of the
             smoothing of the patches along their outlines. 0 to 20 px.
         edge_width: Width of the dark borders. Standard deviation of a Gaussian. 0 to 30 px.
+        bleeding_width: How far colours run where the paper is wet. Standard deviation of a
+            Gaussian. 0 to 50 px.
+        glazes: Number of washes from white to the darkest, laid over each other; 0 lets tones run
+            on. Bins of L; they step where the picture changes. 0 to 64.
         wavelength: Length of the waves in the outlines, in pixels of the full-size picture. 2 to
             400.
         grain_size: Size of the grain of the paper, in pixels of the full-size picture. 0.5 to 40.

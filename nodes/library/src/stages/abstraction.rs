@@ -73,8 +73,13 @@ pub(crate) enum Abstraction {
 impl Abstraction {
     /// The values of `advanced`, scaled by `detail`.
     pub(crate) fn of(scope: &Scope<'_>) -> Self {
+        Self::tolerant(scope, 1.0)
+    }
+
+    /// The same with a `sigma_r` of `tolerance` times that.
+    fn tolerant(scope: &Scope<'_>, tolerance: f32) -> Self {
         let [d, r] = detail_factors(scope.float("detail"));
-        let (sigma_d, sigma_r) = (scope.float("sigma_d") * d, scope.float("sigma_r") * r);
+        let (sigma_d, sigma_r) = (scope.float("sigma_d") * d, scope.float("sigma_r") * r * tolerance);
         let isotropic = |kernel| {
             let options = Options { sigma_d, sigma_r, cutoff: bilateral::CUTOFF.default_float() };
             Self::Isotropic(bilateral::Passes { kernel, options })
@@ -123,7 +128,12 @@ impl Abstraction {
 
 /// The picture after `n_a` iterations, in CIELAB, and the tensors that they follow, both steady over time.
 pub(crate) fn steady_regions(scope: &mut Scope<'_>, options: &TensorOptions) -> [ImageId; 2] {
-    let abstraction = Abstraction::of(scope);
+    steady_washes(scope, options, 1.0)
+}
+
+/// The same where `sigma_r` is `tolerance` times what the parameters say.
+pub(crate) fn steady_washes(scope: &mut Scope<'_>, options: &TensorOptions, tolerance: f32) -> [ImageId; 2] {
+    let abstraction = Abstraction::tolerant(scope, tolerance);
     let n_a = scope.int(N_A.id);
     let by = Agreement::lab(COLOUR_AGREEMENT);
     let steadied = steadied(scope, by, |scope| {

@@ -54,8 +54,20 @@ const SURROUNDINGS: f32 = 5.0;
 
 /// The flattened Lab image, with steps where `least_gradient` says.
 pub(crate) fn flattened(scope: &mut Scope<'_>, lab: ImageId, bins: i32, phi_q: f32) -> ImageId {
-    let (steepness, scale) = (steepness(scope, phi_q), scope.scale());
+    let steepness = steepness(scope, phi_q);
     let least = scope.float("least_gradient");
+    stepped(scope, lab, bins, steepness, least)
+}
+
+/// The flattened Lab image, with steps where the surroundings change by `least` L per pixel of the full-size picture.
+pub(crate) fn stepped(
+    scope: &mut Scope<'_>,
+    lab: ImageId,
+    bins: i32,
+    steepness: Steepness,
+    least: f32,
+) -> ImageId {
+    let scale = scope.scale();
     let steps = (least > 0.0).then(|| {
         let gradient = tone_gradient::pass(scope.plan, lab, LONGEST / scale);
         // It lies one level up.
