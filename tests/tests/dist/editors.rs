@@ -11,10 +11,20 @@ use roxmltree::{Document, Node, ParsingOptions};
 use std::collections::{BTreeMap, BTreeSet};
 use std::sync::OnceLock;
 
-/// Controls of hosts that give one frame and one clip at a time, which panels leave at their defaults, and the choice of a look,
-/// which needs hosts that tell of edits.
-const LEFT_OUT: [&str; 7] =
-    ["look", "working_space", "process_alpha", "reference_height", "steadiness", "window", "renewal"];
+/// Controls that panels leave at their defaults: those that need more than one frame and one clip at a time, the choice of a
+/// look, which needs hosts that tell of edits, and of the graphics card, for which editors render too many frames at once.
+const LEFT_OUT: [&str; 10] = [
+    "look",
+    "working_space",
+    "process_alpha",
+    "reference_height",
+    "steadiness",
+    "window",
+    "renewal",
+    "compute_on",
+    "card",
+    "precision",
+];
 
 /// The effect that chooses among looks and files, for which editors make the list of its controls themselves.
 const WITHOUT_PANEL: &str = "org.isophote.look";
