@@ -10,6 +10,10 @@ struct Params {
 #input lab
 #output target_image rg32float
 
+// Colours of surfaces are no farther from grey; light beyond white would drown them.
+const MOST: f32 = 128.0;
+
 fn of_pixel(id: vec3u, lab: vec4f) -> vec4f {
-    return vec4f(select(lab.y, lab.z, params.axis == 1u) * lab.a, lab.a, 0.0, 0.0);
+    let v = clamp(select(lab.y, lab.z, params.axis == 1u), -MOST, MOST);
+    return vec4f(v * lab.a, lab.a, 0.0, 0.0);
 }

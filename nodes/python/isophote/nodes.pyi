@@ -632,7 +632,7 @@ def watercolor(
     Parameters:
         mark_size: Size of all that paint and paper leave: washes, borders, bleeding, waves and
             grain. Factor on `wash_size`, `edge_width`, `bleeding_width`, `wavelength` and
-            `grain_size`. 0.1 to 10.
+            `grain_size`; the first three reach no farther than 30 px. 0.1 to 10.
         wash_size: Size of the smallest patches of colour that are painted. Their radius is 1.1
             times this at a mark size of 1. 0 to 30 px.
         detail: How much of the picture's detail stays: low values give flat areas, high ones keep
@@ -668,7 +668,7 @@ def watercolor(
             smoothing of the patches along their outlines. 0 to 20 px.
         edge_width: Width of the dark borders. Standard deviation of a Gaussian. 0 to 30 px.
         bleeding_width: How far colours run where the paper is wet. Standard deviation of a
-            Gaussian. 0 to 50 px.
+            Gaussian, no less than `edge_width`. 0 to 50 px.
         glazes: Number of washes from white to the darkest, laid over each other; 0 lets tones run
             on. Bins of L; they step where the picture changes. 0 to 64.
         wavelength: Length of the waves in the outlines, in pixels of the full-size picture. 2 to

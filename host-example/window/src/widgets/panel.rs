@@ -59,8 +59,11 @@ fn chooser(ui: &mut Ui, session: &mut Session) {
         let name = RichText::new(format!("{}{mark}", look.name)).size(16.0);
         let width = ui.available_width() - 188.0;
         let mut chosen = None;
-        let response =
-            egui::ComboBox::from_id_salt("look").selected_text(name).width(width).show_ui(ui, |ui| {
+        let response = egui::ComboBox::from_id_salt("look")
+            .selected_text(name)
+            .width(width)
+            .truncate()
+            .show_ui(ui, |ui| {
                 for (index, look) in session.looks.list().iter().enumerate() {
                     let number = if index < 9 { format!("{}", index + 1) } else { String::new() };
                     let entry =

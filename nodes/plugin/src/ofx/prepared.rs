@@ -167,15 +167,15 @@ mod tests {
                     rows == 4320 || (vectors && bytes <= WORKING_MEMORY[1]),
                     "{rows} rows take {gib:.2} GiB"
                 );
-                assert!(bytes <= 10 << 30, "{gib:.2} GiB");
+                assert!(bytes <= 21 << 29, "{gib:.2} GiB");
             }
         }
     }
 
     #[test]
-    fn an_8k_frame_of_any_pixels_fits_into_4_gib() {
+    fn an_8k_frame_of_any_pixels_fits_into_4_gib_and_a_quarter() {
         let guides = Guides { normal: true, depth: true, ..Guides::default() };
-        for par in [0.5, 1.0667, 2.0, 20.0] {
+        for par in [0.5, 1.0, 1.0667, 2.0, 20.0] {
             let picture = [0, 0, 7680, 4320];
             let frame = Frame {
                 picture,
@@ -205,7 +205,8 @@ mod tests {
                     let read = read.map(|w| bytes(w) + 2 * bytes(prepared.host_window(w))).sum::<u64>();
                     let most = 2 * bytes(whole) + plan.peak_bytes(&windows).max(read);
                     let gib = most as f64 / (1_u64 << 30) as f64;
-                    assert!(most <= 4 << 30, "{:?} at {par}: {gib:.2} GiB", effect.identifier);
+                    println!("{:?} at {par}: {rows} rows, {gib:.2} GiB", effect.identifier);
+                    assert!(most <= 17 << 28, "{:?} at {par}: {gib:.2} GiB", effect.identifier);
                 }
             }
         }

@@ -3,7 +3,7 @@
 //! Cost: a multiplication per pixel.
 
 pub use crate::kernels::shaders::lab_channel::Params;
-use isophote_engine::fearless_simd::{Simd, f32x8};
+use isophote_engine::fearless_simd::{Simd, f32x8, prelude::*};
 use isophote_engine::{Class, ImageId, PlanBuilder, Support, Tolerance};
 
 crate::kernel!(lab_channel {
@@ -11,6 +11,9 @@ crate::kernel!(lab_channel {
     cost: |_| 1.0,
     tolerance: Tolerance::of_rounding(1e-7, 1e-6, "one rounding"),
 });
+
+/// Farthest from grey that counts: colours of surfaces are no farther, and light beyond white would drown them.
+const MOST: f32 = 128.0;
 
 /// The axis a (0) or b (1) of a Lab image.
 pub fn pass(plan: &mut PlanBuilder, lab: ImageId, axis: u32) -> ImageId {
@@ -20,5 +23,5 @@ pub fn pass(plan: &mut PlanBuilder, lab: ImageId, axis: u32) -> ImageId {
 #[inline(always)]
 fn channel<S: Simd>(params: &Params, [_, a, b, alpha]: [f32x8<S>; 4]) -> [f32x8<S>; 2] {
     let v = if params.axis == 1 { b } else { a };
-    [v * alpha, alpha]
+    [v.within(-MOST, MOST) * alpha, alpha]
 }

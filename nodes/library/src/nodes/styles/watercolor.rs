@@ -35,7 +35,7 @@ pub static NODE: NodeSpec = NodeSpec {
             .slider(0.5, 5.0)
             .group(LOOK)
             .hint("Size of all that paint and paper leave: washes, borders, bleeding, waves and grain.")
-            .doc("Factor on `wash_size`, `edge_width`, `bleeding_width`, `wavelength` and `grain_size`."),
+            .doc("Factor on `wash_size`, `edge_width`, `bleeding_width`, `wavelength` and `grain_size`; the first three reach no farther than 30 px."),
         Param::length("wash_size", "Wash size", 1.5, [0.0, 30.0])
             .slider(0.0, 12.0)
             .group(LOOK)
@@ -91,7 +91,7 @@ pub static NODE: NodeSpec = NodeSpec {
         Param::length("bleeding_width", "Bleeding width", 2.2, [0.0, 50.0])
             .slider(0.0, 20.0)
             .group(ADVANCED)
-            .hint("How far colours run where the paper is wet.").doc("Standard deviation of a Gaussian."),
+            .hint("How far colours run where the paper is wet.").doc("Standard deviation of a Gaussian, no less than `edge_width`."),
         Param::int("glazes", "Glazes", 6, [0, 64])
             .slider(0.0, 12.0)
             .structural()
@@ -140,6 +140,9 @@ const PAINTED: [f32; 2] = [0.06, 0.19];
 const CRISP: f32 = 0.067;
 const LEAST_GRADIENT: f32 = 0.3;
 
+/// Longest lengths of filters, pixels of the full-size picture.
+const FARTHEST: f32 = 30.0;
+
 /// Shortest waves against how far they reach: below 5 outlines could fold.
 const SHORTEST_WAVE: f32 = 8.0;
 
@@ -151,9 +154,12 @@ fn build(scope: &mut Scope<'_>) -> ImageId {
     let color = wobble::pass(scope.plan, patches, &Wobble { amount, wavelength, scale, origin });
 
     let mark_size = scope.float("mark_size");
-    let mut smoothed =
-        |width: &str| gaussian_blur::pass_colour(scope.plan, color, scope.float(width) * mark_size);
-    let drawn = Drawn { color, blurred: smoothed("edge_width"), wide: smoothed("bleeding_width") };
+    let [edge, bleeding] = ["edge_width", "bleeding_width"].map(|width| within_reach(scope, width));
+    let blurred = gaussian_blur::pass_colour(scope.plan, color, edge);
+    // Of two Gaussians, one after the other, the squares of the widths add up.
+    let further = (bleeding * bleeding - edge * edge).max(0.0).sqrt();
+    let wide = gaussian_blur::pass_colour(scope.plan, blurred, further);
+    let drawn = Drawn { color, blurred, wide };
     let wash = Wash {
         scale,
         pigment: scope.float("pigment") * DARKEST,
@@ -172,6 +178,11 @@ fn build(scope: &mut Scope<'_>) -> ImageId {
     watercolor_wash::pass(scope.plan, &drawn, clouds, &wash)
 }
 
+/// A length times the size of marks, as far as filters reach whose work grows with it.
+fn within_reach(scope: &Scope<'_>, length: &str) -> f32 {
+    (scope.float(length) * scope.float("mark_size")).min(FARTHEST * scope.scale())
+}
+
 /// Washes in a few tones, without what is small and faint.
 fn patches(scope: &mut Scope<'_>) -> ImageId {
     let options = TensorOptions::at_scale(scope.scale());
@@ -186,7 +197,7 @@ fn patches(scope: &mut Scope<'_>) -> ImageId {
     let rgb = lab_to_rgb::pass(scope.plan, flat, saturation);
 
     // Closing first: watercolours are light (5.1).
-    let radius = scope.float("wash_size") * scope.float("mark_size") * BROAD;
+    let radius = within_reach(scope, "wash_size") * BROAD;
     let closed = morphology::close(scope.plan, rgb, radius);
     let simple = morphology::open(scope.plan, closed, radius);
     let [_, factor] = abstraction::detail_factors(scope.float("detail"));
