@@ -109,6 +109,7 @@ fn a_small_preview_is_the_whole_picture_made_small() {
         eprintln!(
             "{name}: {fine:.2} levels from the whole picture made small, {coarse:.2} if it were no finer, {plain:.2} without the look"
         );
+        // Surroundings that decide about lines are of fewer pixels in a preview, so that a few lines are others.
         assert!(
             fine < MOST_DIFFERENT && fine < plain && fine < coarse * 0.6,
             "{name}: {fine} {coarse} {plain}"
