@@ -668,7 +668,7 @@ def watercolor(
             smoothing of the patches along their outlines. 0 to 20 px.
         edge_width: Width of the dark borders. Standard deviation of a Gaussian. 0 to 30 px.
         bleeding_width: How far colours run where the paper is wet. Standard deviation of a
-            Gaussian, no less than `edge_width`. 0 to 50 px.
+            Gaussian, no less than `edge_width`. 0 to 30 px.
         glazes: Number of washes from white to the darkest, laid over each other; 0 lets tones run
             on. Bins of L; they step where the picture changes. 0 to 64.
         wavelength: Length of the waves in the outlines, in pixels of the full-size picture. 2 to

@@ -88,8 +88,8 @@ pub static NODE: NodeSpec = NodeSpec {
             .slider(0.0, 10.0)
             .group(ADVANCED)
             .hint("Width of the dark borders.").doc("Standard deviation of a Gaussian."),
-        Param::length("bleeding_width", "Bleeding width", 2.2, [0.0, 50.0])
-            .slider(0.0, 20.0)
+        Param::length("bleeding_width", "Bleeding width", 2.2, [0.0, 30.0])
+            .slider(0.0, 12.0)
             .group(ADVANCED)
             .hint("How far colours run where the paper is wet.").doc("Standard deviation of a Gaussian, no less than `edge_width`."),
         Param::int("glazes", "Glazes", 6, [0, 64])
