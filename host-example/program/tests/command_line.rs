@@ -117,11 +117,15 @@ fn a_folder_as_the_result_is_written_into() {
     save(&at.join("in"), &["c.png"]);
     applied(at, &["gaussian", "a.png", "new/"]);
     applied(at, &["gaussian", "a.png", "b.png", "in", "many/"]);
+    // Of a folder nothing else can be the result.
+    applied(at, &["gaussian", "in", "others"]);
+    fails(&mut run(at, &["apply", "gaussian", "in", "other.png"]), 2, &["in: is a folder"]);
     // In its own folder a picture would be its own result.
     applied(at, &["gaussian", "a.png", "."]);
     applied(at, &["gaussian", "in/c.png", "."]);
-    assert_eq!(listing(at), ["a.gaussian.png", "a.png", "b.png", "c.png", "in", "many", "new"]);
+    assert_eq!(listing(at), ["a.gaussian.png", "a.png", "b.png", "c.png", "in", "many", "new", "others"]);
     assert_eq!(listing(&at.join("new")), ["a.png"]);
+    assert_eq!(listing(&at.join("others")), ["c.png"]);
     assert_eq!(listing(&at.join("many")), ["a.png", "b.png", "c.png"]);
     fails(&mut run(at, &["apply", "gaussian", "a.png", "new"]), 2, &["new/a.png", "--force"]);
     fails(&mut run(at, &["apply", "gaussian", "in"]), 2, &["in: is a folder", "a folder for the results"]);

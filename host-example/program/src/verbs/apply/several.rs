@@ -44,9 +44,7 @@ impl ApplyArgs {
         let (inputs, output, folder) = match (self.to.as_deref(), rest) {
             (_, []) => return Err(no_picture()),
             (Some(to), inputs) => (inputs, None, Some(to)),
-            (None, [inputs @ .., folder]) if !inputs.is_empty() && is_folder(folder) => {
-                (inputs, None, Some(*folder))
-            }
+            (None, [inputs @ .., folder]) if takes_all(inputs, folder) => (inputs, None, Some(*folder)),
             (None, [_]) => (rest, None, None),
             (None, [inputs @ .., output]) if inputs.len() == 1 => (inputs, Some(*output), None),
             (None, _) => return Err(self.too_many()),
@@ -163,4 +161,11 @@ fn each(path: &Path) -> Result<Vec<PathBuf>> {
         Some(pattern) => Ok(pattern.on_disk()?.into_iter().map(|frame| pattern.file(frame)).collect()),
         None => Ok(vec![path.to_owned()]),
     }
+}
+
+/// True where the last name is a folder that gets the results: it is one, or it follows a folder and has no extension, since
+/// no result of a folder is a file.
+fn takes_all(inputs: &[&Path], last: &Path) -> bool {
+    let follows_folder = inputs.iter().any(|input| input.is_dir()) && last.extension().is_none();
+    !inputs.is_empty() && (is_folder(last) || follows_folder)
 }

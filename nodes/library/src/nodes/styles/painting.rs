@@ -36,12 +36,13 @@ pub static NODE: NodeSpec = NodeSpec {
         tone::DARKS,
         RADIUS.group(ADVANCED),
         // More of them than the node has by default.
-        LEVELS.with_default(Value::Int(3)).group(ADVANCED),
+        LEVELS.with_default(Value::Int(4)).group(ADVANCED),
         SECTORS.group(ADVANCED),
         Q.group(ADVANCED),
-        THRESHOLD.group(ADVANCED),
+        // Below the thesis', under which soft light on skin is one blur instead of patches of paint.
+        THRESHOLD.with_default(Value::Float(0.006)).group(ADVANCED),
         ALPHA.group(ADVANCED),
-        P_S.with_default(Value::Float(2.0)).group(ADVANCED),
+        P_S.with_default(Value::Float(0.7)).group(ADVANCED),
         P_D.group(ADVANCED),
         TAU_V.with_default(Value::Float(0.01)).group(ADVANCED),
         TAU_W.group(ADVANCED),
