@@ -18,13 +18,13 @@ fn recover(pixel: &mut [f32], source: &[f32]) {
 }
 
 /// The pixels of a row of `image` that lie in `band`.
-pub fn of_band(image: &Image, band: Rect, y: i32) -> &[f32] {
+fn of_band(image: &Image, band: Rect, y: i32) -> &[f32] {
     let first = (band.x0 - image.window().x0) as usize * 4;
     &image.row(y)[first..first + band.width() as usize * 4]
 }
 
 /// Gives a row of pixels the alpha of the source.
-pub fn take_alpha(row: &mut [f32], source: &[f32], premultiplied: bool) {
+fn take_alpha(row: &mut [f32], source: &[f32], premultiplied: bool) {
     for (pixel, source) in row.chunks_exact_mut(4).zip(source.chunks_exact(4)) {
         if premultiplied && pixel[3] != source[3] {
             recover(pixel, source);
@@ -34,12 +34,42 @@ pub fn take_alpha(row: &mut [f32], source: &[f32], premultiplied: bool) {
 }
 
 /// Blends the source into a row of pixels where the mask, which is 1 where there is none, times the mix is less than 1.
-pub fn blend(row: &mut [f32], source: &[f32], amounts: Option<&[f32]>, mix: f32) {
+fn blend(row: &mut [f32], source: &[f32], amounts: Option<&[f32]>, mix: f32) {
     for (at, (pixel, source)) in row.chunks_exact_mut(4).zip(source.chunks_exact(4)).enumerate() {
         let amount = amounts.map_or(1.0, |amounts| amounts[at]) * mix;
         for (v, s) in pixel.iter_mut().zip(source) {
             // Exact at both ends.
             *v = *v * amount + *s * (1.0 - amount);
+        }
+    }
+}
+
+/// The last that is done to the rows of a band's result.
+#[derive(Default)]
+pub struct Finish {
+    /// The band, which the source holds at least.
+    pub band: Rect,
+    /// The source; where there is none, rows stay as they are.
+    pub source: Option<Image>,
+    /// Whether colours are multiplied by alpha, where rows get the source's alpha.
+    pub alpha: Option<bool>,
+    /// How much of the result is shown, where not all of it is.
+    pub mix: Option<f32>,
+    /// The mask's amounts.
+    pub amounts: Option<Vec<f32>>,
+}
+
+impl Finish {
+    /// Changes row `y` of the result.
+    pub fn row(&self, y: i32, row: &mut [f32]) {
+        let Some(source) = &self.source else { return };
+        let source = of_band(source, self.band, y);
+        if let Some(premultiplied) = self.alpha {
+            take_alpha(row, source, premultiplied);
+        }
+        if let Some(mix) = self.mix {
+            let (at, width) = ((y - self.band.y0) as usize, self.band.width() as usize);
+            blend(row, source, self.amounts.as_ref().map(|all| &all[at * width..(at + 1) * width]), mix);
         }
     }
 }
