@@ -343,13 +343,11 @@ impl Checked {
 /// Leaves rows as they were computed.
 pub const AS_COMPUTED: &(dyn Fn(i32, &mut [f32]) + Sync) = &|_, _| ();
 
-/// Does `job` to the rows of an image on several threads, some at once: it is given the number of the first of them, their
-/// values, and how many values a row has.
-fn of_rows(
-    image: &mut Image,
-    threads: &dyn Threads,
-    job: &(dyn Fn(i32, &mut [f32], usize) -> Outcome<()> + Sync),
-) -> Outcome<()> {
+/// Work on some rows: the number of the first, their values, and how many values a row has.
+type RowsJob<'r> = dyn Fn(i32, &mut [f32], usize) -> Outcome<()> + Sync + 'r;
+
+/// Does `job` to the rows of an image on several threads, some at once.
+fn of_rows(image: &mut Image, threads: &dyn Threads, job: &RowsJob<'_>) -> Outcome<()> {
     let (window, stride) = (image.window(), image.stride());
     if window.is_empty() {
         return Ok(());
