@@ -12,8 +12,11 @@ fn recover(pixel: &mut [f32], source: &[f32]) {
     // Filters leave most pixels covered but for a rounding. No such colour is beyond coverage.
     if (now - 1.0).abs() < 1e-3 && pixel[..3].iter().all(|v| v.abs() < 1e9) {
         let share = kept / now;
-        // The zero makes a negative one positive, as the light of none does.
-        pixel[..3].iter_mut().for_each(|v| *v = *v * share + 0.0);
+        for v in &mut pixel[..3] {
+            // Zeros keep the signs that they have with light.
+            let light = 0.0_f32.copysign(*v);
+            *v = (*v - light) * share + light;
+        }
     } else {
         recover_light(pixel, source);
     }
