@@ -84,13 +84,18 @@ pub fn write(bundle: &Path, profile: &str) -> Result<()> {
     let list = contents.join("Info.plist");
     std::fs::write(&list, property_list()).context(|| format!("cannot write {}", list.display()))?;
     // The icons follow the catalogue of the library that was built.
-    let mut nodes = host(profile);
-    let output = nodes.args(["nodes", "--json"]).output().context(|| "cannot run `isophote nodes`".into())?;
-    if !output.status.success() {
-        return Err(Failure(format!("`isophote nodes`: {}", String::from_utf8_lossy(&output.stderr))));
-    }
     let catalogue = bundle.with_extension("json");
-    std::fs::write(&catalogue, output.stdout).context(|| format!("cannot write {}", catalogue.display()))?;
+    for (listed, file) in
+        [(&["nodes"][..], &catalogue), (&["preset", "list"], &bundle.with_extension("looks.json"))]
+    {
+        let name = format!("isophote {}", listed.join(" "));
+        let output = host(profile).args(listed).arg("--json").output();
+        let output = output.context(|| format!("cannot run `{name}`"))?;
+        if !output.status.success() {
+            return Err(Failure(format!("`{name}`: {}", String::from_utf8_lossy(&output.stderr))));
+        }
+        std::fs::write(file, output.stdout).context(|| format!("cannot write {}", file.display()))?;
+    }
     run_command(program(ICONS, profile).arg(&catalogue).arg(&resources))
 }
 

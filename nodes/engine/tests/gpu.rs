@@ -96,9 +96,9 @@ fn tiles_equal_the_whole() {
         let tiled = on_gpu(&mut executor, &plan, &source, region);
         let after = device.counts();
         assert!(after.submissions - before.submissions >= 4, "nothing was cut");
-        // All tiles run in the textures of one program; two of them are on their way at once.
+        // All tiles run in the textures of one program; two of them are on their way at once, each with a buffer for either way.
         assert_eq!(after.textures, before.textures);
-        assert!(after.buffers <= before.buffers + 1);
+        assert!(after.buffers <= before.buffers + 2);
         assert_eq!(tiled, whole);
         on_gpu(&mut executor, &plan, &source, region);
         assert_eq!((device.counts().textures, device.counts().buffers), (after.textures, after.buffers));

@@ -11,10 +11,9 @@ use roxmltree::{Document, Node, ParsingOptions};
 use std::collections::{BTreeMap, BTreeSet};
 use std::sync::OnceLock;
 
-/// Controls that panels leave at their defaults: those that need more than one frame and one clip at a time, the choice of a
-/// look, which needs hosts that tell of edits, and of the graphics card, for which editors render too many frames at once.
-const LEFT_OUT: [&str; 10] = [
-    "look",
+/// Controls that panels leave at their defaults: those that need more than one frame and one clip at a time, and those of
+/// the graphics card, for which editors render too many frames at once.
+const LEFT_OUT: [&str; 9] = [
     "working_space",
     "process_alpha",
     "reference_height",
@@ -26,8 +25,11 @@ const LEFT_OUT: [&str; 10] = [
     "precision",
 ];
 
-/// The effect that chooses among looks and files, for which editors make the list of its controls themselves.
-const WITHOUT_PANEL: &str = "org.isophote.look";
+/// The effect of all looks. In others the choice of a look needs hosts that tell of edits.
+const LOOKS: &str = "org.isophote.look";
+
+/// What panels of that effect lack: its file, for which editors have no control.
+const OF_FILES: [&str; 3] = ["file", "reload", "times_read"];
 
 /// A control of the plugin, as MLT takes it.
 #[derive(Debug, PartialEq)]
@@ -57,14 +59,21 @@ fn plugin() -> &'static BTreeMap<String, BTreeMap<String, Control>> {
             described.in_context(kOfxImageEffectContextFilter).each_param(|param| {
                 let name = param.name.to_string_lossy().into_owned();
                 let kind = param.kind.to_string_lossy().replace("OfxParamType", "");
-                if !matches!(kind.as_str(), "Group" | "Page") && !LEFT_OUT.contains(&name.as_str()) {
-                    controls.insert(name, control(&param.set, kind));
+                let left_out = LEFT_OUT.contains(&name.as_str())
+                    || match identifier.as_str() {
+                        LOOKS => OF_FILES.contains(&name.as_str()),
+                        _ => name == "look",
+                    };
+                if !matches!(kind.as_str(), "Group" | "Page") && !left_out {
+                    let mut control = control(&param.set, kind);
+                    control.options.retain(|option| option != "From file");
+                    controls.insert(name, control);
                 }
             });
             (format!("openfx.{}", identifier.replace(':', "^")), controls)
         };
         let ids = binary.plugins().iter().map(|plugin| plugin.identifier());
-        ids.filter(|id| id != WITHOUT_PANEL).map(effect).collect()
+        ids.map(effect).collect()
     })
 }
 

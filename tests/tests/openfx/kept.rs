@@ -2,6 +2,7 @@
 //! of its own.
 
 use isophote_abi::openfx::*;
+use isophote_loader::{AsImage, AsTarget, Control, Image, Input, Library, Sample, Target};
 use isophote_tests::library;
 use isophote_tests::ofx::effect::{Described, Instance, Wanted};
 use isophote_tests::ofx::host::Host;
@@ -222,6 +223,54 @@ fn least(mut render: impl FnMut()) -> (u64, f64) {
     all
 }
 
+/// Pixels of four floats, and the size of their picture.
+struct Floats(Vec<u8>, (u32, u32));
+
+impl AsImage for Floats {
+    fn image(&self) -> Image<'_> {
+        Image::new(&self.0, self.1, 4, Sample::F32).unwrap()
+    }
+}
+
+impl AsTarget for Floats {
+    fn target(&mut self) -> Target<'_> {
+        Target::new(&mut self.0, self.1, 4, Sample::F32).unwrap()
+    }
+}
+
+/// Prints what warm renders take of warm calls of `process`, which `isophote bench` times, and of their passes alone. Each is
+/// compared with the one right before it, so that other work on the machine slows both.
+fn against_process(id: &str, size: [i32; 2], render: impl Fn()) {
+    let library = Library::from_file(library::path()).unwrap();
+    let shape = (size[0] as u32, size[1] as u32);
+    let (mut graph, request) = (library.single(id).unwrap(), library.request(shape).unwrap());
+    let source = Floats(frame(size, 0).packed(), shape);
+    let mut result = Floats(vec![0; source.0.len()], shape);
+    let (mut calls, mut passes, mut times) = (Vec::new(), Vec::new(), Vec::new());
+    for run in 0..22 {
+        let mut measured = Vec::new();
+        let mut control = Control { measured: Some(&mut measured), ..Control::default() };
+        let inputs = [Input { name: "color", pixels: &source }];
+        let report = graph.process(None, &request, &inputs, &mut result, &mut control).unwrap();
+        let started = Instant::now();
+        render();
+        let time = started.elapsed().as_secs_f64();
+        if run > 0 {
+            calls.push(time / report.seconds);
+            passes.push(time / measured.iter().map(|pass| pass.seconds).sum::<f64>());
+            times.push(report.seconds * 1e3);
+        }
+    }
+    for of in [&mut calls, &mut passes, &mut times] {
+        of.sort_by(f64::total_cmp);
+    }
+    let middle = calls.len() / 2;
+    println!(
+        "{id}: a warm render takes {:.3} of a call of `process` (of {:.1} ms), {:.3} of its passes",
+        calls[middle], times[middle], passes[middle]
+    );
+}
+
 /// By hand: pages and times of frames of 1920 x 1080, cold and warm, and of neighbours in order.
 pub fn times_of_warm_renders() {
     let size = [1920, 1080];
@@ -242,6 +291,7 @@ pub fn times_of_warm_renders() {
         });
         let warm = least(render);
         println!("{id}: cold {} pages, {:.1} ms; warm {} pages, {:.1} ms", cold.0, cold.1, warm.0, warm.1);
+        against_process(id, size, render);
         if id == "gaussian" {
             continue;
         }

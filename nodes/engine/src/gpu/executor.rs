@@ -2,6 +2,7 @@
 
 use super::device::Device;
 use super::prepared::Prepared;
+use super::staging::Upload;
 use super::texture::Pool;
 use crate::error::{Error, Result};
 use crate::program::{Precision, Program};
@@ -16,8 +17,10 @@ pub struct Executor {
     pub(super) warm: Vec<Prepared>,
     /// Buffers to read results back, while no results are on their way in them.
     pub(super) readbacks: Vec<wgpu::Buffer>,
-    /// Pixels on their way to a texture.
-    pub(super) staged: Vec<u8>,
+    /// Buffers to upload images, while no images are on their way in them.
+    pub(super) uploads: Vec<Upload>,
+    /// Bytes of the largest upload of the run.
+    pub(super) largest: u64,
     pub(super) max_side: u32,
     pub(super) budget: u64,
     pub(super) work: f64,
@@ -43,7 +46,8 @@ impl Executor {
             pool: Arc::default(),
             warm: Vec::new(),
             readbacks: Vec::new(),
-            staged: Vec::new(),
+            uploads: Vec::new(),
+            largest: 0,
             max_side,
             budget: Self::DEFAULT_BUDGET,
             work,
@@ -97,6 +101,6 @@ impl Executor {
         self.warm.clear();
         self.readbacks.clear();
         self.pool.clear();
-        self.staged = Vec::new();
+        self.uploads.clear();
     }
 }

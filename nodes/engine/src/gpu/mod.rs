@@ -12,6 +12,7 @@ mod device;
 mod executor;
 mod pipeline;
 mod prepared;
+mod staging;
 mod texture;
 mod tiles;
 mod timing;

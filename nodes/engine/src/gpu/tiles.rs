@@ -4,14 +4,15 @@
 use super::device::count;
 use super::executor::Executor;
 use super::prepared::Prepared;
+use super::staging::{self, Staged, Upload};
 use super::timing::read_buffer;
-use super::transfer::{self, Part, extent, parts};
+use super::transfer::{Part, parts};
 use crate::cpu::{Control, bind_inputs};
 use crate::error::{Error, Result};
 use crate::image::{Image, Rect};
 use crate::kernel::WORKGROUP;
 use crate::plan::{Plan, Support};
-use crate::program::{Format, Program, Role, Texture};
+use crate::program::{Program, Texture};
 use std::collections::VecDeque;
 
 /// The smallest tile side worth computing; below it the halo would be nearly everything.
@@ -33,6 +34,7 @@ struct Tile {
 /// A tile that was submitted, and whose results are not read back yet.
 struct Flight {
     parts: Vec<Part>,
+    staged: Option<Staged>,
     readback: wgpu::Buffer,
     submission: wgpu::SubmissionIndex,
 }
@@ -65,6 +67,8 @@ impl Executor {
             let desc = plan.desc(port.image);
             results.push(Image::with_window(plan.region_at(region, desc.level), desc.channels)?);
         }
+        // Any of the buffers then does for any of the tiles.
+        self.largest = tiles.iter().map(|tile| staging::bytes_of(&tile.program)).max().unwrap_or(0);
         let mut flights = VecDeque::with_capacity(IN_FLIGHT);
         let mut landed = 0;
         let mut land = |executor: &mut Self, flight: Flight, results: &mut [Image]| {
@@ -175,8 +179,7 @@ impl Executor {
     fn allows(&self, plan: &Plan, program: &Program, region: Rect, in_flight: u64) -> bool {
         let fits_side = |t: &Texture| t.window.width() <= self.max_side && t.window.height() <= self.max_side;
         let textures: u64 = program.textures.iter().map(Texture::bytes).sum();
-        let is_input = |t: &&Texture| matches!(t.role, Role::Input(_));
-        let staged: u64 = program.textures.iter().filter(is_input).map(Texture::bytes).sum();
+        let staged = staging::bytes_of(program);
         let readback: u64 = parts(plan, program, region).iter().map(|p| p.bytes()).sum();
         let largest = self.device.raw().limits().max_buffer_size;
         program.textures.iter().all(fits_side)
@@ -195,7 +198,7 @@ impl Executor {
         let parts = parts(plan, &tile.program, tile.region);
         let readback = self.readback(parts.iter().map(Part::bytes).sum())?;
         let mut warm = self.warmed(&tile.program)?;
-        self.upload(inputs, &tile.program, &mut warm)?;
+        let staged = self.stage(inputs, &tile.program, &mut warm)?;
         let views: Vec<_> = parts.iter().map(|part| warm.own_output(&part.name)).collect::<Result<_>>()?;
         let device = &self.device;
         let encoder = || {
@@ -203,6 +206,9 @@ impl Executor {
             device.raw.create_command_encoder(&wgpu::CommandEncoderDescriptor { label })
         };
         let (mut first, mut work, mut commands) = (0, 0.0, encoder());
+        if let Some(staged) = &staged {
+            staged.copy(&mut commands);
+        }
         for (index, operations) in tile.program.operations(plan).enumerate() {
             if index > first && work + operations > self.work {
                 warm.encode_some(&mut commands, first..index)?;
@@ -222,12 +228,15 @@ impl Executor {
         })?;
         count(&device.counters.submissions);
         self.keep(warm);
-        Ok(Flight { parts, readback, submission })
+        Ok(Flight { parts, staged, readback, submission })
     }
 
     /// Waits for a tile and stores its results.
     fn land(&mut self, flight: Flight, results: &mut [Image]) -> Result<()> {
-        let Flight { parts, readback, submission } = flight;
+        let Flight { parts, staged, readback, submission } = flight;
+        self.uploads.extend(staged.map(Staged::map));
+        let surplus = self.uploads.len().saturating_sub(IN_FLIGHT);
+        self.uploads.drain(..surplus);
         let size = parts.iter().map(Part::bytes).sum();
         read_buffer(&self.device, &readback, size, Some(submission), |bytes| {
             for (part, image) in parts.iter().zip(results) {
@@ -271,6 +280,7 @@ impl Executor {
     fn keep(&mut self, prepared: Prepared) {
         self.warm.push(prepared);
         let mut bytes: u64 = self.readbacks.iter().map(wgpu::Buffer::size).sum();
+        bytes += self.uploads.iter().map(Upload::size).sum::<u64>();
         let mut kept = 0;
         for prepared in self.warm.iter().rev() {
             bytes += prepared.bytes();
@@ -283,42 +293,37 @@ impl Executor {
         self.warm.drain(..surplus);
     }
 
-    fn upload(
+    /// Writes the inputs of a program to memory that the device copies from.
+    fn stage(
         &mut self,
         inputs: &[(&str, &Image)],
         program: &Program,
         prepared: &mut Prepared,
-    ) -> Result<()> {
-        for texture in &program.textures {
-            let Role::Input(name) = &texture.role else { continue };
-            let Some((_, image)) = inputs.iter().find(|(n, _)| n == name) else {
-                return Err(Error::Input(format!("input image '{name}' is missing")));
-            };
-            let view = prepared.own_input(name)?;
-            let window = texture.window;
-            let is_as_stored = Format::exact(image.channels()) == texture.format && image.channels() != 3;
-            let (bytes, offset, stride): (&[u8], usize, usize) = if is_as_stored {
-                let first = (window.y0 - image.window().y0) as usize * image.stride()
-                    + (window.x0 - image.window().x0) as usize * image.channels() as usize;
-                (bytemuck::cast_slice(image.data()), first * 4, image.stride() * 4)
-            } else {
-                transfer::fill(image, window, texture.format, &mut self.staged);
-                (&self.staged, 0, (window.width() * texture.format.texel()) as usize)
-            };
-            self.device.guarded("uploading an image", |_| {
-                let layout = wgpu::TexelCopyBufferLayout {
-                    offset: offset as u64,
-                    bytes_per_row: Some(stride as u32),
-                    rows_per_image: None,
-                };
-                self.device.queue.write_texture(
-                    view.texture().as_image_copy(),
-                    bytes,
-                    layout,
-                    extent(window),
-                );
-            })?;
+    ) -> Result<Option<Staged>> {
+        let size = staging::bytes_of(program);
+        if size == 0 {
+            return Ok(None);
         }
-        Ok(())
+        let buffer = self.upload(size.max(self.largest))?;
+        Staged::write(&self.device, buffer, inputs, program, prepared).map(Some)
+    }
+
+    /// A mapped buffer of at least `size` bytes.
+    fn upload(&mut self, size: u64) -> Result<wgpu::Buffer> {
+        while let Some(index) = self.uploads.iter().position(|upload| upload.size() >= size) {
+            if let Some(buffer) = self.uploads.remove(index).mapped() {
+                return Ok(buffer);
+            }
+        }
+        let buffer = self.device.guarded("the buffer to upload images", |raw| {
+            raw.create_buffer(&wgpu::BufferDescriptor {
+                label: Some("isophote upload"),
+                size,
+                usage: wgpu::BufferUsages::COPY_SRC | wgpu::BufferUsages::MAP_WRITE,
+                mapped_at_creation: true,
+            })
+        })?;
+        count(&self.device.counters.buffers);
+        Ok(buffer)
     }
 }

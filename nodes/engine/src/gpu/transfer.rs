@@ -2,29 +2,44 @@
 
 use crate::image::{Image, Rect};
 use crate::plan::Plan;
-use crate::program::{Format, Program};
+use crate::program::{Format, Program, Texture};
 use half::f16;
 use half::slice::HalfFloatSliceExt;
 
-/// Replaces `staged` by the pixels of `window` in a format that differs from the image's own; what it lacks is 0.
-pub(super) fn fill(image: &Image, window: Rect, format: Format, staged: &mut Vec<u8>) {
-    staged.clear();
-    let (channels, stored) = (image.channels() as usize, format.channels() as usize);
-    let first = (window.x0 - image.window().x0) as usize * channels;
-    let len = window.width() as usize * channels;
-    let mut texels = vec![0.0f32; window.width() as usize * stored];
-    let mut halves = vec![f16::ZERO; texels.len()];
-    for y in window.y0..window.y1 {
-        let row = &image.row(y)[first..first + len];
-        for (texel, pixel) in texels.chunks_exact_mut(stored).zip(row.chunks_exact(channels)) {
+/// Rows of an image in the format of a texture; what the image lacks is 0.
+pub(super) struct RowWriter<'i> {
+    image: &'i Image,
+    window: Rect,
+    format: Format,
+    texels: Vec<f32>,
+    halves: Vec<f16>,
+}
+
+impl<'i> RowWriter<'i> {
+    /// Rows of an image for a texture.
+    pub fn new(image: &'i Image, texture: &Texture) -> Self {
+        let len = texture.window.width() as usize * texture.format.channels() as usize;
+        let (texels, halves) = (vec![0.0; len], vec![f16::ZERO; len]);
+        Self { image, window: texture.window, format: texture.format, texels, halves }
+    }
+
+    /// The bytes of a row.
+    pub fn row(&mut self, y: i32) -> &[u8] {
+        let (channels, stored) = (self.image.channels() as usize, self.format.channels() as usize);
+        let first = (self.window.x0 - self.image.window().x0) as usize * channels;
+        let row = &self.image.row(y)[first..first + self.window.width() as usize * channels];
+        let is_half = self.format.sample() == 2;
+        if channels == stored && !is_half {
+            return bytemuck::cast_slice(row);
+        }
+        for (texel, pixel) in self.texels.chunks_exact_mut(stored).zip(row.chunks_exact(channels)) {
             texel[..channels].copy_from_slice(pixel);
         }
-        if format.sample() == 2 {
-            halves.convert_from_f32_slice(&texels);
-            staged.extend_from_slice(bytemuck::cast_slice(&halves));
-        } else {
-            staged.extend_from_slice(bytemuck::cast_slice(&texels));
+        if !is_half {
+            return bytemuck::cast_slice(&self.texels);
         }
+        self.halves.convert_from_f32_slice(&self.texels);
+        bytemuck::cast_slice(&self.halves)
     }
 }
 

@@ -13,9 +13,10 @@ use isophote::graph::GraphInput;
 use isophote::kernels::shared::motion::UNKNOWN;
 use isophote::spec::ImageKind;
 use isophote_abi::*;
+use std::sync::atomic::{AtomicU64, Ordering};
 use std::sync::{Mutex, PoisonError};
 
-/// Rows that a thread reads one after the other.
+/// Rows that a thread reads or writes one after the other.
 const ROWS: u32 = 32;
 
 /// An image of the host's whose shape was checked.
@@ -153,39 +154,50 @@ impl Checked {
     ///
     /// # Safety
     /// The memory of the image must be readable.
-    pub unsafe fn read(&self, window: Rect, input: GraphInput) -> Outcome<(Image, u64)> {
+    pub unsafe fn read(
+        &self,
+        window: Rect,
+        input: GraphInput,
+        threads: &dyn Threads,
+    ) -> Outcome<(Image, u64)> {
         self.must_suit(input)?;
-        let channels = input.kind().channels();
-        let mut image = pool::image(window, channels)?;
-        let mut bytes = self.row_of_bytes(&window)?;
-        let mut replaced = 0;
-        for y in window.y0..window.y1 {
-            // SAFETY: the row lies in the image, whose memory is readable as the caller promised; the copy
-            // is of bytes and needs no alignment.
-            unsafe { bytes.as_mut_ptr().copy_from_nonoverlapping(self.at(&window, y), bytes.len()) };
-            let row = image.row_mut(y);
-            if input.kind() == ImageKind::Motion {
-                read_vectors(&bytes, self.sample, self.channels, row, 2, UNKNOWN);
-                continue;
+        let mut image = pool::image(window, input.kind().channels())?;
+        let (replaced, shared) = (AtomicU64::new(0), Shared(self));
+        of_rows(&mut image, threads, &|first, rows, stride| {
+            let checked = shared.get();
+            let mut bytes = checked.row_of_bytes(&window)?;
+            for (y, row) in (first..).zip(rows.chunks_exact_mut(stride)) {
+                // SAFETY: the row lies in the image, whose memory is readable as the caller promised; the copy
+                // is of bytes and needs no alignment.
+                unsafe { bytes.as_mut_ptr().copy_from_nonoverlapping(checked.at(&window, y), bytes.len()) };
+                replaced.fetch_add(checked.row_of(&bytes, input, row), Ordering::Relaxed);
             }
-            replaced += read_row(&bytes, self.sample, self.channels, row, channels as usize);
-            if input == GraphInput::RestPosition && self.channels == 3 {
-                // Renderers leave 0, 0, 0 where there is nothing.
-                for point in row.chunks_exact_mut(4) {
-                    point[3] = f32::from(u8::from(point[..3] != [0.0; 3]));
-                }
-            }
-            if input == GraphInput::ObjectId {
-                // Numbers, not shares of the largest one.
-                let most = match self.sample {
-                    Sample::U8 => 255.0,
-                    Sample::U16 => 65535.0,
-                    _ => continue,
-                };
-                row.iter_mut().for_each(|v| *v = (*v * most).round());
+            Ok(())
+        })?;
+        Ok((image, replaced.into_inner()))
+    }
+
+    /// The values of a row of an input, of its bytes; counts the samples that were replaced.
+    fn row_of(&self, bytes: &[u8], input: GraphInput, row: &mut [f32]) -> u64 {
+        if input.kind() == ImageKind::Motion {
+            read_vectors(bytes, self.sample, self.channels, row, 2, UNKNOWN);
+            return 0;
+        }
+        let replaced = read_row(bytes, self.sample, self.channels, row, input.kind().channels() as usize);
+        if input == GraphInput::RestPosition && self.channels == 3 {
+            // Renderers leave 0, 0, 0 where there is nothing.
+            for point in row.chunks_exact_mut(4) {
+                point[3] = f32::from(u8::from(point[..3] != [0.0; 3]));
             }
         }
-        Ok((image, replaced))
+        // Numbers, not shares of the largest one.
+        let most = match self.sample {
+            Sample::U8 if input == GraphInput::ObjectId => 255.0,
+            Sample::U16 if input == GraphInput::ObjectId => 65535.0,
+            _ => return replaced,
+        };
+        row.iter_mut().for_each(|v| *v = (*v * most).round());
+        replaced
     }
 
     /// Hands the bytes of each row of `window`, which the image must hold, to `look`, on several threads.
@@ -201,7 +213,7 @@ impl Checked {
         threads: &dyn Threads,
         look: &(dyn Fn(i32, &[u8]) + Sync),
     ) -> Outcome<()> {
-        let image = Readable(self);
+        let image = Shared(self);
         let failure = Mutex::new(None);
         threads.run(window.height().div_ceil(ROWS) as usize, &|job| {
             let checked = image.get();
@@ -299,37 +311,71 @@ impl Checked {
         }
     }
 
-    /// Writes all pixels of `result`, which must lie within the image.
+    /// Writes all pixels of `result`, which must lie within the image, each row after `last` has changed it.
     ///
     /// # Errors
     /// Out of memory.
     ///
     /// # Safety
     /// The memory of the image must be writable.
-    pub unsafe fn write(&self, result: &Image) -> Outcome<()> {
-        let window = result.window();
-        let mut bytes = self.row_of_bytes(&window)?;
-        for y in window.y0..window.y1 {
-            write_row(result.row(y), result.channels() as usize, &mut bytes, self.sample, self.channels);
-            // SAFETY: the row lies in the image, whose memory is writable as the caller promised; the copy is
-            // of bytes and needs no alignment.
-            unsafe { self.at(&window, y).copy_from_nonoverlapping(bytes.as_ptr(), bytes.len()) };
-        }
-        Ok(())
+    pub unsafe fn write(
+        &self,
+        result: &mut Image,
+        threads: &dyn Threads,
+        last: &(dyn Fn(i32, &mut [f32]) + Sync),
+    ) -> Outcome<()> {
+        let (window, channels, shared) = (result.window(), result.channels() as usize, Shared(self));
+        of_rows(result, threads, &|first, rows, stride| {
+            let checked = shared.get();
+            let mut bytes = checked.row_of_bytes(&window)?;
+            for (y, row) in (first..).zip(rows.chunks_exact_mut(stride)) {
+                last(y, row);
+                write_row(row, channels, &mut bytes, checked.sample, checked.channels);
+                // SAFETY: the row lies in the image, whose memory is writable as the caller promised; the copy is
+                // of bytes and needs no alignment.
+                unsafe { checked.at(&window, y).copy_from_nonoverlapping(bytes.as_ptr(), bytes.len()) };
+            }
+            Ok(())
+        })
     }
 }
 
-/// An image that several threads read.
-struct Readable<'c>(&'c Checked);
+/// Leaves rows as they were computed.
+pub const AS_COMPUTED: &(dyn Fn(i32, &mut [f32]) + Sync) = &|_, _| ();
 
-impl<'c> Readable<'c> {
+/// Work on some rows: the number of the first, their values, and how many values a row has.
+type RowsJob<'r> = dyn Fn(i32, &mut [f32], usize) -> Outcome<()> + Sync + 'r;
+
+/// Does `job` to the rows of an image on several threads, some at once.
+fn of_rows(image: &mut Image, threads: &dyn Threads, job: &RowsJob<'_>) -> Outcome<()> {
+    let (window, stride) = (image.window(), image.stride());
+    if window.is_empty() {
+        return Ok(());
+    }
+    let parts: Vec<Mutex<&mut [f32]>> =
+        image.data_mut().chunks_mut(stride * ROWS as usize).map(Mutex::new).collect();
+    let failure = Mutex::new(None);
+    threads.run(parts.len(), &|part| {
+        let first = window.y0 + part as i32 * ROWS as i32;
+        if let Err(error) = job(first, &mut lock(&parts[part]), stride) {
+            *lock(&failure) = Some(error);
+        }
+    });
+    failure.into_inner().unwrap_or_else(PoisonError::into_inner).map_or(Ok(()), Err)
+}
+
+/// An image that several threads read, or write in rows of their own.
+struct Shared<'c>(&'c Checked);
+
+impl<'c> Shared<'c> {
     fn get(&self) -> &'c Checked {
         self.0
     }
 }
 
-// SAFETY: who reads by it has been promised that the memory is readable, and nobody writes it meanwhile.
-unsafe impl Sync for Readable<'_> {}
+// SAFETY: who reads by it has been promised that the memory is readable, and nobody writes it meanwhile; who writes by it
+// that the memory is writable, and no two threads write one row.
+unsafe impl Sync for Shared<'_> {}
 
 /// A rectangle for people: its size and corner.
 pub fn shown(rect: &Rect) -> String {

@@ -1,7 +1,7 @@
 //! The extension for pixels that are not square.
 
 use super::failure::{Failure, Outcome};
-use super::images::Checked;
+use super::images::{AS_COMPUTED, Checked};
 use super::process::NO_CONTROL;
 use super::threads::CallThreads;
 use super::{args, graph, guard};
@@ -78,7 +78,7 @@ unsafe extern "C" fn to_square(
         must_be(&target, whole)?;
         let threads = CallThreads::new(&IsophoteControl { threads, ..NO_CONTROL })?;
         // SAFETY: the host promised that the image's memory may be read.
-        let (mut pixels, bad) = unsafe { image.read(window, input)? };
+        let (mut pixels, bad) = unsafe { image.read(window, input, threads.threads())? };
         if let Some(square) = square {
             let is_straight = input == GraphInput::Color && alpha == ISOPHOTE_ALPHA_STRAIGHT;
             if is_straight {
@@ -95,9 +95,9 @@ unsafe extern "C" fn to_square(
         }
         // SAFETY: the host promised that the target's memory may be written, and the count, or it is null.
         unsafe {
-            let pixels = moved(pixels, target.window)?;
+            let mut pixels = moved(pixels, target.window)?;
             match input {
-                GraphInput::Color => target.write(&pixels)?,
+                GraphInput::Color => target.write(&mut pixels, threads.threads(), AS_COMPUTED)?,
                 _ => target.write_guide(&pixels),
             }
             args::put_if_wanted(replaced, bad);
@@ -128,7 +128,7 @@ unsafe extern "C" fn from_square(
         must_be(&image, Rect::of_size(width, height))?;
         let threads = CallThreads::new(&IsophoteControl { threads, ..NO_CONTROL })?;
         // SAFETY: the host promised that the image's memory may be read.
-        let (mut pixels, _) = unsafe { image.read(image.window, GraphInput::Color)? };
+        let (mut pixels, _) = unsafe { image.read(image.window, GraphInput::Color, threads.threads())? };
         if let Some(square) = square {
             let is_straight = alpha == ISOPHOTE_ALPHA_STRAIGHT;
             if is_straight {
@@ -141,7 +141,7 @@ unsafe extern "C" fn from_square(
             }
         }
         // SAFETY: the host promised that the target's memory may be written.
-        unsafe { target.write(&moved(pixels, target.window)?) }
+        unsafe { target.write(&mut moved(pixels, target.window)?, threads.threads(), AS_COMPUTED) }
     };
     // SAFETY: the host promised that the text may be written, or is null.
     guard::call(body, |message| unsafe { args::fill_message(error, message) })

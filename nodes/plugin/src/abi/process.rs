@@ -5,7 +5,7 @@ use super::failure::{Failure, Outcome};
 use super::graph;
 use super::guard;
 use super::handles::Object;
-use super::images::{Checked, shown};
+use super::images::{AS_COMPUTED, Checked, shown};
 use super::objects::{DeviceObject, GraphObject};
 use super::request::{region, request};
 use super::run::{Run, must_fit};
@@ -90,10 +90,10 @@ pub(super) unsafe extern "C" fn process(
             ProcessCall { object, request, region, inputs: &inputs, threads: &threads, control: &control };
         // SAFETY: the host promised that the images' memory may be read.
         let computed = unsafe { call.run(&mut warm, device.as_deref()) };
-        let computed = computed.and_then(|(result, replaced)| {
+        let computed = computed.and_then(|(mut result, replaced)| {
             // SAFETY: the host promised that the target's memory may be written; all inputs were copied,
             // so that it does not matter whether it is theirs.
-            unsafe { target.write(&result)? };
+            unsafe { target.write(&mut result, threads.threads(), AS_COMPUTED)? };
             if device.is_none() {
                 warm.recycle(result);
             }
@@ -176,7 +176,7 @@ impl ProcessCall<'_> {
         let mut replaced = 0;
         for (input, image, window) in needed {
             // SAFETY: as the caller promised.
-            let (image, bad) = unsafe { image.read(window, input)? };
+            let (image, bad) = unsafe { image.read(window, input, self.threads.threads())? };
             replaced += bad;
             images.push((input.id(), image));
         }

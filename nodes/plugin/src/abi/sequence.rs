@@ -4,14 +4,14 @@ use super::args;
 use super::failure::{Failure, Outcome};
 use super::guard::{self, lock};
 use super::handles::{Object, object};
-use super::images::Checked;
+use super::images::{AS_COMPUTED, Checked};
 use super::objects::{DeviceObject, GraphObject};
 use super::plan;
 use super::process::NO_CONTROL;
 use super::request::{region, request};
 use super::run::{Run, must_fit};
 use super::threads::CallThreads;
-use isophote::engine::cpu::CpuExecutor;
+use isophote::engine::cpu::{CallingThread, CpuExecutor};
 use isophote::engine::gpu::Executor;
 use isophote::engine::{Image, Rect};
 use isophote::frames::Frames;
@@ -149,9 +149,9 @@ unsafe extern "C" fn process(
             pulled: Pulled { frames, frame: request.frame, images: Vec::new(), replaced: 0 },
         };
         // SAFETY: the host promised functions of these types, and that the images that they give may be read.
-        let result = unsafe { call.run(&mut state, device.as_deref())? };
+        let mut result = unsafe { call.run(&mut state, device.as_deref())? };
         // SAFETY: the host promised that the target's memory may be written; all inputs were copied.
-        unsafe { target.write(&result)? };
+        unsafe { target.write(&mut result, threads.threads(), AS_COMPUTED)? };
         if let (Some(cpu), None) = (&mut state.cpu, &device) {
             cpu.recycle(result);
         }
@@ -218,7 +218,7 @@ impl Pulled {
         let copied = Checked::source(&image, input, &what).and_then(|checked| {
             checked.must_hold(&whole, &what)?;
             // SAFETY: the host promised that the memory may be read until it is released.
-            unsafe { checked.read(whole, input) }
+            unsafe { checked.read(whole, input, &CallingThread) }
         });
         if let Some(release) = self.frames.release {
             // SAFETY: the host promised a function of this type.

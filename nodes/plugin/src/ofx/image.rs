@@ -4,8 +4,8 @@ use super::content;
 use super::frame::{Bounds, Frame};
 use super::host::{Host, Outcome, Properties};
 use crate::abi::guard::lock;
-use crate::abi::images::Checked;
-use isophote::engine::cpu::Threads;
+use crate::abi::images::{AS_COMPUTED, Checked};
+use isophote::engine::cpu::{CallingThread, Threads};
 use isophote::engine::{Image, Rect};
 use isophote::graph::GraphInput;
 use isophote::spec::ImageKind;
@@ -211,7 +211,14 @@ impl<'h> Fetched<'h> {
     ///
     /// # Errors
     /// Memory; image format, when no image can have its shape.
-    pub fn read(&self, frame: &Frame, window: Rect, input: GraphInput, beyond: Beyond) -> Outcome<Image> {
+    pub fn read(
+        &self,
+        frame: &Frame,
+        window: Rect,
+        input: GraphInput,
+        beyond: Beyond,
+        threads: &dyn Threads,
+    ) -> Outcome<Image> {
         let checked = self.checked(frame)?;
         let channels = input.kind().channels();
         let zeros = || Image::with_window(window, channels).map_err(|_| kOfxStatErrMemory);
@@ -223,7 +230,8 @@ impl<'h> Fetched<'h> {
         }
         let inside = if inside.is_empty() { nearest(&window, &checked.window) } else { inside };
         // SAFETY: the host gave the image, so that its memory may be read until it is released.
-        let (mut part, _) = unsafe { checked.read(inside, as_input) }.map_err(|_| kOfxStatErrMemory)?;
+        let (mut part, _) =
+            unsafe { checked.read(inside, as_input, threads) }.map_err(|_| kOfxStatErrMemory)?;
         if self.blue_first && channels == 4 {
             part.data_mut().chunks_exact_mut(4).for_each(|p| p.swap(0, 2));
         }
@@ -335,32 +343,52 @@ impl<'h> Fetched<'h> {
         amount: impl Fn([f32; 4]) -> f32,
     ) -> Outcome<Vec<f32>> {
         if self.channels == 1 {
-            return Ok(self.read(frame, window, GraphInput::Depth, Beyond::Zero)?.into_data());
+            return Ok(self
+                .read(frame, window, GraphInput::Depth, Beyond::Zero, &CallingThread)?
+                .into_data());
         }
-        let image = self.read(frame, window, GraphInput::Color, Beyond::Zero)?;
+        let image = self.read(frame, window, GraphInput::Color, Beyond::Zero, &CallingThread)?;
         let mut amounts = Vec::new();
         amounts.try_reserve_exact(image.data().len() / 4).map_err(|_| kOfxStatErrMemory)?;
         amounts.extend(image.data().chunks_exact(4).map(|p| amount([p[0], p[1], p[2], p[3]])));
         Ok(amounts)
     }
 
-    /// Writes the pixels of `image` that this one holds; its colours may be in another order afterwards.
+    /// Writes the pixels of `image` that this one holds, each row after `last` has changed it; its colours may be in another
+    /// order afterwards.
     ///
     /// # Errors
     /// Memory; image format, when no image can have its shape.
-    pub fn write(&self, frame: &Frame, image: &mut Image) -> Outcome<()> {
+    pub fn write(
+        &self,
+        frame: &Frame,
+        image: &mut Image,
+        threads: &dyn Threads,
+        last: &(dyn Fn(i32, &mut [f32]) + Sync),
+    ) -> Outcome<()> {
         let checked = self.checked(frame)?;
         let inside = image.window().intersection(&checked.window);
         if inside.is_empty() {
             return Ok(());
         }
-        if self.blue_first && image.channels() == 4 {
-            image.data_mut().chunks_exact_mut(4).for_each(|p| p.swap(0, 2));
-        }
-        let part = (inside != image.window()).then(|| image.crop(inside)).transpose();
-        let part = part.map_err(|_| kOfxStatErrMemory)?;
-        // SAFETY: the host gave the image to be written, until it is released.
-        unsafe { checked.write(part.as_ref().unwrap_or(image)) }.map_err(|_| kOfxStatErrMemory)
+        let swaps = self.blue_first && image.channels() == 4;
+        let last = |y: i32, row: &mut [f32]| {
+            last(y, row);
+            if swaps {
+                row.chunks_exact_mut(4).for_each(|p| p.swap(0, 2));
+            }
+        };
+        let window = image.window();
+        let written = if inside == window {
+            // SAFETY: the host gave the image to be written, until it is released.
+            unsafe { checked.write(image, threads, &last) }
+        } else {
+            (window.y0..window.y1).for_each(|y| last(y, image.row_mut(y)));
+            let mut part = image.crop(inside).map_err(|_| kOfxStatErrMemory)?;
+            // SAFETY: as above.
+            unsafe { checked.write(&mut part, threads, AS_COMPUTED) }
+        };
+        written.map_err(|_| kOfxStatErrMemory)
     }
 }
 

@@ -12,6 +12,7 @@ use super::host::{Host, Outcome, Properties};
 use super::image::{Alpha, Beyond, Clip, Fetched};
 use super::prepared::Prepared;
 use super::stop::Stop;
+use super::threads::FrameThreads;
 use crate::pixel_aspect::multiply;
 use crate::pool;
 use isophote::Error;
@@ -106,6 +107,8 @@ pub struct Inputs<'h> {
     pub colours: Colours,
     /// True where nothing is to change, not even an alpha that is 1 by declaration.
     pub identity: bool,
+    /// Threads of the frame.
+    pub threads: FrameThreads,
 }
 
 /// The image of an optional clip, where there is one that can be read: what is of an unknown format counts as none, since
@@ -304,8 +307,9 @@ impl<'h> Inputs<'h> {
     }
 
     fn read_colour(&self, image: &Fetched<'_>, window: Rect, beyond: Beyond) -> Outcome<Image> {
-        let mut pixels =
-            self.of_field(window, |window| image.read(&self.frame, window, GraphInput::Color, beyond))?;
+        let mut pixels = self.of_field(window, |window| {
+            image.read(&self.frame, window, GraphInput::Color, beyond, self.threads.threads())
+        })?;
         if image.alpha == Alpha::Opaque && !self.identity {
             pixels.data_mut().chunks_exact_mut(4).for_each(|p| p[3] = 1.0);
         }
@@ -316,7 +320,7 @@ impl<'h> Inputs<'h> {
         // Beside what they hold there is no object, and nothing is painted.
         let is_bounded = matches!(guide, GraphInput::RestPosition | GraphInput::Flow);
         let beyond = if is_bounded { Beyond::Zero } else { Beyond::Edge };
-        self.of_field(window, |window| image.read(&self.frame, window, guide, beyond))
+        self.of_field(window, |window| image.read(&self.frame, window, guide, beyond, self.threads.threads()))
     }
 
     /// The pixels of `window`, by what `read` reads; those of one field where one is rendered.

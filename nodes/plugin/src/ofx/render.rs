@@ -1,6 +1,6 @@
 //! Rendering: the frame's plan, run over bands of rows that keep memory bounded.
 
-use super::blending::{blend, of_band, spread, take_alpha};
+use super::blending::{Finish, spread};
 use super::clips::{MASK, SOURCE};
 use super::colours::{Colours, working};
 use super::effects::Effect;
@@ -20,10 +20,11 @@ use super::segments::{Part, parts};
 use super::settings::Settings;
 use super::stop::Stop;
 use super::threads::FrameThreads;
+use crate::abi::images::AS_COMPUTED;
 use crate::pixel_aspect::divide;
 use crate::pool;
 use isophote::Error;
-use isophote::engine::cpu::{Control, CpuExecutor, Threads};
+use isophote::engine::cpu::{CallingThread, Control, CpuExecutor, Threads};
 use isophote::engine::plan::LEAST_ROWS;
 use isophote::engine::{Error as EngineError, Image, Rect};
 use isophote::graph::GraphInput;
@@ -92,6 +93,7 @@ fn attempt(effect: &Effect, host: &Host, instance: Handle, args: Properties<'_>)
         guides: fetch_guides(effect, host, instance, &frame, moment.time, wants_motion)?,
         convention: settings.convention,
         identity: settings.is_identity(frame.length_scale()),
+        threads: FrameThreads::of(host),
     };
     let fault = settings.look.fault.take();
     let action = RenderAction { inputs, settings, quality: Quality::of(args), output, mask };
@@ -161,7 +163,7 @@ fn clear(host: &Host, output: &Fetched<'_>, window: Bounds) -> Outcome<()> {
     let frame = Frame::new(host, None, [1.0; 2], 1.0, Some(output.bounds)).ok_or(kOfxStatErrImageFormat)?;
     let channels = if output.channels == 1 { 1 } else { 4 };
     let mut black = Image::with_window(frame.inside(window), channels).map_err(|_| kOfxStatErrMemory)?;
-    output.write(&frame, &mut black)
+    output.write(&frame, &mut black, &CallingThread, AS_COMPUTED)
 }
 
 impl RenderAction<'_> {
@@ -177,18 +179,17 @@ impl RenderAction<'_> {
         }
         if self.inputs.identity {
             for band in bands(inside, LEAST_ROWS) {
-                pool::keep_image(self.write(self.inputs.read(band)?)?);
+                pool::keep_image(self.write(self.inputs.read(band)?, Finish::default())?);
             }
             return Ok(());
         }
-        let threads = FrameThreads::of(host);
         let mut executors = Executors::new(host, *instance, self.settings.card);
         // Hosts need not expect the question from two threads at once.
         let instance = Mutex::new(Instance(*instance));
         let aborted = || instance.lock().is_ok_and(|instance| host.aborted(instance.0));
         let control = Control { cancelled: Some(&aborted), progress: None };
         let mut plans = Plans::new(self)?;
-        let work = Bands { inside, threads: threads.threads(), control };
+        let work = Bands { inside, threads: self.inputs.threads.threads(), control };
         while !self.run_parts(&mut plans, &mut executors, &work)? {}
         executors.keep_memory();
         Ok(())
@@ -239,7 +240,7 @@ impl RenderAction<'_> {
             }
             let result = results.into_iter().next().ok_or(kOfxStatFailed)?;
             let result = self.to_host(&plans.prepared, result, band, threads)?;
-            executors.recycle(self.write(self.finished(result, band, source)?)?);
+            executors.recycle(self.write(result, self.finish(band, source)?)?);
         }
         Ok(true)
     }
@@ -276,52 +277,49 @@ impl RenderAction<'_> {
         Ok(result)
     }
 
-    /// The filter's result with the source's alpha, unless alpha is filtered too, and under the mask. `source` holds what
-    /// was read of the source, if that is at hand.
-    fn finished(&self, result: Image, band: Rect, source: Option<Image>) -> Outcome<Image> {
+    /// What is left to do to the result of a band: alpha of the source, unless alpha is filtered too, and the mask. `source`
+    /// holds what was read of the source, if that is at hand.
+    fn finish(&self, band: Rect, source: Option<Image>) -> Outcome<Finish> {
         let keep_alpha = !self.settings.process_alpha && self.inputs.source.alpha != Alpha::Opaque;
         let mix = self.settings.look.mix;
-        if !keep_alpha && self.mask.is_none() && mix == 1.0 {
+        let blends = self.mask.is_some() || mix != 1.0;
+        if !keep_alpha && !blends {
             source.into_iter().for_each(pool::keep_image);
-            return Ok(result);
+            return Ok(Finish::default());
         }
         let source = match source.filter(|source| source.window().contains(&band)) {
             Some(source) => source,
             None => self.inputs.read(band)?,
         };
-        let mut image = if result.channels() == 4 { result } else { spread(&result)? };
-        if keep_alpha {
-            let premultiplied = self.inputs.source.alpha == Alpha::Premultiplied;
-            for y in band.y0..band.y1 {
-                take_alpha(image.row_mut(y), of_band(&source, band, y), premultiplied);
-            }
-        }
-        if self.mask.is_some() || mix != 1.0 {
-            let mask = self.mask.as_ref().map(|(rule, mask)| rule.read(mask, &self.inputs.frame, band));
-            let mask = mask.transpose()?;
-            let width = band.width() as usize;
-            for (at, y) in (band.y0..band.y1).enumerate() {
-                let amounts = mask.as_ref().map(|mask| &mask[at * width..(at + 1) * width]);
-                blend(image.row_mut(y), of_band(&source, band, y), amounts, mix);
-            }
-        }
-        pool::keep_image(source);
-        Ok(image)
+        let mask = self.mask.as_ref().map(|(rule, mask)| rule.read(mask, &self.inputs.frame, band));
+        Ok(Finish {
+            band,
+            source: Some(source),
+            alpha: keep_alpha.then_some(self.inputs.source.alpha == Alpha::Premultiplied),
+            mix: blends.then_some(mix),
+            amounts: mask.transpose()?,
+        })
     }
 
-    /// Writes what was computed: all rows, or those of the field. Gives its memory back.
-    fn write(&self, mut image: Image) -> Outcome<Image> {
-        let Some(field) = self.inputs.field else {
-            self.output.write(&self.inputs.frame, &mut image)?;
-            return Ok(image);
-        };
+    /// Finishes and writes what was computed: all rows, or those of the field. Gives its memory back.
+    fn write(&self, image: Image, finish: Finish) -> Outcome<Image> {
+        let mut image =
+            if finish.source.is_some() && image.channels() != 4 { spread(&image)? } else { image };
+        let (frame, threads) = (&self.inputs.frame, self.inputs.threads.threads());
         let window = image.window();
-        for y in window.y0..window.y1 {
-            if (self.inputs.frame.picture[3] - 1 - y).rem_euclid(2) == field.parity {
-                let row = image.crop(Rect { y0: y, y1: y + 1, ..window });
-                self.output.write(&self.inputs.frame, &mut row.map_err(|_| kOfxStatErrMemory)?)?;
+        if let Some(field) = self.inputs.field {
+            for y in window.y0..window.y1 {
+                if (frame.picture[3] - 1 - y).rem_euclid(2) == field.parity {
+                    finish.row(y, image.row_mut(y));
+                    let row = image.crop(Rect { y0: y, y1: y + 1, ..window });
+                    let mut row = row.map_err(|_| kOfxStatErrMemory)?;
+                    self.output.write(frame, &mut row, threads, AS_COMPUTED)?;
+                }
             }
+        } else {
+            self.output.write(frame, &mut image, threads, &|y, row| finish.row(y, row))?;
         }
+        finish.source.into_iter().for_each(pool::keep_image);
         Ok(image)
     }
 }

@@ -52,14 +52,46 @@ impl Panel {
     }
 }
 
-/// All effects of a catalogue.
+/// All effects of a catalogue, and the one that shows looks, which the file beside it lists.
 ///
 /// # Errors
-/// [`Error::Malformed`] when the file holds something else.
+/// [`Error::Malformed`] when the files hold something else.
 pub fn all(file: &Path) -> Result<Vec<Panel>> {
+    let (catalogue, list) = (json_of(file)?, file.with_extension("looks.json"));
+    let mut all = panels(&catalogue).ok_or_else(|| Error::malformed(file, "is no catalogue of nodes"))?;
+    let looks = look_panel(&json_of(&list)?, &catalogue);
+    all.push(looks.ok_or_else(|| Error::malformed(&list, "is no list of looks"))?);
+    Ok(all)
+}
+
+fn json_of(file: &Path) -> Result<Value> {
     let text = std::fs::read_to_string(file).map_err(Error::at(file))?;
-    let catalogue: Value = serde_json::from_str(&text).map_err(|error| Error::malformed(file, error))?;
-    panels(&catalogue).ok_or_else(|| Error::malformed(file, "is no catalogue of nodes"))
+    serde_json::from_str(&text).map_err(|error| Error::malformed(file, error))
+}
+
+/// The effect of all looks, then the styles. Editors keep the names of options, and have no control for a file.
+fn look_panel(looks: &Value, catalogue: &Value) -> Option<Panel> {
+    let styles = catalogue["nodes"].as_array()?.iter().filter(|node| node["group"] == "styles");
+    let names = looks.as_array()?.iter().map(|look| &look["name"]).chain(styles.map(|node| &node["label"]));
+    let options = names.map(|name| name.as_str().map(str::to_owned)).collect::<Option<Vec<_>>>()?;
+    let control = |name: &str, label: &str, doc: &str, kind| Control {
+        name: name.into(),
+        label: label.into(),
+        doc: doc.into(),
+        group: String::new(),
+        kind,
+    };
+    let choice = Kind::Choice { default: options.first()?.clone(), options };
+    let mix = Kind::Number { default: 1.0, slider: [0.0, 1.0], is_whole: false };
+    Some(Panel {
+        id: "look".into(),
+        label: "Look".into(),
+        about: "A look or a style that ships".into(),
+        controls: vec![
+            control("look", "Look", "Look or style that is shown.", choice),
+            control("mix", "Mix", "Share of the effect in the result; the rest is the source.", mix),
+        ],
+    })
 }
 
 fn panels(catalogue: &Value) -> Option<Vec<Panel>> {
