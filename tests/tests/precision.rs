@@ -98,7 +98,7 @@ const CARTOONS: [(&[(&str, &str)], Bounds); 2] = [
         &[("steps", "levels"), ("local_contrast", "0"), ("inhibition", "0"), ("colour_edges", "0")],
         (14, 345.0, 122),
     ),
-    (&[], (37, 735.0, 270)),
+    (&[], (41, 744.0, 279)),
 ];
 
 #[test]
