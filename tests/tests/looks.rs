@@ -278,6 +278,36 @@ fn pictures_are_recognised() {
     assert!(faults.is_empty(), "{faults:#?}");
 }
 
+/// Steepest rise of a row over four pixels.
+fn steepest(image: &Image, y: i32) -> f32 {
+    (8..image.width() as i32 - 12)
+        .map(|x| (luma(image, x + 4, y) - luma(image, x, y)).abs())
+        .fold(0.0, f32::max)
+}
+
+#[test]
+fn soft_lights_have_no_rings_and_shadows_have_borders() {
+    let drawn = |picture: &Image, settings: &[(&str, &str)]| {
+        let request = Request::new(picture.width(), picture.height());
+        run::graph(&run::single("cartoon", settings), request, picture)
+    };
+    // A light out of focus.
+    let light = field(192, 0.005, |x, y| {
+        let r2 = (x - 0.5).powi(2) + (y - 0.5).powi(2);
+        35.0 + 45.0 * (-r2 / (2.0 * 0.22 * 0.22)).exp()
+    });
+    let plain = steepest(&light, 96);
+    let found = steepest(&drawn(&light, &[("line_amount", "0")]), 96);
+    assert!(found < 1.5 * plain, "{found:.3} for {plain:.3}");
+
+    // A shadow with a penumbra of 24 pixels, between which nothing else is.
+    let shadow = field(192, 0.0, |x, _| 50.0 + 12.0 * ((x - 0.5) * 8.0).clamp(-0.5, 0.5));
+    let hard = steepest(&drawn(&shadow, &[("line_amount", "0")]), 96);
+    let soft = steepest(&drawn(&shadow, &[("line_amount", "0"), ("posterize_smooth", "1")]), 96);
+    let plain = steepest(&shadow, 96);
+    assert!(hard > 2.0 * plain && soft < 1.5 * plain, "{hard:.3} hard, {soft:.3} soft, {plain:.3} before");
+}
+
 #[test]
 fn watercolours_are_transparent_paint_on_white_paper() {
     let painted = |picture: &Image| {

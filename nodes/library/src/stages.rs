@@ -30,6 +30,7 @@ pub(crate) mod steady;
 pub(crate) mod structure_tensor;
 pub(crate) mod tensor_options;
 pub(crate) mod tone;
+pub(crate) mod tones_by_area;
 pub(crate) mod warp_sharpen;
 
 /// Heading of the controls for artists.

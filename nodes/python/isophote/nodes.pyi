@@ -170,6 +170,7 @@ def cartoon(
     detail: float = 0.5,
     posterize: int = 8,
     posterize_smooth: float = 0.0,
+    steps: Literal['levels', 'areas'] = 'areas',
     saturation: float = 1.0,
     lights: float = 0.0,
     darks: float = 0.0,
@@ -246,6 +247,10 @@ def cartoon(
         posterize: Number of tones from black to white; 0 leaves tones smooth. 0 to 64.
         posterize_smooth: How softly one tone goes over into the next. Relative to the height of the
             steps: divides `phi_q` by 1 to 20. 0 to 1.
+        steps: Where one tone ends: at the same lightness all over, or where areas of the picture
+            differ. Bins of lightness (4.6), or modes of the colours around each pixel by mean shift
+            (Comaniciu and Meer 2002), which differ from each other by about a bin; their window is
+            about 40 pixels wide.
         saturation: Strength of the colours: 0 is grey, 1 leaves them as they are. Factor on the
             colour axes of CIELAB. 0 to 4.
         lights: Brightens the light tones above 0, and darkens them below. -1 to 1.
@@ -344,6 +349,7 @@ def coherent(
     sharpness: float = 0.5,
     posterize: int = 0,
     posterize_smooth: float = 0.0,
+    steps: Literal['levels', 'areas'] = 'levels',
     saturation: float = 1.0,
     lights: float = 0.0,
     darks: float = 0.0,
@@ -397,6 +403,10 @@ def coherent(
         posterize: Number of tones from black to white; 0 leaves tones smooth. 0 to 64.
         posterize_smooth: How softly one tone goes over into the next. Relative to the height of the
             steps: divides `phi_q` by 1 to 20. 0 to 1.
+        steps: Where one tone ends: at the same lightness all over, or where areas of the picture
+            differ. Bins of lightness (4.6), or modes of the colours around each pixel by mean shift
+            (Comaniciu and Meer 2002), which differ from each other by about a bin; their window is
+            about 40 pixels wide.
         saturation: Strength of the colours: 0 is grey, 1 leaves them as they are. Factor on the
             colour axes of CIELAB. 0 to 4.
         lights: Brightens the light tones above 0, and darkens them below. -1 to 1.
@@ -1363,6 +1373,7 @@ def quantize_luminance(
     lambda_phi: float = 0.9,
     omega_phi: float = 1.6,
     least_gradient: float = 0.0,
+    steps: Literal['levels', 'areas'] = 'levels',
     mix: float = 1.0,
     out: Any = None,
     frame: int = 0,
@@ -1396,6 +1407,10 @@ def quantize_luminance(
             everywhere. Gradient of L, per pixel, that the surroundings have where levels step;
             where they have less, tones are continuous, since borders of levels would follow nothing
             there. 0 steps everywhere. 0 to 1.
+        steps: Where one tone ends: at the same lightness all over, or where areas of the picture
+            differ. Bins of lightness (4.6), or modes of the colours around each pixel by mean shift
+            (Comaniciu and Meer 2002), which differ from each other by about a bin; their window is
+            about 40 pixels wide.
         mix: Blends the result with the picture: 0 leaves the picture as it was, 1 shows the result
             alone. 0 to 1.
 

@@ -3,8 +3,9 @@
 use crate::declare::ports;
 use crate::declare::spec::{NodeSpec, Param, Scope};
 use crate::kernels::colour::{lab_to_rgb, rgb_to_lab};
+use crate::stages::quantization::{STEPS, flattened};
 use crate::stages::quantize_luminance::{
-    BINS, LAMBDA_DELTA, LAMBDA_PHI, LEAST_GRADIENT, OMEGA_DELTA, OMEGA_PHI, PHI_Q, flattened,
+    BINS, LAMBDA_DELTA, LAMBDA_PHI, LEAST_GRADIENT, OMEGA_DELTA, OMEGA_PHI, PHI_Q,
 };
 use isophote_engine::ImageId;
 
@@ -32,6 +33,7 @@ pub static NODE: NodeSpec = NodeSpec {
         LAMBDA_PHI,
         OMEGA_PHI,
         LEAST_GRADIENT,
+        STEPS,
     ],
     build,
 };

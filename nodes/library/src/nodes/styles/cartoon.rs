@@ -41,6 +41,7 @@ pub static NODE: NodeSpec = NodeSpec {
         abstraction::DETAIL,
         levels::POSTERIZE,
         levels::POSTERIZE_SMOOTH,
+        levels::STEPS.with_default(levels::BY_AREA).group(LOOK),
         tone::SATURATION,
         tone::LIGHTS,
         tone::DARKS,
@@ -159,7 +160,7 @@ fn build(scope: &mut Scope<'_>) -> ImageId {
     flat = tone::curve(scope, flat);
     let bins = scope.int("posterize");
     if bins > 0 {
-        flat = quantization::flattened(scope, flat, bins, levels::steepness(scope, bins));
+        flat = levels::flattened(scope, flat, bins, levels::steepness(scope, bins));
     }
     let (saturation, line) = (scope.float("saturation"), scope.color("line_color"));
     let mut rgb = lab_to_rgb::pass(scope.plan, flat, saturation);

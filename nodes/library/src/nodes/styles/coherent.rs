@@ -8,6 +8,7 @@ use crate::kernels::colour::{lab_to_rgb, rgb_to_lab};
 use crate::stages::coherence_enhancing::{self as filter, Filter, filtered};
 use crate::stages::{
     ADVANCED, LOOK, abstraction, quantization as levels, quantize_luminance as quantization, shock, tone,
+    tones_by_area,
 };
 use isophote_engine::ImageId;
 
@@ -29,6 +30,7 @@ pub static NODE: NodeSpec = NodeSpec {
         SHARPNESS,
         levels::POSTERIZE.with_default(Value::Int(0)).slider(0.0, 16.0),
         levels::POSTERIZE_SMOOTH,
+        levels::STEPS.group(LOOK),
         // Left out where it changes nothing: the way to CIELAB and back costs more than a shock.
         tone::SATURATION.structural(),
         tone::LIGHTS,
@@ -84,7 +86,11 @@ fn toned(scope: &mut Scope<'_>, color: ImageId) -> ImageId {
     lab = tone::curve(scope, lab);
     if bins > 0 {
         let phi_q = levels::steepness(scope, bins);
-        lab = quantize_luminance::pass(scope.plan, lab, bins, Steepness::Fixed(phi_q));
+        lab = if levels::is_by_area(scope) {
+            tones_by_area::flattened(scope, lab, bins, phi_q)
+        } else {
+            quantize_luminance::pass(scope.plan, lab, bins, Steepness::Fixed(phi_q))
+        };
     }
     lab_to_rgb::pass(scope.plan, lab, saturation)
 }
