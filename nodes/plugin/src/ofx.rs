@@ -34,6 +34,7 @@ mod mask;
 mod motion;
 mod needed;
 mod neighbours;
+mod plans;
 mod prepared;
 mod preset_files;
 #[cfg(test)]
@@ -46,6 +47,7 @@ mod shipped;
 mod stop;
 mod threads;
 mod values;
+mod vectors;
 
 use crate::abi::guard::lock;
 use crate::abi::threads::forget_pools;

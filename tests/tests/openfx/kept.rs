@@ -168,7 +168,8 @@ pub fn strips_share_what_frames_have_in_common() {
             let (status, strip) = strips.try_render(Layout::default(), size, &wanted);
             assert_eq!(status, kOfxStatOK);
             assert!(strip.crop(window).packed() == full.crop(window).packed(), "{window:?} at {time}");
-            let expected = if [0, 11].contains(&index) { new } else { 0 };
+            // The result of a segment is computed with its first strip, too.
+            let expected = if [0, 11].contains(&index) { new + 1 } else { 0 };
             assert_eq!(counter.now(), expected, "{window:?} at {time}");
         }
     }

@@ -9,8 +9,9 @@
 use super::content;
 use super::faults;
 use super::inputs::{Gathered, Inputs, Read, Taken};
-use super::kept;
+use super::kept::{self, PATIENCE};
 use super::prepared::Prepared;
+use super::segments::{Part, parts, segments};
 use super::stop::Stop;
 use isophote::Error;
 use isophote::engine::cpu::{Control, CpuExecutor, Threads};
@@ -58,6 +59,9 @@ impl Stages {
     }
 }
 
+/// Rows that all segments may compute, as a share of the picture's.
+const MOST_ROWS: f32 = 1.4;
+
 /// Images of a plan that are kept for a segment of the picture.
 pub struct Lasting {
     /// The images.
@@ -70,11 +74,33 @@ pub struct Lasting {
 impl Lasting {
     /// Images for a segment of the host's pixels; none where there is nothing to share, or too much of it.
     pub fn of(prepared: &Prepared, segment: Rect) -> Option<Self> {
+        Self::over(lasting(prepared.planned.plan()), prepared, segment)
+    }
+
+    /// The parts of `inside` of a picture of this size, each in the segment for which images are kept: all of the picture,
+    /// where segments would have most of it in common and it is not too much.
+    pub fn parts(prepared: &Prepared, size: [u32; 2], inside: Rect) -> Vec<Part> {
+        let (parts, whole) = (parts(size, inside), Rect::of_size(size[0], size[1]));
+        if parts.iter().all(|part| part.segment.is_none_or(|segment| segment == whole)) {
+            return parts;
+        }
         let plan = prepared.planned.plan();
         let shared = lasting(plan);
+        let rows = |segment| {
+            Self::over(shared.clone(), prepared, segment).map_or(0.0, |all| all.region.height() as f32)
+        };
+        let is_costly = segments(size).map(rows).sum::<f32>() > MOST_ROWS * plan.size()[1] as f32;
+        if is_costly && Self::over(shared.clone(), prepared, whole).is_some() {
+            return vec![Part { inside, segment: Some(whole) }];
+        }
+        parts
+    }
+
+    fn over(shared: Vec<Shared>, prepared: &Prepared, segment: Rect) -> Option<Self> {
         if shared.is_empty() {
             return None;
         }
+        let plan = prepared.planned.plan();
         let windows = plan.windows(prepared.plan_window(segment));
         let region = shared.iter().fold(Rect::default(), |all, Shared { image, .. }| {
             let window = windows[image.index()];
@@ -125,6 +151,8 @@ pub struct Search<'s, 'h> {
     pub prepared: &'s Prepared,
     /// The part of the host's pixels that the images are found for.
     pub segment: Rect,
+    /// True where the host need not have given all of the picture.
+    pub is_part: bool,
     /// What is done to pixels between their reading and the plan, beside what `prepared` does.
     pub treatment: String,
     pub threads: &'s dyn Threads,
@@ -143,10 +171,11 @@ impl Search<'_, '_> {
         };
         let (part, windows) = lasting.part(plan);
         let content = |taken: Taken<'_>| Ok((self.content(&taken)?, taken.name));
-        let contents = match self.inputs.each(self.prepared, part.inputs(), &windows, content)? {
-            Gathered::All(contents) => contents,
-            Gathered::Without(frame) => return Ok(Found::Without(frame)),
-        };
+        let contents =
+            match self.inputs.each(self.prepared, part.inputs(), &windows, self.threads, content)? {
+                Gathered::All(contents) => contents,
+                Gathered::Without(frame) => return Ok(Found::Without(frame)),
+            };
         if contents.iter().any(|(content, _)| content.is_none()) {
             return Ok(Found::All(Stages::default()));
         }
@@ -169,9 +198,7 @@ impl Search<'_, '_> {
 
     /// Number of what an image holds; none where the host gave too little of it.
     fn content(&self, taken: &Taken<'_>) -> Result<Option<u128>, Stop> {
-        let [width, height] = self.inputs.frame.size();
-        let is_part = self.segment != Rect::of_size(width, height);
-        Ok(self.inputs.content(self.prepared, taken, is_part, self.threads)?)
+        Ok(self.inputs.content(self.prepared, taken, self.is_part, self.threads)?)
     }
 
     /// The stages that are made of the same frames, from `first` on.
@@ -193,7 +220,7 @@ impl Search<'_, '_> {
         });
         let names: Vec<u128> = group.iter().map(|shared| all[shared.image.index()]).collect();
         let stops = || self.control.cancelled.is_some_and(|cancelled| cancelled());
-        kept::obtain(&names, &stops, |missing| {
+        kept::obtain(&names, PATIENCE, &stops, |missing| {
             let ids: Vec<ImageId> = missing.iter().map(|index| group[*index].image).collect();
             let part = plan.part(&ids);
             pixels.read(self, &part)?;
@@ -233,7 +260,7 @@ impl Pixels {
             search.inputs.make_ready(search.prepared, &mut read, search.threads)?;
             Ok(Some(read))
         };
-        let all = match search.inputs.each(search.prepared, ports, &self.windows, read)? {
+        let all = match search.inputs.each(search.prepared, ports, &self.windows, search.threads, read)? {
             Gathered::All(all) => all.into_iter().collect::<Option<Vec<Read>>>(),
             Gathered::Without(_) => None,
         };
