@@ -9,7 +9,7 @@ use std::sync::{Arc, Condvar, LazyLock, Mutex, MutexGuard, PoisonError};
 use std::time::{Duration, Instant};
 
 /// Most bytes that are kept.
-const MOST: u64 = 2 << 30;
+const MOST: u64 = 4 << 30;
 /// One part in so many of the machine's memory is kept at most.
 const SHARE: u64 = 8;
 /// What was not used for so long is given back when the next image comes.
