@@ -220,7 +220,7 @@ impl Checked {
     }
 
     /// Reads two channels of the pixels of `inside`, which both images must hold, as they are stored, into an image of
-    /// two.
+    /// two, and has `change` go over each row of them.
     ///
     /// # Errors
     /// Out of memory; input when the image has no such channels.
@@ -233,6 +233,7 @@ impl Checked {
         channels: [usize; 2],
         pairs: &mut Image,
         threads: &dyn Threads,
+        change: &(dyn Fn(&mut [f32]) + Sync),
     ) -> Outcome<()> {
         if channels.iter().any(|c| *c >= self.channels) {
             return Err(Failure::new(ISOPHOTE_ERROR_INPUT, "an image of vectors has too few channels"));
@@ -244,9 +245,11 @@ impl Checked {
         let first = (inside.x0 - whole.x0) as usize * 2;
         let read = |y: i32, bytes: &[u8]| {
             let mut row = lock(&rows[(y - whole.y0) as usize]);
-            for (pixel, pair) in bytes.chunks_exact(pixel).zip(row[first..].chunks_exact_mut(2)) {
+            let row = &mut row[first..first + bytes.len() / pixel * 2];
+            for (pixel, pair) in bytes.chunks_exact(pixel).zip(row.chunks_exact_mut(2)) {
                 read_pair(pixel, sample, channels, pair);
             }
+            change(row);
         };
         // SAFETY: the memory is readable, as the caller promised.
         unsafe { self.each_row(inside, threads, &read) }

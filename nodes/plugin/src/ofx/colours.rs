@@ -1,12 +1,12 @@
 //! Colours of hosts: the spaces that they may be in, and the change of those in which the library does not compute to one in
 //! which it does, before a plan reads them, and of results back before they are written.
 
-use super::threads::in_parts;
 use isophote::ColourSpace;
 use isophote::engine::Image;
 use isophote::engine::cpu::Threads;
 use isophote_colour::{Conversion, Space};
 use std::ffi::CStr;
+use std::sync::{Mutex, PoisonError};
 
 /// Label of the option for pixels that are in none of the spaces.
 pub const AS_IS: &str = "As is";
@@ -103,9 +103,14 @@ impl Colours {
 }
 
 fn change(conversion: Option<&Conversion>, image: &mut Image, threads: &dyn Threads) {
+    /// Pixels that one job changes.
+    const PIXELS: usize = 1 << 14;
     let Some(conversion) = conversion else { return };
     let channels = image.channels() as usize;
-    in_parts(image, threads, |part| {
+    let parts: Vec<Mutex<&mut [f32]>> =
+        image.data_mut().chunks_mut(PIXELS * channels).map(Mutex::new).collect();
+    threads.run(parts.len(), &|index| {
+        let mut part = parts[index].lock().unwrap_or_else(PoisonError::into_inner);
         for pixel in part.chunks_exact_mut(channels) {
             conversion.apply(pixel);
         }

@@ -277,7 +277,8 @@ impl<'h> Fetched<'h> {
         Ok(content::of_all(&all))
     }
 
-    /// Two channels of the pixels of `window`, as they are stored; NaN for what the image does not hold.
+    /// Two channels of the pixels of `window`, as `change` makes those that are stored; NaN for what the image does not
+    /// hold.
     ///
     /// # Errors
     /// Memory; image format, for one without such channels or of a shape that no image can have.
@@ -287,6 +288,7 @@ impl<'h> Fetched<'h> {
         window: Rect,
         channels: [usize; 2],
         threads: &dyn Threads,
+        change: &(dyn Fn(&mut [f32]) + Sync),
     ) -> Outcome<Image> {
         let checked = self.checked(frame)?;
         if channels.iter().any(|c| *c >= self.channels as usize) {
@@ -302,7 +304,7 @@ impl<'h> Fetched<'h> {
         }
         let channels = if self.blue_first { channels.map(|c| [2, 1, 0, 3][c]) } else { channels };
         // SAFETY: the host gave the image, so that its memory may be read until it is released.
-        let read = unsafe { checked.read_pairs(inside, channels, &mut image, threads) };
+        let read = unsafe { checked.read_pairs(inside, channels, &mut image, threads, change) };
         read.map_err(|_| kOfxStatErrMemory)?;
         Ok(image)
     }

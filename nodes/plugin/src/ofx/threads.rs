@@ -6,7 +6,6 @@
 use super::host::Host;
 use crate::abi::guard::lock;
 use crate::abi::threads::{self, HostThreads, User};
-use isophote::engine::Image;
 use isophote::engine::cpu::{CallingThread, Pool, Threads};
 use isophote_abi::IsophoteJob;
 use isophote_abi::openfx::*;
@@ -66,16 +65,6 @@ impl FrameThreads {
             Self::Calling(threads) => threads,
         }
     }
-}
-
-/// Has `change` go over all pixels of an image, some of them at a time.
-pub fn in_parts(image: &mut Image, threads: &dyn Threads, change: impl Fn(&mut [f32]) + Sync) {
-    /// Pixels that one job changes.
-    const PIXELS: usize = 1 << 14;
-    let channels = image.channels() as usize;
-    let parts: Vec<Mutex<&mut [f32]>> =
-        image.data_mut().chunks_mut(PIXELS * channels).map(Mutex::new).collect();
-    threads.run(parts.len(), &|index| change(&mut lock(&parts[index])));
 }
 
 /// Jobs that the host's threads take one after the other.

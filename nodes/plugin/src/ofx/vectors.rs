@@ -8,7 +8,6 @@ use super::image::{Clip, Fetched};
 use super::inputs::Inputs;
 use super::prepared::Prepared;
 use super::stop::Stop;
-use super::threads::in_parts;
 use crate::pool;
 use isophote::engine::cpu::Threads;
 use isophote::engine::{Image, Rect};
@@ -41,23 +40,21 @@ impl<'h> Inputs<'h> {
             let (name, guide) = CLIPS[usize::from(from == Way::Forward)];
             let mut fetched = None;
             let image = self.of_vectors(name, guide, offset, &mut fetched)?;
-            let read = |image: &Fetched<'_>| {
-                self.of_field(window, |w| image.read_pairs(&self.frame, w, channels, threads))
+            let clip = Clip::of(self.host, self.instance, name);
+            let par = image.and_then(|image| image.aspect).or(clip.map(|clip| clip.aspect())).unwrap_or(1.0);
+            let defined = clip.and_then(|clip| clip.defined(self.time + f64::from(offset)));
+            let (size, ratio) = (self.full_size(defined, par), prepared.ratio(&self.frame));
+            let [x, y] = [ratio[0] * par, ratio[1]].map(|pixels| pixels as f32);
+            let change = |row: &mut [f32]| {
+                rule.apply(row, size);
+                for vector in row.chunks_exact_mut(2) {
+                    (vector[0], vector[1]) = (vector[0] * x, vector[1] * y);
+                }
             };
-            if let Some(mut pairs) = image.map(read).map_or(Ok(None), present)? {
-                let clip = Clip::of(self.host, self.instance, name);
-                let par =
-                    image.and_then(|image| image.aspect).or(clip.map(|clip| clip.aspect())).unwrap_or(1.0);
-                let defined = clip.and_then(|clip| clip.defined(self.time + f64::from(offset)));
-                let size = self.full_size(defined, par);
-                let ratio = prepared.ratio(&self.frame);
-                let [x, y] = [ratio[0] * par, ratio[1]].map(|pixels| pixels as f32);
-                in_parts(&mut pairs, threads, |part| {
-                    rule.apply(part, size);
-                    for vector in part.chunks_exact_mut(2) {
-                        (vector[0], vector[1]) = (vector[0] * x, vector[1] * y);
-                    }
-                });
+            let read = |image: &Fetched<'_>| {
+                self.of_field(window, |w| image.read_pairs(&self.frame, w, channels, threads, &change))
+            };
+            if let Some(pairs) = image.map(read).map_or(Ok(None), present)? {
                 return Ok(Some(pairs));
             }
             drop(fetched);
