@@ -77,23 +77,26 @@ impl Lasting {
         Self::over(lasting(prepared.planned.plan()), prepared, segment)
     }
 
-    /// The parts of `inside` of a picture of this size, each in the segment for which images are kept: all of the picture,
-    /// where segments would have most of it in common and it is not too much.
+    /// The parts of `inside` of a picture of this size, each in the segment for which images are kept, if any are: all of the
+    /// picture, where segments would have most of it in common and it is not too much.
     pub fn parts(prepared: &Prepared, size: [u32; 2], inside: Rect) -> Vec<Part> {
-        let (parts, whole) = (parts(size, inside), Rect::of_size(size[0], size[1]));
-        if parts.iter().all(|part| part.segment.is_none_or(|segment| segment == whole)) {
-            return parts;
+        let shared = lasting(prepared.planned.plan());
+        if shared.is_empty() {
+            return vec![Part::alone(inside)];
         }
-        let plan = prepared.planned.plan();
-        let shared = lasting(plan);
-        let rows = |segment| {
-            Self::over(shared.clone(), prepared, segment).map_or(0.0, |all| all.region.height() as f32)
-        };
-        let is_costly = segments(size).map(rows).sum::<f32>() > MOST_ROWS * plan.size()[1] as f32;
-        if is_costly && Self::over(shared.clone(), prepared, whole).is_some() {
-            return vec![Part { inside, segment: Some(whole) }];
+        let over = |segment| Self::over(shared.clone(), prepared, segment);
+        let (mut parts, whole) = (parts(size, inside), Rect::of_size(size[0], size[1]));
+        if parts.iter().any(|part| part.segment.is_some_and(|segment| segment != whole)) {
+            let rows = |segment| over(segment).map_or(0.0, |all| all.region.height() as f32);
+            let most = MOST_ROWS * prepared.planned.plan().size()[1] as f32;
+            if segments(size).map(rows).sum::<f32>() > most && over(whole).is_some() {
+                return vec![Part { inside, segment: Some(whole) }];
+            }
         }
-        parts
+        for part in &mut parts {
+            part.segment = part.segment.filter(|segment| over(*segment).is_some());
+        }
+        if parts.iter().all(|part| part.segment.is_none()) { vec![Part::alone(inside)] } else { parts }
     }
 
     fn over(shared: Vec<Shared>, prepared: &Prepared, segment: Rect) -> Option<Self> {
@@ -131,13 +134,17 @@ impl Lasting {
 /// The shared images of a plan that the plans of other frames ask for as well.
 fn lasting(plan: &Plan) -> Vec<Shared> {
     let mut all = plan.shared();
-    let mut relative = Vec::new();
-    for Shared { image, frames: [first, _], .. } in &all {
+    let mut named: BTreeMap<i32, Vec<u128>> = BTreeMap::new();
+    let of_frame = |first: i32| {
         let name = |from: i32| content::of_text(&format!("{from}"));
-        let names =
-            plan.names(|port| content::of_all(&[content::of_text(port.base()), name(port.frame - first)]));
-        relative.push(names[image.index()]);
-    }
+        plan.names(|port| content::of_all(&[content::of_text(port.base()), name(port.frame - first)]))
+    };
+    let relative: Vec<u128> = all
+        .iter()
+        .map(|Shared { image, frames: [first, _], .. }| {
+            named.entry(*first).or_insert_with(|| of_frame(*first))[image.index()]
+        })
+        .collect();
     let mut places = relative.iter();
     all.retain(|_| {
         places.next().is_some_and(|name| relative.iter().filter(|other| *other == name).count() > 1)

@@ -73,14 +73,9 @@ impl<'a, 'h> Plans<'a, 'h> {
         Ok(())
     }
 
-    /// The parts of `inside` of which other frames have something in common, which is kept; none where they have not.
+    /// The parts of `inside`, each in the segment of which other frames have something in common with this one, if any has.
     pub fn parts(&self, inside: Rect) -> Vec<Part> {
-        let mut parts = Lasting::parts(&self.prepared, self.inputs.frame.size(), inside);
-        let is_shared = |segment| Lasting::of(&self.prepared, segment).is_some();
-        if !parts.iter().filter_map(|part| part.segment).any(is_shared) {
-            parts.clear();
-        }
-        parts
+        Lasting::parts(&self.prepared, self.inputs.frame.size(), inside)
     }
 
     /// What is done to pixels between their reading and the plan, beside what is prepared.
@@ -98,7 +93,10 @@ impl<'a, 'h> Plans<'a, 'h> {
         executor: &mut CpuExecutor,
         work: &Bands<'_>,
     ) -> Result<(), Stop> {
-        let Some(segment) = part.segment else { return Ok(()) };
+        let Some(segment) = part.segment else {
+            self.take(Stages::default());
+            return Ok(());
+        };
         let Bands { threads, control, .. } = *work;
         let is_part = part.is_strip(self.inputs.frame.size());
         loop {
@@ -107,14 +105,18 @@ impl<'a, 'h> Plans<'a, 'h> {
                 Search { inputs, prepared: &self.prepared, segment, is_part, treatment, threads, control };
             match search.run(executor)? {
                 Found::All(stages) => {
-                    self.cut = stages.cut(self.prepared.planned.plan());
-                    self.emissive = None;
-                    self.stages = stages;
+                    self.take(stages);
                     return Ok(());
                 }
                 Found::Without(missing) => self.forget_from(missing)?,
             }
         }
+    }
+
+    fn take(&mut self, stages: Stages) {
+        self.cut = stages.cut(self.prepared.planned.plan());
+        self.emissive = None;
+        self.stages = stages;
     }
 
     /// The plan's result over the segment of a part, which is kept for the other parts of it; none where the part is all of
@@ -129,9 +131,6 @@ impl<'a, 'h> Plans<'a, 'h> {
         work: &Bands<'_>,
     ) -> Result<Option<Arc<Image>>, Stop> {
         let Some(segment) = part.segment.filter(|segment| *segment != part.inside) else { return Ok(None) };
-        if Lasting::of(&self.prepared, segment).is_none() {
-            return Ok(None);
-        }
         let Some(name) = self.result_name(segment, work)? else { return Ok(None) };
         let stops = || work.control.cancelled.is_some_and(|cancelled| cancelled());
         let mut is_other = false;

@@ -199,13 +199,11 @@ impl RenderAction<'_> {
         executors: &mut Executors<'_>,
         work: &Bands<'_>,
     ) -> Result<bool, Stop> {
-        let mut parts = match executors.cpu() {
+        // What is kept for other frames is of the CPU.
+        let parts = match executors.cpu() {
             Some(_) => plans.parts(work.inside),
-            None => Vec::new(),
+            None => vec![Part::alone(work.inside)],
         };
-        if parts.is_empty() {
-            parts = vec![Part::alone(work.inside)];
-        }
         for part in parts {
             let work = Bands { inside: part.inside, ..*work };
             if let Some(result) = plans.find_result(part, executors, &work)? {
