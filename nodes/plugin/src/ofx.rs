@@ -1,8 +1,8 @@
 //! The OpenFX face: every node as an image effect of its own, for hosts such as Nuke, Resolve and Natron.
 //!
 //! Thin: [`effects`] derives what there is from the nodes' declarations, [`describe`] describes it to hosts,
-//! [`settings`], [`known`], [`image`] and [`inputs`] read what hosts have, [`crate::pixel_aspect`] makes their pixels square,
-//! and [`render`] runs the plan that is [`prepared`] by its [`executors`]. [`shipped`] lists the looks, [`looks`] sets the
+//! [`settings`], [`known`], [`image`], [`inputs`] and [`vectors`] read what hosts have, [`crate::pixel_aspect`] makes their pixels
+//! square, and [`render`] has the frame's [`plans`], which are [`prepared`], run by its [`executors`]. [`shipped`] lists the looks, [`looks`] sets the
 //! controls of a style to one, and [`look_effect`] finds what the effect for looks shows. Nothing is kept between calls but
 //! the host's functions, [`preset_files`], the [`device`] of a graphics card, memory of images, and what frames have in
 //! common ([`neighbours`]), found by the contents of pictures alone; so any action may come on any thread, in any number.
@@ -34,6 +34,7 @@ mod mask;
 mod motion;
 mod needed;
 mod neighbours;
+mod plans;
 mod prepared;
 mod preset_files;
 #[cfg(test)]
@@ -46,6 +47,7 @@ mod shipped;
 mod stop;
 mod threads;
 mod values;
+mod vectors;
 
 use crate::abi::guard::lock;
 use crate::abi::threads::forget_pools;

@@ -231,43 +231,40 @@ impl Checked {
         failure.into_inner().unwrap_or_else(PoisonError::into_inner).map_or(Ok(()), Err)
     }
 
-    /// Two channels of the pixels of a row, which the image must hold, as they are stored.
+    /// Reads two channels of the pixels of `inside`, which both images must hold, as they are stored, into an image of
+    /// two, and has `change` go over each row of them.
     ///
     /// # Errors
     /// Out of memory; input when the image has no such channels.
     ///
     /// # Safety
     /// The memory of the image must be readable.
-    pub unsafe fn read_pairs(&self, row: Rect, channels: [usize; 2]) -> Outcome<Vec<f32>> {
+    pub unsafe fn read_pairs(
+        &self,
+        inside: Rect,
+        channels: [usize; 2],
+        pairs: &mut Image,
+        threads: &dyn Threads,
+        change: &(dyn Fn(&mut [f32]) + Sync),
+    ) -> Outcome<()> {
         if channels.iter().any(|c| *c >= self.channels) {
             return Err(Failure::new(ISOPHOTE_ERROR_INPUT, "an image of vectors has too few channels"));
         }
-        let mut bytes = self.row_of_bytes(&row)?;
-        // SAFETY: as in `read`.
-        unsafe { bytes.as_mut_ptr().copy_from_nonoverlapping(self.at(&row, row.y0), bytes.len()) };
-        let (mut pairs, len) = (Vec::new(), row.width() as usize * 2);
-        pairs.try_reserve_exact(len).map_err(|_| {
-            Failure::new(ISOPHOTE_ERROR_OUT_OF_MEMORY, format!("there is no memory for {len} vectors"))
-        })?;
-        pairs.resize(len, 0.0);
-        let size = self.sample.size();
-        let pixels = bytes.chunks_exact(self.channels * size).zip(pairs.chunks_exact_mut(2));
-        for (pixel, pair) in pixels {
-            for (value, channel) in pair.iter_mut().zip(channels) {
-                // A vector of one component, whose number is kept whatever it is.
-                match (self.sample, pixel[channel * size..].first_chunk()) {
-                    (Sample::F32, Some(bytes)) => {
-                        let read = f32::from_ne_bytes(*bytes);
-                        *value = if read.is_finite() { read } else { f32::NAN };
-                    }
-                    _ => {
-                        let from = &pixel[channel * size..][..size];
-                        read_vectors(from, self.sample, 1, std::slice::from_mut(value), 1, f32::NAN);
-                    }
-                }
+        let (sample, pixel) = (self.sample, self.channels * self.sample.size());
+        let (whole, stride) = (pairs.window(), pairs.stride());
+        let rows: Vec<Mutex<&mut [f32]>> =
+            pairs.data_mut().chunks_exact_mut(stride).map(Mutex::new).collect();
+        let first = (inside.x0 - whole.x0) as usize * 2;
+        let read = |y: i32, bytes: &[u8]| {
+            let mut row = lock(&rows[(y - whole.y0) as usize]);
+            let row = &mut row[first..first + bytes.len() / pixel * 2];
+            for (pixel, pair) in bytes.chunks_exact(pixel).zip(row.chunks_exact_mut(2)) {
+                read_pair(pixel, sample, channels, pair);
             }
-        }
-        Ok(pairs)
+            change(row);
+        };
+        // SAFETY: the memory is readable, as the caller promised.
+        unsafe { self.each_row(inside, threads, &read) }
     }
 
     /// Fails for directions and vectors in samples that cannot hold them.
@@ -342,6 +339,23 @@ impl Checked {
 
 /// Leaves rows as they were computed.
 pub const AS_COMPUTED: &(dyn Fn(i32, &mut [f32]) + Sync) = &|_, _| ();
+
+/// Reads two channels of a pixel. A vector of one component is kept whatever the other is.
+fn read_pair(pixel: &[u8], sample: Sample, channels: [usize; 2], pair: &mut [f32]) {
+    let size = sample.size();
+    for (value, channel) in pair.iter_mut().zip(channels) {
+        match (sample, pixel[channel * size..].first_chunk()) {
+            (Sample::F32, Some(bytes)) => {
+                let read = f32::from_ne_bytes(*bytes);
+                *value = if read.is_finite() { read } else { f32::NAN };
+            }
+            _ => {
+                let from = &pixel[channel * size..][..size];
+                read_vectors(from, sample, 1, std::slice::from_mut(value), 1, f32::NAN);
+            }
+        }
+    }
+}
 
 /// Work on some rows: the number of the first, their values, and how many values a row has.
 type RowsJob<'r> = dyn Fn(i32, &mut [f32], usize) -> Outcome<()> + Sync + 'r;

@@ -5,6 +5,7 @@ use super::frame::{Bounds, Frame};
 use super::host::{Host, Outcome, Properties};
 use crate::abi::guard::lock;
 use crate::abi::images::{AS_COMPUTED, Checked};
+use crate::pool;
 use isophote::engine::cpu::{CallingThread, Threads};
 use isophote::engine::{Image, Rect};
 use isophote::graph::GraphInput;
@@ -284,29 +285,35 @@ impl<'h> Fetched<'h> {
         Ok(content::of_all(&all))
     }
 
-    /// Two channels of the pixels of `window`, as they are stored; NaN for what the image does not hold.
+    /// Two channels of the pixels of `window`, as `change` makes those that are stored; NaN for what the image does not
+    /// hold.
     ///
     /// # Errors
     /// Memory; image format, for one without such channels or of a shape that no image can have.
-    pub fn read_pairs(&self, frame: &Frame, window: Rect, channels: [usize; 2]) -> Outcome<Image> {
+    pub fn read_pairs(
+        &self,
+        frame: &Frame,
+        window: Rect,
+        channels: [usize; 2],
+        threads: &dyn Threads,
+        change: &(dyn Fn(&mut [f32]) + Sync),
+    ) -> Outcome<Image> {
         let checked = self.checked(frame)?;
         if channels.iter().any(|c| *c >= self.channels as usize) {
             return Err(kOfxStatErrImageFormat);
         }
-        let mut image = Image::with_window(window, 2).map_err(|_| kOfxStatErrMemory)?;
-        image.data_mut().fill(f32::NAN);
+        let mut image = pool::image(window, 2).map_err(|_| kOfxStatErrMemory)?;
         let inside = window.intersection(&checked.window);
+        if inside != window {
+            image.data_mut().fill(f32::NAN);
+        }
         if inside.is_empty() {
             return Ok(image);
         }
         let channels = if self.blue_first { channels.map(|c| [2, 1, 0, 3][c]) } else { channels };
-        for y in inside.y0..inside.y1 {
-            let row = Rect { y0: y, y1: y + 1, ..inside };
-            // SAFETY: the host gave the image, so that its memory may be read until it is released.
-            let pairs = unsafe { checked.read_pairs(row, channels) }.map_err(|_| kOfxStatErrMemory)?;
-            let at = (inside.x0 - window.x0) as usize * 2;
-            image.row_mut(y)[at..at + pairs.len()].copy_from_slice(&pairs);
-        }
+        // SAFETY: the host gave the image, so that its memory may be read until it is released.
+        let read = unsafe { checked.read_pairs(inside, channels, &mut image, threads, change) };
+        read.map_err(|_| kOfxStatErrMemory)?;
         Ok(image)
     }
 

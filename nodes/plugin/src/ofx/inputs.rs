@@ -3,11 +3,11 @@
 //! The images of other frames are fetched when they are read and given back at once. They are read for every render:
 //! hosts do not tell effects when the pictures of other frames change.
 
-use super::clips::{MOTION, MOTION_FORWARD, SOURCE, guide_clip};
+use super::clips::{SOURCE, guide_clip};
 use super::colours::Colours;
 use super::content;
 use super::effects::Effect;
-use super::frame::{Frame, is_endless};
+use super::frame::Frame;
 use super::host::{Host, Outcome, Properties};
 use super::image::{Alpha, Beyond, Clip, Fetched};
 use super::prepared::Prepared;
@@ -165,8 +165,14 @@ impl<'h> Inputs<'h> {
     }
 
     /// The host's pixels that a plan, or a part of it, reads of each of its images.
-    pub fn gather(&self, prepared: &Prepared, plan: &Plan, windows: &[Rect]) -> Result<Gathered<Read>, Stop> {
-        self.each(prepared, plan.inputs(), windows, |taken| self.read_taken(prepared, taken))
+    pub fn gather(
+        &self,
+        prepared: &Prepared,
+        plan: &Plan,
+        windows: &[Rect],
+        threads: &dyn Threads,
+    ) -> Result<Gathered<Read>, Stop> {
+        self.each(prepared, plan.inputs(), windows, threads, |taken| self.read_taken(prepared, taken))
     }
 
     /// Result of `made` for the image of each of a plan's inputs. One is given back before the next is taken.
@@ -175,6 +181,7 @@ impl<'h> Inputs<'h> {
         prepared: &Prepared,
         ports: impl IntoIterator<Item = &'p Port>,
         windows: &[Rect],
+        threads: &dyn Threads,
         made: impl Fn(Taken<'h>) -> Result<T, Stop>,
     ) -> Result<Gathered<T>, Stop> {
         let mut all = Vec::new();
@@ -183,7 +190,7 @@ impl<'h> Inputs<'h> {
             let Some(input) = GraphInput::from_id(port.base()).filter(|_| !window.is_empty()) else {
                 continue;
             };
-            match self.pixels(prepared, input, port.frame, window)? {
+            match self.pixels(prepared, input, port.frame, window, threads)? {
                 Some(pixels) => {
                     let (name, offset) = (port.name.clone(), port.frame);
                     all.push(made(Taken { name, input, offset, window, pixels })?);
@@ -228,24 +235,19 @@ impl<'h> Inputs<'h> {
             Pixels::OfNeighbour(image, beyond) => (Some(image), *beyond),
             Pixels::OfFrame => (self.image(taken.input), Beyond::Edge),
         };
-        let Some(image) = image.filter(|image| !is_part || self.is_covered(taken, image, window)) else {
-            return Ok(None);
-        };
+        let name = if taken.input == GraphInput::Color { Some(SOURCE) } else { guide_clip(taken.input) };
+        let is_held = |image: &&Fetched<'_>| !is_part || self.is_held(name, taken.offset, image, window);
+        let Some(image) = image.filter(is_held) else { return Ok(None) };
         let read = content::of_text(&format!("{window:?} {beyond:?} {:?}", self.field));
         Ok(Some(content::of_all(&[read, image.content(&self.frame, window, threads)?])))
     }
 
-    /// True where the host gave all of a window that its clip has.
-    fn is_covered(&self, taken: &Taken<'_>, image: &Fetched<'_>, window: Rect) -> bool {
+    /// True where the host gave all of a window that its clip has in a frame.
+    pub fn is_held(&self, name: Option<&CStr>, offset: i32, image: &Fetched<'_>, window: Rect) -> bool {
         let held = self.frame.inside(image.bounds);
-        let is_colour = taken.input == GraphInput::Color;
         let defined = || {
-            let clip = Clip::of(
-                self.host,
-                self.instance,
-                if is_colour { SOURCE } else { guide_clip(taken.input)? },
-            )?;
-            self.frame.pixels(&clip.defined(self.time + f64::from(taken.offset))?)
+            let clip = Clip::of(self.host, self.instance, name?)?;
+            self.frame.pixels(&clip.defined(self.time + f64::from(offset))?)
         };
         held.contains(&window)
             || defined().is_some_and(|d| held.contains(&window.intersection(&self.frame.inside(d))))
@@ -281,9 +283,10 @@ impl<'h> Inputs<'h> {
         input: GraphInput,
         offset: i32,
         window: Rect,
+        threads: &dyn Threads,
     ) -> Result<Option<Pixels<'h>>, Stop> {
         let window = prepared.host_window(window);
-        let vectors = |way| Ok(self.vectors(prepared, way, offset, window)?.map(Pixels::Vectors));
+        let vectors = |way| Ok(self.vectors(prepared, way, offset, window, threads)?.map(Pixels::Vectors));
         match input {
             GraphInput::Motion => vectors(Way::Backward),
             GraphInput::MotionForward => vectors(Way::Forward),
@@ -297,7 +300,8 @@ impl<'h> Inputs<'h> {
         if input == GraphInput::Color { Some(&self.source) } else { self.guide(input) }
     }
 
-    fn guide(&self, guide: GraphInput) -> Option<&Fetched<'h>> {
+    /// The image of a guide in the frame that is rendered.
+    pub fn guide(&self, guide: GraphInput) -> Option<&Fetched<'h>> {
         self.guides.iter().find(|(g, _)| *g == guide).map(|(_, image)| image)
     }
 
@@ -324,7 +328,7 @@ impl<'h> Inputs<'h> {
     }
 
     /// The pixels of `window`, by what `read` reads; those of one field where one is rendered.
-    fn of_field(&self, window: Rect, read: impl Fn(Rect) -> Outcome<Image>) -> Outcome<Image> {
+    pub fn of_field(&self, window: Rect, read: impl Fn(Rect) -> Outcome<Image>) -> Outcome<Image> {
         let Some(field) = self.field else { return read(window) };
         // Rows of the other field take the next of this one, as hosts that double the lines have it. Then
         // a picture of both fields and one of doubled lines come out alike.
@@ -347,14 +351,14 @@ impl<'h> Inputs<'h> {
     }
 
     /// The pixels that are read for a window: rows of a field have neighbours in the other.
-    fn grown(&self, window: Rect) -> Rect {
+    pub fn grown(&self, window: Rect) -> Rect {
         let whole = Rect::of_size(self.frame.size()[0], self.frame.size()[1]);
         let grown = Rect { y0: window.y0 - 1, y1: window.y1 + 1, ..window }.intersection(&whole);
         if self.field.is_some() { grown } else { window }
     }
 
     /// The image of a clip in another frame; none where the clip, or the host, has none.
-    fn neighbour(&self, name: &CStr, offset: i32) -> Result<Option<(Clip<'h>, Fetched<'h>)>, Stop> {
+    pub fn neighbour(&self, name: &CStr, offset: i32) -> Result<Option<(Clip<'h>, Fetched<'h>)>, Stop> {
         let time = self.time + f64::from(offset);
         let clip = Clip::of(self.host, self.instance, name).filter(|clip| clip.has_frame(time));
         // Whatever is wrong with another frame, this one can do without it.
@@ -386,78 +390,5 @@ impl<'h> Inputs<'h> {
             Some(h) if h[0] > x0 + 1 || h[1] > y0 + 1 || h[2] < x1 - 1 || h[3] < y1 - 1 => Beyond::Zero,
             _ => Beyond::Edge,
         }
-    }
-
-    /// Channels of the images of vectors, to the frame before and to the one after; 0 where there is none.
-    fn vector_channels(&self) -> [usize; 2] {
-        [GraphInput::Motion, GraphInput::MotionForward]
-            .map(|guide| self.guide(guide).map_or(0, |image| image.channels as usize))
-    }
-
-    /// Vectors of one way in a frame, in pixels of the plan. What an image does not hold is unknown.
-    fn vectors(
-        &self,
-        prepared: &Prepared,
-        way: Way,
-        offset: i32,
-        window: Rect,
-    ) -> Result<Option<Image>, Stop> {
-        let mut counts = self.vector_channels();
-        while let Some((from, channels, rule)) = self.convention.among(way, counts) {
-            let (name, guide) = match from {
-                Way::Backward => (MOTION, GraphInput::Motion),
-                Way::Forward => (MOTION_FORWARD, GraphInput::MotionForward),
-            };
-            let mut fetched = None;
-            let image = if offset == 0 {
-                self.guide(guide)
-            } else {
-                fetched = self.neighbour(name, offset)?.map(|(_, image)| image);
-                fetched.as_ref()
-            };
-            let pairs =
-                image.map(|image| self.of_field(window, |w| image.read_pairs(&self.frame, w, channels)));
-            if let Some(mut pairs) = pairs.map_or(Ok(None), present)? {
-                let clip = Clip::of(self.host, self.instance, name);
-                let par =
-                    image.and_then(|image| image.aspect).or(clip.map(|clip| clip.aspect())).unwrap_or(1.0);
-                let defined = clip.and_then(|clip| clip.defined(self.time + f64::from(offset)));
-                rule.apply(pairs.data_mut(), self.full_size(defined, par));
-                let ratio = prepared.ratio(&self.frame);
-                let [x, y] = [ratio[0] * par, ratio[1]].map(|pixels| pixels as f32);
-                for vector in pairs.data_mut().chunks_exact_mut(2) {
-                    (vector[0], vector[1]) = (vector[0] * x, vector[1] * y);
-                }
-                return Ok(Some(pairs));
-            }
-            drop(fetched);
-            // The other image may have them reversed.
-            counts[usize::from(from == Way::Forward)] = 0;
-        }
-        if offset != 0 {
-            return Ok(None);
-        }
-        let mut unknown = Image::with_window(window, 2).map_err(|_| kOfxStatErrMemory)?;
-        unknown.data_mut().fill(f32::NAN);
-        Ok(Some(unknown))
-    }
-
-    /// Columns and rows of a clip's picture at full size.
-    fn full_size(&self, defined: Option<OfxRectD>, par: f64) -> [f32; 2] {
-        let region =
-            defined.filter(|region| !is_endless(region) && region.x1 < region.x2 && region.y1 < region.y2);
-        let [x1, y1, x2, y2] = match region {
-            Some(OfxRectD { x1, y1, x2, y2 }) => [x1, y1, x2, y2],
-            None => self.frame.canonical(self.frame.picture),
-        };
-        [((x2 - x1) / par) as f32, (y2 - y1) as f32]
-    }
-}
-
-/// Image that was read; none where it is not fit for the input, which leaves no memory out.
-fn present(read: Outcome<Image>) -> Result<Option<Image>, Stop> {
-    match read {
-        Err(status) if status != kOfxStatErrMemory => Ok(None),
-        read => Ok(Some(read?)),
     }
 }

@@ -9,7 +9,6 @@ use super::image::Clip;
 use super::known::{Known, clip_of};
 use super::neighbours::Lasting;
 use super::prepared::{Prepared, Quality};
-use super::segments::parts;
 use super::settings::{Settings, animated};
 use isophote::engine::plan::Port;
 use isophote::engine::{Plan, Rect};
@@ -147,10 +146,12 @@ pub fn regions_of_interest(
 fn read_for(prepared: &Prepared, size: [u32; 2], region: Rect) -> Vec<(GraphInput, Rect)> {
     let plan = prepared.planned.plan();
     let mut all = inputs(prepared, plan, &prepared.windows(region));
-    let segments = parts(size, region).into_iter().filter_map(|part| part.segment);
-    for lasting in segments.filter_map(|segment| Lasting::of(prepared, segment)) {
-        let (part, windows) = lasting.part(plan);
-        all.extend(inputs(prepared, &part, &windows));
+    for segment in Lasting::parts(prepared, size, region).into_iter().filter_map(|part| part.segment) {
+        if let Some(lasting) = Lasting::of(prepared, segment) {
+            let (part, windows) = lasting.part(plan);
+            all.extend(inputs(prepared, &part, &windows));
+            all.extend(inputs(prepared, plan, &prepared.windows(segment)));
+        }
     }
     all
 }

@@ -9,7 +9,7 @@ use std::sync::{Arc, Condvar, LazyLock, Mutex, MutexGuard, PoisonError};
 use std::time::{Duration, Instant};
 
 /// Most bytes that are kept.
-const MOST: u64 = 2 << 30;
+const MOST: u64 = 4 << 30;
 /// One part in so many of the machine's memory is kept at most.
 const SHARE: u64 = 8;
 /// What was not used for so long is given back when the next image comes.
@@ -17,7 +17,7 @@ const IDLE: Duration = Duration::from_secs(120);
 /// Time between two questions whether to stop, while another thread computes.
 const TURN: Duration = Duration::from_millis(10);
 /// After so long a thread computes by itself what another was to compute, which may wait for this one.
-const PATIENCE: Duration = Duration::from_secs(5);
+pub const PATIENCE: Duration = Duration::from_secs(5);
 
 /// A place of the store.
 enum Place {
@@ -130,12 +130,14 @@ impl Drop for Claim<'_> {
     }
 }
 
-/// The images of these numbers: those that are kept, and the others from `compute`, which is given their positions.
+/// The images of these numbers: those that are kept, and the others from `compute`, which is given their positions. What
+/// others compute is waited for as long as `patience` lasts.
 ///
 /// # Errors
 /// Aborted, where `stops` says so while another thread computes; those of `compute`.
 pub fn obtain(
     names: &[u128],
+    patience: Duration,
     stops: &dyn Fn() -> bool,
     mut compute: impl FnMut(&[usize]) -> Result<Vec<Image>, Stop>,
 ) -> Result<Vec<Arc<Image>>, Stop> {
@@ -148,7 +150,7 @@ pub fn obtain(
         if missing.is_empty() {
             return Ok(found.into_iter().flatten().collect());
         }
-        if claimed.is_empty() && started.elapsed() < PATIENCE {
+        if claimed.is_empty() && started.elapsed() < patience {
             // Nothing is claimed by this thread here, so that no two wait for each other.
             store = ENDED.wait_timeout(store, TURN).unwrap_or_else(PoisonError::into_inner).0;
             drop(store);
@@ -195,7 +197,7 @@ mod tests {
     fn an_image_is_computed_once_however_many_want_it() {
         let computed = AtomicUsize::new(0);
         let want = || {
-            let images = obtain(&[1 << 100, 2 << 100], &never, |own| {
+            let images = obtain(&[1 << 100, 2 << 100], PATIENCE, &never, |own| {
                 computed.fetch_add(own.len(), Ordering::SeqCst);
                 std::thread::sleep(Duration::from_millis(30));
                 Ok(own.iter().map(|index| image(*index as f32)).collect())
@@ -210,11 +212,14 @@ mod tests {
     #[test]
     fn who_fails_or_panics_leaves_it_to_others_and_who_waits_can_stop() {
         let name = [3 << 100];
-        assert!(obtain(&name, &never, |_| Err(Stop::Aborted)).is_err());
-        assert!(catch_unwind(AssertUnwindSafe(|| obtain(&name, &never, |_| panic!("broken")))).is_err());
-        let images = obtain(&name, &never, |_| {
+        assert!(obtain(&name, PATIENCE, &never, |_| Err(Stop::Aborted)).is_err());
+        assert!(
+            catch_unwind(AssertUnwindSafe(|| obtain(&name, PATIENCE, &never, |_| panic!("broken")))).is_err()
+        );
+        let images = obtain(&name, PATIENCE, &never, |_| {
             std::thread::scope(|scope| {
-                let stopped = scope.spawn(|| obtain(&name, &|| true, |_| Ok(vec![image(0.0)])).is_err());
+                let stopped =
+                    scope.spawn(|| obtain(&name, PATIENCE, &|| true, |_| Ok(vec![image(0.0)])).is_err());
                 assert!(stopped.join().unwrap());
             });
             Ok(vec![image(5.0)])

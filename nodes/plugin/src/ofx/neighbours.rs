@@ -9,8 +9,9 @@
 use super::content;
 use super::faults;
 use super::inputs::{Gathered, Inputs, Read, Taken};
-use super::kept;
+use super::kept::{self, PATIENCE};
 use super::prepared::Prepared;
+use super::segments::{Part, parts, segments};
 use super::stop::Stop;
 use isophote::Error;
 use isophote::engine::cpu::{Control, CpuExecutor, Threads};
@@ -58,6 +59,9 @@ impl Stages {
     }
 }
 
+/// Rows that all segments may compute, as a share of the picture's.
+const MOST_ROWS: f32 = 1.5;
+
 /// Images of a plan that are kept for a segment of the picture.
 pub struct Lasting {
     /// The images.
@@ -70,11 +74,36 @@ pub struct Lasting {
 impl Lasting {
     /// Images for a segment of the host's pixels; none where there is nothing to share, or too much of it.
     pub fn of(prepared: &Prepared, segment: Rect) -> Option<Self> {
-        let plan = prepared.planned.plan();
-        let shared = lasting(plan);
+        Self::over(lasting(prepared.planned.plan()), prepared, segment)
+    }
+
+    /// The parts of `inside` of a picture of this size, each in the segment for which images are kept, if any are: all of the
+    /// picture, where segments would have most of it in common and it is not too much.
+    pub fn parts(prepared: &Prepared, size: [u32; 2], inside: Rect) -> Vec<Part> {
+        let shared = lasting(prepared.planned.plan());
+        if shared.is_empty() {
+            return vec![Part::alone(inside)];
+        }
+        let over = |segment| Self::over(shared.clone(), prepared, segment);
+        let (mut parts, whole) = (parts(size, inside), Rect::of_size(size[0], size[1]));
+        if parts.iter().any(|part| part.segment.is_some_and(|segment| segment != whole)) {
+            let rows = |segment| over(segment).map_or(0.0, |all| all.region.height() as f32);
+            let most = MOST_ROWS * prepared.planned.plan().size()[1] as f32;
+            if segments(size).map(rows).sum::<f32>() > most && over(whole).is_some() {
+                return vec![Part { inside, segment: Some(whole) }];
+            }
+        }
+        for part in &mut parts {
+            part.segment = part.segment.filter(|segment| over(*segment).is_some());
+        }
+        if parts.iter().all(|part| part.segment.is_none()) { vec![Part::alone(inside)] } else { parts }
+    }
+
+    fn over(shared: Vec<Shared>, prepared: &Prepared, segment: Rect) -> Option<Self> {
         if shared.is_empty() {
             return None;
         }
+        let plan = prepared.planned.plan();
         let windows = plan.windows(prepared.plan_window(segment));
         let region = shared.iter().fold(Rect::default(), |all, Shared { image, .. }| {
             let window = windows[image.index()];
@@ -105,13 +134,17 @@ impl Lasting {
 /// The shared images of a plan that the plans of other frames ask for as well.
 fn lasting(plan: &Plan) -> Vec<Shared> {
     let mut all = plan.shared();
-    let mut relative = Vec::new();
-    for Shared { image, frames: [first, _], .. } in &all {
+    let mut named: BTreeMap<i32, Vec<u128>> = BTreeMap::new();
+    let of_frame = |first: i32| {
         let name = |from: i32| content::of_text(&format!("{from}"));
-        let names =
-            plan.names(|port| content::of_all(&[content::of_text(port.base()), name(port.frame - first)]));
-        relative.push(names[image.index()]);
-    }
+        plan.names(|port| content::of_all(&[content::of_text(port.base()), name(port.frame - first)]))
+    };
+    let relative: Vec<u128> = all
+        .iter()
+        .map(|Shared { image, frames: [first, _], .. }| {
+            named.entry(*first).or_insert_with(|| of_frame(*first))[image.index()]
+        })
+        .collect();
     let mut places = relative.iter();
     all.retain(|_| {
         places.next().is_some_and(|name| relative.iter().filter(|other| *other == name).count() > 1)
@@ -125,6 +158,8 @@ pub struct Search<'s, 'h> {
     pub prepared: &'s Prepared,
     /// The part of the host's pixels that the images are found for.
     pub segment: Rect,
+    /// True where the host need not have given all of the picture.
+    pub is_part: bool,
     /// What is done to pixels between their reading and the plan, beside what `prepared` does.
     pub treatment: String,
     pub threads: &'s dyn Threads,
@@ -143,10 +178,11 @@ impl Search<'_, '_> {
         };
         let (part, windows) = lasting.part(plan);
         let content = |taken: Taken<'_>| Ok((self.content(&taken)?, taken.name));
-        let contents = match self.inputs.each(self.prepared, part.inputs(), &windows, content)? {
-            Gathered::All(contents) => contents,
-            Gathered::Without(frame) => return Ok(Found::Without(frame)),
-        };
+        let contents =
+            match self.inputs.each(self.prepared, part.inputs(), &windows, self.threads, content)? {
+                Gathered::All(contents) => contents,
+                Gathered::Without(frame) => return Ok(Found::Without(frame)),
+            };
         if contents.iter().any(|(content, _)| content.is_none()) {
             return Ok(Found::All(Stages::default()));
         }
@@ -169,9 +205,7 @@ impl Search<'_, '_> {
 
     /// Number of what an image holds; none where the host gave too little of it.
     fn content(&self, taken: &Taken<'_>) -> Result<Option<u128>, Stop> {
-        let [width, height] = self.inputs.frame.size();
-        let is_part = self.segment != Rect::of_size(width, height);
-        Ok(self.inputs.content(self.prepared, taken, is_part, self.threads)?)
+        Ok(self.inputs.content(self.prepared, taken, self.is_part, self.threads)?)
     }
 
     /// The stages that are made of the same frames, from `first` on.
@@ -193,7 +227,7 @@ impl Search<'_, '_> {
         });
         let names: Vec<u128> = group.iter().map(|shared| all[shared.image.index()]).collect();
         let stops = || self.control.cancelled.is_some_and(|cancelled| cancelled());
-        kept::obtain(&names, &stops, |missing| {
+        kept::obtain(&names, PATIENCE, &stops, |missing| {
             let ids: Vec<ImageId> = missing.iter().map(|index| group[*index].image).collect();
             let part = plan.part(&ids);
             pixels.read(self, &part)?;
@@ -233,7 +267,7 @@ impl Pixels {
             search.inputs.make_ready(search.prepared, &mut read, search.threads)?;
             Ok(Some(read))
         };
-        let all = match search.inputs.each(search.prepared, ports, &self.windows, read)? {
+        let all = match search.inputs.each(search.prepared, ports, &self.windows, search.threads, read)? {
             Gathered::All(all) => all.into_iter().collect::<Option<Vec<Read>>>(),
             Gathered::Without(_) => None,
         };
@@ -284,5 +318,27 @@ mod tests {
                 assert_eq!(others.count(), 0, "{:?}", effect.identifier);
             }
         }
+    }
+
+    #[test]
+    fn segments_are_the_picture_where_they_would_have_most_of_it_in_common() {
+        let effect = EFFECTS.iter().find(|effect| effect.identifier == c"org.isophote.cartoon").unwrap();
+        let (mut graph, ids) = effect.graph(false).unwrap();
+        graph.set(ids[0], "steadiness", isophote::Value::Float(0.5)).unwrap();
+        let count = |size: [u32; 2]| {
+            let picture = [0, 0, size[0] as i32, size[1] as i32];
+            let frame =
+                Frame { picture, ratio: [1.0; 2], scale: 1.0, top: None, number: 7, reference_height: 0 };
+            let vectors = Guides { motion: true, ..Guides::default() };
+            let known = Known::of(&graph, MotionFrom::default(), vectors, true).unwrap();
+            let prepared = Prepared::new(&known, ColourSpace::Srgb, &frame, true, Quality::Full).unwrap();
+            let strips = Rect { y1: picture[3] - 1, ..Rect::of_size(size[0], size[1]) };
+            let parts = Lasting::parts(&prepared, size, strips);
+            assert_eq!(parts.iter().map(|part| part.inside.height()).sum::<u32>(), size[1] - 1);
+            parts.iter().filter(|part| part.segment.is_some()).count()
+        };
+        assert_eq!(count([256, 1080]), 1);
+        // So much is not kept.
+        assert_eq!(count([16_000, 8000]), 0);
     }
 }

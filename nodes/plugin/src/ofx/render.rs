@@ -2,21 +2,20 @@
 
 use super::blending::{Finish, spread};
 use super::clips::{MASK, SOURCE};
-use super::colours::{Colours, working};
+use super::colours::Colours;
 use super::effects::Effect;
-use super::executors::{Executors, Work};
+use super::executors::Executors;
 use super::faults;
 use super::frame::{Bounds, Frame};
 use super::host::{Host, Outcome, Properties};
 use super::image::{Alpha, Clip, Fetched};
-use super::inputs::{Field, Gathered, Inputs, Read, fetch, fetch_guides};
+use super::inputs::{Field, Inputs, Read, fetch, fetch_guides};
 use super::instance::{self, Moment};
 use super::kept;
-use super::known::Known;
 use super::mask::MaskRule;
-use super::neighbours::{Cut, Found, Lasting, Search, Stages};
+use super::plans::{Bands, Plans, bands};
 use super::prepared::{Prepared, Quality};
-use super::segments::{Part, parts};
+use super::segments::Part;
 use super::settings::Settings;
 use super::stop::Stop;
 use super::threads::FrameThreads;
@@ -24,11 +23,10 @@ use crate::abi::images::AS_COMPUTED;
 use crate::pixel_aspect::divide;
 use crate::pool;
 use isophote::Error;
-use isophote::engine::cpu::{CallingThread, Control, CpuExecutor, Threads};
+use isophote::engine::cpu::{CallingThread, Control, Threads};
 use isophote::engine::plan::LEAST_ROWS;
 use isophote::engine::{Error as EngineError, Image, Rect};
 use isophote::graph::GraphInput;
-use isophote::kernels::shared::host_colour::has_light;
 use isophote_abi::openfx::*;
 use isophote_colour::Space;
 use std::sync::Mutex;
@@ -188,7 +186,7 @@ impl RenderAction<'_> {
         let instance = Mutex::new(Instance(*instance));
         let aborted = || instance.lock().is_ok_and(|instance| host.aborted(instance.0));
         let control = Control { cancelled: Some(&aborted), progress: None };
-        let mut plans = Plans::new(self)?;
+        let mut plans = Plans::new(&self.inputs, &self.settings, self.quality)?;
         let work = Bands { inside, threads: self.inputs.threads.threads(), control };
         while !self.run_parts(&mut plans, &mut executors, &work)? {}
         executors.keep_memory();
@@ -198,19 +196,28 @@ impl RenderAction<'_> {
     /// Computes and writes part by part; false where the graphics card has failed, after which all is begun anew.
     fn run_parts(
         &self,
-        plans: &mut Plans,
+        plans: &mut Plans<'_, '_>,
         executors: &mut Executors<'_>,
         work: &Bands<'_>,
     ) -> Result<bool, Stop> {
-        let mut parts = parts(self.inputs.frame.size(), work.inside);
-        if executors.cpu().is_none() || !plans.share(&parts) {
-            parts = vec![Part::alone(work.inside)];
-        }
-        for Part { inside, segment } in parts {
-            if let (Some(segment), Some(cpu)) = (segment, executors.cpu()) {
-                plans.find_stages(self, segment, cpu, work)?;
+        // What is kept for other frames is of the CPU.
+        let parts = match executors.cpu() {
+            Some(_) => plans.parts(work.inside),
+            None => vec![Part::alone(work.inside)],
+        };
+        for part in parts {
+            let work = Bands { inside: part.inside, ..*work };
+            if let Some(result) = plans.find_result(part, executors, &work)? {
+                let window = plans.prepared.plan_window(part.inside);
+                let result = result.crop(window).map_err(|_| kOfxStatErrMemory)?;
+                let result = self.to_host(&plans.prepared, result, part.inside, work.threads)?;
+                pool::keep_image(self.write(result, self.finish(part.inside, None)?)?);
+                continue;
             }
-            if !self.run_bands(plans, executors, &Bands { inside, ..*work })? {
+            if let Some(cpu) = executors.cpu() {
+                plans.find_stages(part, cpu, &work)?;
+            }
+            if !self.run_bands(plans, executors, &work)? {
                 return Ok(false);
             }
         }
@@ -220,26 +227,20 @@ impl RenderAction<'_> {
     /// Computes and writes band by band; false where the graphics card has failed.
     fn run_bands(
         &self,
-        plans: &mut Plans,
+        plans: &mut Plans<'_, '_>,
         executors: &mut Executors<'_>,
         work: &Bands<'_>,
     ) -> Result<bool, Stop> {
-        let Bands { inside, threads, control } = *work;
+        let inside = work.inside;
         for band in bands(inside, executors.band_rows(&plans.prepared, &plans.cut.plan, inside)) {
-            let images = plans.gather(self, band, threads)?;
-            let region = plans.prepared.plan_window(band);
-            let cut = plans.planned(&images)?;
-            let read = images.iter().map(|read| (&read.name[..], &read.pixels));
-            let handed = cut.handed.iter().map(|(name, image)| (&name[..], &**image));
-            let named: Vec<(&str, &Image)> = read.chain(handed).collect();
-            let work = Work { plan: &cut.plan, images: &named, region, control };
-            let Some(results) = executors.run(&work, threads)? else { return Ok(false) };
+            let Some((result, images)) = plans.run(executors, &Bands { inside: band, ..*work })? else {
+                return Ok(false);
+            };
             let source = self.untouched(&plans.prepared, images);
             if band.y1 == inside.y1 {
                 executors.purge();
             }
-            let result = results.into_iter().next().ok_or(kOfxStatFailed)?;
-            let result = self.to_host(&plans.prepared, result, band, threads)?;
+            let result = self.to_host(&plans.prepared, result, band, work.threads)?;
             executors.recycle(self.write(result, self.finish(band, source)?)?);
         }
         Ok(true)
@@ -324,129 +325,8 @@ impl RenderAction<'_> {
     }
 }
 
-/// Pixels of a frame that are computed at once, and the means for it.
-struct Bands<'b> {
-    inside: Rect,
-    threads: &'b dyn Threads,
-    control: Control<'b>,
-}
-
-/// The plans of a frame.
-struct Plans {
-    known: Known,
-    prepared: Prepared,
-    /// What other frames have in common with this one, where it was looked for.
-    stages: Stages,
-    /// The plan for what is not found there.
-    cut: Cut,
-    /// The one for light beyond coverage, once a band has any.
-    emissive: Option<Cut>,
-}
-
-impl Plans {
-    fn new(action: &RenderAction<'_>) -> Result<Self, Stop> {
-        let (inputs, settings) = (&action.inputs, &action.settings);
-        let has = inputs.available();
-        let mut known = Known::of(&settings.graph, settings.motion_from, has, inputs.host.temporal)?;
-        known.limit_to_source(inputs.host, inputs.instance, inputs.time);
-        let prepared = Self::prepared(&known, action)?;
-        let stages = Stages::default();
-        let cut = stages.cut(prepared.planned.plan());
-        Ok(Self { known, prepared, stages, cut, emissive: None })
-    }
-
-    fn prepared(known: &Known, action: &RenderAction<'_>) -> isophote::Result<Prepared> {
-        let RenderAction { inputs, settings, quality, .. } = action;
-        Prepared::new(known, working(settings.space), &inputs.frame, !inputs.is_straight(), *quality)
-    }
-
-    /// Goes on without a frame that lacks an image, and those behind it.
-    fn forget_from(&mut self, missing: i32, action: &RenderAction<'_>) -> Result<(), Stop> {
-        self.known.forget_from(missing);
-        self.prepared = Self::prepared(&self.known, action)?;
-        self.cut = self.stages.cut(self.prepared.planned.plan());
-        self.emissive = None;
-        Ok(())
-    }
-
-    /// True where other frames have something in common with these parts of this one, which is kept.
-    fn share(&self, parts: &[Part]) -> bool {
-        let mut segments = parts.iter().filter_map(|part| part.segment);
-        segments.any(|segment| Lasting::of(&self.prepared, segment).is_some())
-    }
-
-    /// Finds what other frames have in common with a segment of this one.
-    fn find_stages(
-        &mut self,
-        action: &RenderAction<'_>,
-        segment: Rect,
-        executor: &mut CpuExecutor,
-        work: &Bands<'_>,
-    ) -> Result<(), Stop> {
-        let Bands { threads, control, .. } = *work;
-        loop {
-            let (inputs, space) = (&action.inputs, action.settings.space);
-            let treatment = format!("{space:?} {}", inputs.is_straight());
-            let search = Search { inputs, prepared: &self.prepared, segment, treatment, threads, control };
-            match search.run(executor)? {
-                Found::All(stages) => {
-                    self.cut = stages.cut(self.prepared.planned.plan());
-                    self.emissive = None;
-                    self.stages = stages;
-                    return Ok(());
-                }
-                Found::Without(missing) => self.forget_from(missing, action)?,
-            }
-        }
-    }
-
-    /// Images that a band is computed from. Frames are known up to the first that lacks an image.
-    fn gather(
-        &mut self,
-        action: &RenderAction<'_>,
-        band: Rect,
-        threads: &dyn Threads,
-    ) -> Result<Vec<Read>, Stop> {
-        loop {
-            let (prepared, plan) = (&self.prepared, &self.cut.plan);
-            match action.inputs.gather(prepared, plan, &plan.windows(prepared.plan_window(band)))? {
-                Gathered::All(mut images) => {
-                    for read in &mut images {
-                        action.inputs.make_ready(prepared, read, threads)?;
-                    }
-                    return Ok(images);
-                }
-                Gathered::Without(missing) => self.forget_from(missing, action)?,
-            }
-        }
-    }
-
-    /// The plan for what was read.
-    fn planned(&mut self, images: &[Read]) -> Result<&Cut, Stop> {
-        let color = images.iter().find(|read| read.name == GraphInput::Color.id());
-        let premultiplied = self.prepared.planned.request().premultiplied;
-        if !(premultiplied && color.is_some_and(|read| has_light(read.pixels.data()))) {
-            return Ok(&self.cut);
-        }
-        if self.emissive.is_none() {
-            let planned = self.prepared.emissive(&self.known)?;
-            self.emissive = Some(self.stages.cut(planned.plan()));
-        }
-        Ok(self.emissive.as_ref().unwrap_or(&self.cut))
-    }
-}
-
 /// The host's word for the instance, for the one question that other threads ask about it.
 struct Instance(Handle);
 
 // SAFETY: the handle is never followed here, and the standard lets any thread ask whether to stop.
 unsafe impl Send for Instance {}
-
-/// Bands of `rows` rows, from the top.
-fn bands(window: Rect, rows: i32) -> impl Iterator<Item = Rect> {
-    (window.y0..window.y1).step_by(rows.max(1) as usize).map(move |y0| Rect {
-        y0,
-        y1: (y0 + rows).min(window.y1),
-        ..window
-    })
-}

@@ -23,6 +23,11 @@ impl Part {
     pub fn alone(inside: Rect) -> Self {
         Self { inside, segment: None }
     }
+
+    /// True where no more than a part of a picture of this size is wanted.
+    pub fn is_strip(&self, size: [u32; 2]) -> bool {
+        self.inside != Rect::of_size(size[0], size[1])
+    }
 }
 
 /// The parts of `inside` of a picture of this size: one for each of the segments that it lies in, or one for all of the
@@ -35,11 +40,16 @@ pub fn parts(size: [u32; 2], inside: Rect) -> Vec<Part> {
     if size[0] > WIDEST {
         return vec![Part::alone(inside)];
     }
-    let count = ((size[1] + ROWS / 2) / ROWS).max(1);
-    let edge = |index: u32| (u64::from(size[1]) * u64::from(index) / u64::from(count)) as i32;
-    let segments = (0..count).map(|index| Rect { y0: edge(index), y1: edge(index + 1), ..whole });
     let part = |segment: Rect| Part { inside: inside.intersection(&segment), segment: Some(segment) };
-    segments.map(part).filter(|part| !part.inside.is_empty()).collect()
+    segments(size).map(part).filter(|part| !part.inside.is_empty()).collect()
+}
+
+/// All segments of a picture of this size, from the top.
+pub fn segments(size: [u32; 2]) -> impl Iterator<Item = Rect> {
+    let count = ((size[1] + ROWS / 2) / ROWS).max(1);
+    let edge = move |index: u32| (u64::from(size[1]) * u64::from(index) / u64::from(count)) as i32;
+    let whole = Rect::of_size(size[0], size[1]);
+    (0..count).map(move |index| Rect { y0: edge(index), y1: edge(index + 1), ..whole })
 }
 
 #[cfg(test)]
