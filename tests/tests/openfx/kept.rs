@@ -139,8 +139,9 @@ pub fn strips_share_what_frames_have_in_common() {
     let film = || {
         let instance = steadied(&described, size);
         instance.set("window", 1);
-        // What is around lines reaches from one segment into the other.
+        // What is around lines, and areas, reach from one segment into the other.
         instance.set("inhibition", 0.0);
+        instance.set("steps", 0);
         instance
     };
     let (whole, strips) = (film(), film());

@@ -42,7 +42,7 @@ pub static NODE: NodeSpec = NodeSpec {
         // Below the thesis', under which soft light on skin is one blur instead of patches of paint.
         THRESHOLD.with_default(Value::Float(0.006)).group(ADVANCED),
         ALPHA.group(ADVANCED),
-        P_S.with_default(Value::Float(0.7)).group(ADVANCED),
+        P_S.with_default(Value::Float(0.85)).group(ADVANCED),
         P_D.group(ADVANCED),
         TAU_V.with_default(Value::Float(0.01)).group(ADVANCED),
         TAU_W.group(ADVANCED),
