@@ -1,4 +1,4 @@
-//! Each pixel takes the colour of those modes around it ([`local_mode`](super::local_mode)), found at a coarser level, that
+//! Each pixel takes the colour of those modes around it (of `local_mode`), found at a coarser level, that
 //! its own colour is near: joint bilateral upsampling (Kopf, Cohen, Lischinski and Uyttendaele 2007), where colours are
 //! compared with the modes themselves, so that a border lies where the picture is as near to one as to the other. Modes
 //! count by a quadratic B-spline of their distance. Small things that are like none of them keep their own colours.
