@@ -118,7 +118,8 @@ fn main(@builtin(global_invocation_id) id: vec3u) {
     if marked > 0.0 {
         let structure = fetch(tensor, 1u, p);
         let tangent = tensor_tangent(structure);
-        let gradient = sqrt(max(structure.x + structure.z, 0.0));
+        // By the change from pixel to pixel of the full-size picture.
+        let gradient = sqrt(max(structure.x + structure.z, 0.0)) / params.inverse_scale;
         let form = params.form * rise((tensor_anisotropy(structure) - params.significant) * 4.0)
             * rise((gradient - 0.001) * 250.0);
         let z = (fetch(strokes, 2u, p).x - 0.5) * params.stroke_gain * border_gain(vec2f(p) + HALF, tangent);

@@ -133,7 +133,8 @@ fn drawn<S: Simd>(simd: S, pass: &CpuPass<'_>, params: &Params, block: &Block, d
     let least = one * 1e-6;
     let [e, f, g, _]: [f32x8<S>; 4] = block.read(simd, &pass.inputs[1]);
     let tangent = tensor::tangent(e, f, g);
-    let gradient = (e + g).at_least(0.0).sqrt();
+    // By the change from pixel to pixel of the full-size picture, so that proxies show the same marks.
+    let gradient = (e + g).at_least(0.0).sqrt() / params.inverse_scale;
     let form = rise((tensor::anisotropy(e, f, g) - params.significant) * 4.0)
         * rise((gradient - 0.001) * 250.0)
         * params.form;
