@@ -125,7 +125,7 @@ const PENCIL: Preset = Preset {
     p: 18.0,
     epsilon: 16.0,
     phi: 0.05,
-    tones: [69.0, 4.0],
+    tones: [70.0, 9.0],
     ease: 0.3,
     rubbed: 0.12,
     form: 0.9,
