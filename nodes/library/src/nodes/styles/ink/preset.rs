@@ -147,7 +147,7 @@ const CHARCOAL: Preset = Preset {
     p: 14.0,
     epsilon: 22.0,
     phi: 0.03,
-    tones: [74.0, 8.0],
+    tones: [80.0, 8.0],
     ease: 0.25,
     rubbed: 0.5,
     form: 0.9,
