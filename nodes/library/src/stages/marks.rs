@@ -14,24 +14,10 @@ use isophote_engine::{Class, ImageId, math};
 
 /// White noise, smoothed by `sigma` pixels of the picture that is rendered.
 pub(crate) fn grains(scope: &mut Scope<'_>, sigma: f32, seed: u32) -> ImageId {
-    grains_by(scope, [sigma; 2], seed)
-}
-
-/// The same for what is read between pixels, along lines: in proxies, whose pixels smooth it already by being wide, it is
-/// smoothed by so much less that the lines are those of the full picture.
-pub(crate) fn grains_along(scope: &mut Scope<'_>, sigma: f32, seed: u32) -> ImageId {
-    // Variance of a pixel's square and of the mean of two pixels between which is read, 1/12 and 1/6, beyond the same of the
-    // full picture.
-    let wider = 0.25 * (1.0 - scope.scale() * scope.scale()).max(0.0);
-    grains_by(scope, [(sigma * sigma - wider).max(0.0).sqrt(), sigma], seed)
-}
-
-/// White noise of the screen smoothed by the first, and that of things by the second.
-fn grains_by(scope: &mut Scope<'_>, [on_screen, sigma]: [f32; 2], seed: u32) -> ImageId {
     let (scale, origin) = (scope.scale(), scope.origin());
     let screen = |scope: &mut Scope<'_>, seed: u32| {
         let white = noise::pass(scope.plan, scale, origin, seed);
-        gaussian_blur::pass(scope.plan, white, on_screen, Class::Colour)
+        gaussian_blur::pass(scope.plan, white, sigma, Class::Colour)
     };
     on_things(scope, screen, &Marks::of_smoothed_noise(sigma, scale, seed))
 }

@@ -158,10 +158,10 @@ fn significant(rho: f32) -> f32 {
 /// wide and smoothed along the stream lines by `length`, lengths in pixels of the full-size picture.
 fn strokes(scope: &mut Scope<'_>, tensor: ImageId, [width, length]: [f32; 2]) -> (ImageId, f32) {
     let (scale, seed) = (scope.scale(), scope.renewed(19));
-    let soft = marks::grains_along(scope, width * scale, seed);
+    let soft = marks::grains(scope, width * scale, seed);
     let Marks { deviation, .. } = Marks::of_smoothed_noise(width * scale, scale, seed);
-    // Noise is about as fine as pixels: none may be left out. Proxies go the same way by steps of as many grains.
-    let options = Lic { sigma: length * scale, step: scale.clamp(0.5, 1.0), ..lic::options() };
+    // Noise is about as fine as pixels: none may be left out.
+    let options = Lic { sigma: length * scale, ..lic::options() };
     let long = line_integral_convolution::pass_unadapted(scope.plan, soft, tensor, &options);
     // A Gaussian along lines leaves this share of the deviation.
     let left = (width / math::hypot(length, width)).sqrt();
