@@ -27,6 +27,10 @@ struct Params {
     dryness: f32,
     /// Where the picture stands in the canonical one, pixels.
     origin: vec2f,
+    /// How much of the paper own colours cover before anything is drawn, 0..=1.
+    ground: f32,
+    /// How light own colours are in what is drawn, 0..=1.
+    tint: f32,
 }
 
 #params
@@ -67,9 +71,9 @@ fn of_pixel(id: vec3u, lines: vec4f, v: vec4f, strokes: vec4f, marks: vec4f) -> 
 
     // Chalk: the picture's own colours, a little lighter, where the paper catches them.
     let own = clamp(v.rgb, vec3f(0.0), vec3f(1.0));
-    let chalk = catches(0.85, height, params.grain * mark.y) * params.colour * alpha;
+    let chalk = catches(params.ground, height, params.grain * mark.y) * params.colour * alpha;
     let paper = params.paper.rgb * (1.0 + params.texture_amount * (tooth - 0.5));
     let laid = mix(paper, own * 0.94 + 0.06, chalk);
-    let colour = mix(params.line.rgb, own * 0.3, params.colour);
+    let colour = mix(params.line.rgb, own * params.tint, params.colour);
     return vec4f(mix(laid, colour, ink), select(v.a, 1.0, params.cover != 0u));
 }

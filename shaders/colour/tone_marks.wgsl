@@ -34,10 +34,12 @@ struct Params {
     stroke_width: f32,
     /// 1 / length of strokes, pixels.
     inverse_length: f32,
-    /// How soft the edges of strokes are, in values of 0..=1.
+    /// How soft the edges of strokes are in the full-size picture, in values of 0..=1.
     softness: f32,
     /// 1 / standard deviation of given hatching; 0: hatching stays on the screen.
     given_gain: f32,
+    /// How soft they are in this one, whose pixels may be wider.
+    edge: f32,
 }
 
 #params
@@ -82,8 +84,11 @@ fn hatch(q: vec2f, along: vec2f, d: f32, seed: u32) -> f32 {
 // Strokes of mean density `d` where noise is higher than most, `z` in standard deviations.
 fn stroke(z: f32, d: f32) -> f32 {
     let h = 0.5 + 0.5 * tanh(clamp(0.8 * z, -8.0, 8.0));
-    let wide = d * (1.0 + params.softness) - 0.5 * params.softness;
-    return clamp((wide - h) / params.softness + 0.5, 0.0, 1.0);
+    let foot = d * (1.0 + params.softness);
+    // What is nearly bare or nearly solid stays so.
+    let room = max(min(foot, 1.0 + params.softness - foot), 0.0);
+    let edge = min(room + params.softness, params.edge);
+    return clamp((foot - 0.5 * params.softness - h) / edge + 0.5, 0.0, 1.0);
 }
 
 // The mean of strokes that are asked for a density: where they are thinner than their soft edges they cover less.
@@ -118,7 +123,8 @@ fn main(@builtin(global_invocation_id) id: vec3u) {
     if marked > 0.0 {
         let structure = fetch(tensor, 1u, p);
         let tangent = tensor_tangent(structure);
-        let gradient = sqrt(max(structure.x + structure.z, 0.0));
+        // By the change from pixel to pixel of the full-size picture.
+        let gradient = sqrt(max(structure.x + structure.z, 0.0)) / params.inverse_scale;
         let form = params.form * rise((tensor_anisotropy(structure) - params.significant) * 4.0)
             * rise((gradient - 0.001) * 250.0);
         let z = (fetch(strokes, 2u, p).x - 0.5) * params.stroke_gain * border_gain(vec2f(p) + HALF, tangent);

@@ -15,7 +15,7 @@ const LEAST: f64 = 40.0;
 /// By lines alone, which stand and fall with what is around them.
 const LEAST_OF_LINES: f64 = 32.0;
 /// By strokes and hatches, whose edges are as crisp as pixels.
-const LEAST_OF_MARKS: f64 = 15.0;
+const LEAST_OF_MARKS: f64 = 26.0;
 
 /// A photo-like picture: soft shading and forms with edges as wide as a lens makes them.
 pub fn photo() -> Vec<f32> {

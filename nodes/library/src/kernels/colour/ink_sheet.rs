@@ -36,6 +36,8 @@ pub struct Sheet {
     pub scale: f32,
     /// Share of the picture's own colours that shows, 0..=1.
     pub colour: f32,
+    /// Share of the paper that they cover before anything is drawn, 0..=1.
+    pub ground: f32,
     /// Strength of the paper's texture, 0..=1.
     pub texture: f32,
     /// Share of the grain that follows the strokes instead of the paper, 0..=1.
@@ -61,6 +63,10 @@ pub struct Drawing {
     pub marks: ImageId,
 }
 
+/// Share of the paper that chalk covers, and the part of their lightness that its colours keep in lines above it.
+const COVERED: f32 = 0.85;
+const DARKEST: f32 = 0.3;
+
 /// Draws on a sheet.
 pub fn pass(plan: &mut PlanBuilder, drawing: &Drawing, sheet: &Sheet) -> ImageId {
     let params = Params {
@@ -70,12 +76,13 @@ pub fn pass(plan: &mut PlanBuilder, drawing: &Drawing, sheet: &Sheet) -> ImageId
         grain_frequency: 1.0 / sheet.grain_size.max(0.1),
         inverse_scale: 1.0 / sheet.scale,
         colour: sheet.colour.clamp(0.0, 1.0),
+        ground: sheet.ground,
+        tint: DARKEST + (1.0 - DARKEST) * (1.0 - sheet.ground / COVERED).clamp(0.0, 1.0),
         texture_amount: sheet.texture,
         cover: sheet.cover.into(),
         follow: sheet.follow,
         dryness: sheet.dryness,
         origin: sheet.origin,
-        padding: Default::default(),
     };
     let inputs = [drawing.lines, drawing.color, drawing.strokes, drawing.marks];
     plan.pass(&KERNEL, &inputs, &params, Class::Colour, Support::Pixels(0))
@@ -121,14 +128,14 @@ fn sheet<S: Simd>(simd: S, pass: &CpuPass<'_>, params: &Params, band: &mut Band<
             let ink = drawn * params.line[3] * alpha;
 
             // Chalk: the picture's own colours, a little lighter, where the paper catches them.
-            let chalk = catches(zero + 0.85, height, grain) * params.colour * alpha;
+            let chalk = catches(zero + params.ground, height, grain) * params.colour * alpha;
             let paper = (tooth - 0.5) * params.texture_amount + 1.0;
             let mut laid = [r, g, b];
             for (channel, value) in laid.iter_mut().enumerate() {
                 let own = value.within(zero, one);
                 let sheet = mix(paper * params.paper[channel], own * 0.94 + 0.06, chalk);
                 let line = f32x8::splat(simd, params.line[channel]);
-                let line = mix(line, own * 0.3, zero + params.colour);
+                let line = mix(line, own * params.tint, zero + params.colour);
                 *value = mix(sheet, line, ink);
             }
             let [r, g, b] = laid;

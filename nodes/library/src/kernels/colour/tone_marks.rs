@@ -13,7 +13,7 @@ use crate::kernels::shared::value_noise::noise;
 use crate::kernels::simd::pixels::{Block, for_blocks, write};
 use isophote_engine::dispatch::at_most_avx2;
 use isophote_engine::fearless_simd::{Simd, dispatch, f32x8, prelude::*};
-use isophote_engine::math::Elementary;
+use isophote_engine::math::{self, Elementary};
 use isophote_engine::{Band, Class, CpuPass, ImageId, PlanBuilder, Support, Tolerance};
 
 crate::kernel!(tone_marks {
@@ -100,10 +100,18 @@ pub fn pass(plan: &mut PlanBuilder, inputs: &Inputs, tones: &Tones) -> ImageId {
         inverse_length: 1.0 / tones.stroke[1].max(0.1),
         softness: SOFTNESS,
         given_gain: if inputs.hatching.is_some() { 1.0 / tones.given_deviation.max(1e-3) } else { 0.0 },
-        padding: Default::default(),
+        edge: edge(tones.scale),
     };
     let images = [inputs.tones, inputs.tensor, inputs.strokes, first, second];
     plan.pass(&KERNEL, &images, &params, Class::Field, Support::Pixels(0))
+}
+
+/// Softness of the edges of strokes in pictures rendered at `scale` of their full size.
+fn edge(scale: f32) -> f32 {
+    // Values at which edges lie change by so much over a pixel of the full-size picture, which softness counts in already.
+    const STEP: f32 = 0.1;
+    let wider = (scale.powi(-2) - 1.0).max(0.0).sqrt();
+    math::hypot(SOFTNESS, STEP * wider)
 }
 
 fn run(pass: &CpuPass<'_>, band: &mut Band<'_>) {
@@ -133,7 +141,8 @@ fn drawn<S: Simd>(simd: S, pass: &CpuPass<'_>, params: &Params, block: &Block, d
     let least = one * 1e-6;
     let [e, f, g, _]: [f32x8<S>; 4] = block.read(simd, &pass.inputs[1]);
     let tangent = tensor::tangent(e, f, g);
-    let gradient = (e + g).at_least(0.0).sqrt();
+    // By the change from pixel to pixel of the full-size picture, so that proxies show the same marks.
+    let gradient = (e + g).at_least(0.0).sqrt() / params.inverse_scale;
     let form = rise((tensor::anisotropy(e, f, g) - params.significant) * 4.0)
         * rise((gradient - 0.001) * 250.0)
         * params.form;
@@ -214,8 +223,12 @@ fn hatch<S: Simd>(
 #[inline(always)]
 fn stroke<S: Simd>(z: f32x8<S>, d: f32x8<S>, params: &Params) -> f32x8<S> {
     let h = (z * 0.8).within(-8.0, 8.0).tanh() * 0.5 + 0.5;
-    let wide = d * (1.0 + params.softness) - 0.5 * params.softness;
-    ((wide - h) / params.softness + 0.5).within(0.0, 1.0)
+    let foot = d * (1.0 + params.softness);
+    let wide = foot - 0.5 * params.softness;
+    // What is nearly bare or nearly solid stays so.
+    let room = foot.at_most(-foot + (1.0 + params.softness)).at_least(0.0);
+    let edge = (room + params.softness).at_most(params.edge);
+    ((wide - h) / edge + 0.5).within(0.0, 1.0)
 }
 
 /// The mean of strokes that are asked for a density: where they are thinner than their soft edges they cover less.
@@ -271,7 +284,7 @@ mod tests {
         inverse_length: 0.1,
         softness: SOFTNESS,
         given_gain: 0.0,
-        padding: [0; 1],
+        edge: SOFTNESS,
     };
 
     /// The mean of hatches of density `d` over a large field.

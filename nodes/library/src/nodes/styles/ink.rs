@@ -13,6 +13,7 @@ use crate::kernels::colour::{lab_to_rgb, lightness, rgb_to_lab};
 use crate::kernels::lines::flow_dog_two_dimensional::Stepping;
 use crate::kernels::shared::edge_threshold::{Threshold, Xdog};
 use crate::kernels::shared::stream::Integrator;
+use crate::kernels::smoothing::gaussian_blur;
 use crate::kernels::smoothing::line_integral_convolution::{self, Options as Lic};
 use crate::kernels::structure::contrast;
 use crate::kernels::structure::solid_noise::Marks;
@@ -27,7 +28,7 @@ use crate::stages::{
     ADVANCED, LOOK, difference_of_gaussians as dog, flow_map, line_context, line_integral_convolution as lic,
     lines, marks, tone,
 };
-use isophote_engine::{ImageId, math};
+use isophote_engine::{Class, ImageId, math};
 
 /// The node.
 pub static NODE: NodeSpec = NodeSpec {
@@ -168,6 +169,11 @@ fn strokes(scope: &mut Scope<'_>, tensor: ImageId, [width, length]: [f32; 2]) ->
     (contrast::pass(scope.plan, long, DEVIATION / (deviation * left)), DEVIATION)
 }
 
+/// The form that marks follow, whose directions turn gently: not each wrinkle of it.
+fn gentle(scope: &mut Scope<'_>, tensor: ImageId, sigma: f32) -> ImageId {
+    if sigma > 0.0 { gaussian_blur::pass(scope.plan, tensor, sigma, Class::Field) } else { tensor }
+}
+
 /// Black lines on white, smoothed along the edges.
 fn lines_on_white(
     scope: &mut Scope<'_>,
@@ -218,6 +224,7 @@ fn sheet(scope: &Scope<'_>, drawing: &Preset) -> Sheet {
         scale: scope.scale(),
         origin: scope.origin(),
         colour: drawing.colour,
+        ground: drawing.ground,
         texture: drawing.texture,
         cover: scope.bool("cover"),
     }
@@ -254,7 +261,8 @@ fn build(scope: &mut Scope<'_>) -> ImageId {
     let saturation = if drawing.colour > 0.0 { scope.float("saturation") } else { 1.0 };
     let tinted = lab_to_rgb::pass(scope.plan, smooth, saturation);
     let lines = lines_on_white(scope, tinted, edges, tensor, drawing.sigma_a * scale);
-    let (strokes, deviation) = strokes(scope, tensor, own.stroke);
+    let form = gentle(scope, tensor, own.wide * scale);
+    let (strokes, deviation) = strokes(scope, form, own.stroke);
     let tones = Tones {
         light: drawing.tones[0],
         solid: drawing.tones[1],
@@ -262,7 +270,7 @@ fn build(scope: &mut Scope<'_>) -> ImageId {
         rubbed: drawing.rubbed,
         form: drawing.form,
         spacing: drawing.spacing,
-        significant: significant(drawing.rho),
+        significant: significant(math::hypot(drawing.rho, own.wide)),
         stroke: own.stroke.map(|length| length * scale),
         deviation,
         given_deviation: marks::HATCHING_DEVIATION,
@@ -274,7 +282,8 @@ fn build(scope: &mut Scope<'_>) -> ImageId {
         false => None,
     };
     let toned = lightness::pass_lab(scope.plan, smooth);
-    let marks = tone_marks::pass(scope.plan, &Inputs { tones: toned, tensor, strokes, hatching }, &tones);
+    let marks =
+        tone_marks::pass(scope.plan, &Inputs { tones: toned, tensor: form, strokes, hatching }, &tones);
     let sheet = sheet(scope, &drawing);
     ink_sheet::pass(scope.plan, &Drawing { lines, color: tinted, strokes, marks }, &sheet)
 }
