@@ -85,8 +85,8 @@ pub fn start_threads(wanted: usize) -> Result<Threads> {
 /// True where there is memory for a thread beside its stack: the standard library and the system's own need some when
 /// it begins, and panic where there is none.
 pub fn has_room_for_a_thread() -> bool {
-    // More than glibc ever keeps of what was given back (32 MiB): less would be found there, where threads that begin do
-    // not look.
+    // Above 32 MiB glibc asks the system anew. What is smaller may be found in what was given back before, where a thread
+    // that begins does not look.
     const ROOM: usize = 33 << 20;
     Vec::<u8>::new().try_reserve_exact(ROOM).is_ok()
 }

@@ -295,7 +295,8 @@ def cartoon(
         phi_q: How suddenly one tone changes to the next. Does not count with adaptive steps.
             Steepness of the steps, per unit of L. 0 to 1000.
         adaptive: Softer steps in flat areas and steeper ones at edges, so that moving pictures
-            flicker less. Steepness from the gradient of L instead of `phi_q`.
+            flicker less. Steepness from the gradient of L instead of `phi_q`. Counts where steps
+            are by lightness.
         lambda_delta: Contrast below which adaptive steps are softest. Gradient of L, per pixel,
             from which on steps grow steeper. 0 to 100.
         omega_delta: Contrast above which adaptive steps are steepest. Gradient of L, per pixel, at
@@ -1394,7 +1395,8 @@ def quantize_luminance(
         phi_q: How suddenly one tone changes to the next. Does not count with adaptive steps.
             Steepness of the steps, per unit of L. 0 to 1000.
         adaptive: Softer steps in flat areas and steeper ones at edges, so that moving pictures
-            flicker less. Steepness from the gradient of L instead of `phi_q`.
+            flicker less. Steepness from the gradient of L instead of `phi_q`. Counts where steps
+            are by lightness.
         lambda_delta: Contrast below which adaptive steps are softest. Gradient of L, per pixel,
             from which on steps grow steeper. 0 to 100.
         omega_delta: Contrast above which adaptive steps are steepest. Gradient of L, per pixel, at

@@ -10,6 +10,9 @@ pub(crate) const BINS: Param = Param::int("bins", "Tones", 8, [1, 256])
     .slider(2.0, 24.0)
     .hint("Number of tones from black to white.")
     .doc("Bins between black and white.");
+pub(crate) const ADAPTIVE: Param = Param::bool("adaptive", "Adaptive steps", true)
+    .hint("Softer steps in flat areas and steeper ones at edges, so that moving pictures flicker less.")
+    .doc("Steepness from the gradient of L instead of `phi_q`. Counts where steps are by lightness.");
 pub(crate) const PHI_Q: Param = Param::float("phi_q", "Step steepness", 3.4, [0.0, 1000.0])
     .slider(0.2, 10.0)
     .hint("How suddenly one tone changes to the next. Does not count with adaptive steps.")

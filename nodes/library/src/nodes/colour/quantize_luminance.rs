@@ -1,11 +1,11 @@
 //! Soft quantization of lightness (§ 4.6).
 
 use crate::declare::ports;
-use crate::declare::spec::{NodeSpec, Param, Scope};
+use crate::declare::spec::{NodeSpec, Scope};
 use crate::kernels::colour::{lab_to_rgb, rgb_to_lab};
 use crate::stages::quantization::{STEPS, flattened};
 use crate::stages::quantize_luminance::{
-    BINS, LAMBDA_DELTA, LAMBDA_PHI, LEAST_GRADIENT, OMEGA_DELTA, OMEGA_PHI, PHI_Q,
+    ADAPTIVE, BINS, LAMBDA_DELTA, LAMBDA_PHI, LEAST_GRADIENT, OMEGA_DELTA, OMEGA_PHI, PHI_Q,
 };
 use isophote_engine::ImageId;
 
@@ -23,11 +23,7 @@ pub static NODE: NodeSpec = NodeSpec {
     own_params: &[
         BINS,
         PHI_Q,
-        Param::bool("adaptive", "Adaptive steps", true)
-            .hint(
-                "Softer steps in flat areas and steeper ones at edges, so that moving pictures flicker less.",
-            )
-            .doc("Steepness from the gradient of L instead of `phi_q`."),
+        ADAPTIVE,
         LAMBDA_DELTA,
         OMEGA_DELTA,
         LAMBDA_PHI,

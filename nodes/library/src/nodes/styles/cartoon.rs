@@ -67,12 +67,7 @@ pub static NODE: NodeSpec = NodeSpec {
         lines::GUIDE_WEIGHT,
         // Crisper steps than those of Fig. 4.8, where there is something that they follow.
         quantization::PHI_Q.with_default(Value::Float(8.0)).group(ADVANCED),
-        Param::bool("adaptive", "Adaptive steps", false)
-            .group(ADVANCED)
-            .hint(
-                "Softer steps in flat areas and steeper ones at edges, so that moving pictures flicker less.",
-            )
-            .doc("Steepness from the gradient of L instead of `phi_q`."),
+        quantization::ADAPTIVE.with_default(Value::Bool(false)).group(ADVANCED),
         quantization::LAMBDA_DELTA.group(ADVANCED),
         quantization::OMEGA_DELTA.group(ADVANCED),
         quantization::LAMBDA_PHI.group(ADVANCED),
