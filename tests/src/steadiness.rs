@@ -19,7 +19,7 @@
 //! **Energy.** G(F) = mean over all pixels of all frames, masked or not, of the gradient's length, by differences to
 //! the next pixel to the right and below. G(stylized) / G(plain) says how strong a style draws, and G(stylized) /
 //! G(still), `still` being the same style frame by frame, how much of that a temporal filter keeps: blur lowers the
-//! warping error as well, but not without lowering this.
+//! warping error as well, but not without lowering this. The ratio over G(stylized) / G(plain) is the flicker a contrast.
 
 mod carry;
 mod look;

@@ -56,8 +56,15 @@ fn measured(shot: &Shot) -> Vec<Pair> {
 }
 
 fn print(title: &str, pairs: &[Pair]) {
-    let columns =
-        ["style", "frames for themselves", "steady", "gradient energy kept", "steady by optical flow"];
+    let columns = [
+        "style",
+        "frames for themselves",
+        "steady",
+        "gradient energy kept",
+        "steady by optical flow",
+        "steady, a contrast",
+        "jumps, % of pixels",
+    ];
     let mut table = Table::new(16, "steadiness over time", title, &columns);
     for Pair { name, still, steady, estimated } in pairs {
         table.row(&[
@@ -66,6 +73,8 @@ fn print(title: &str, pairs: &[Pair]) {
             format!("{:.2}", steady.steadiness.ratio),
             format!("{:.3}", steady.steadiness.energy_of_still),
             format!("{:.2}", estimated.steadiness.ratio),
+            format!("{:.2}", steady.steadiness.a_contrast()),
+            format!("{:.2}", 100.0 * steady.steadiness.jumps),
         ]);
     }
     table.print();

@@ -5,6 +5,9 @@ use super::look::show;
 use super::shot::Shot;
 use isophote_engine::Image;
 
+/// A pixel that differs by more, in the mean of its channels, from the one before catches the eye.
+const JUMP: f64 = 0.25;
+
 /// Steadiness of the frames of a filter; formulas in the description of this module's parent.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Steadiness {
@@ -18,6 +21,15 @@ pub struct Steadiness {
     pub energy_of_still: f64,
     /// Part of the pixels, the first frame's left out, that count.
     pub counted: f64,
+    /// Part of the pixels, the first frame's left out, that count and jump: that differ by more than [`JUMP`].
+    pub jumps: f64,
+}
+
+impl Steadiness {
+    /// Flicker a contrast: the ratio over the gradient energy, since who draws strongly exaggerates all that moves.
+    pub fn a_contrast(&self) -> f64 {
+        self.ratio / self.energy_of_plain
+    }
 }
 
 /// Measures the frames that a filter made of a shot; `still` are those that it makes without looking at other frames.
@@ -28,32 +40,56 @@ pub fn measure(shot: &Shot, stylized: &[Image], still: &[Image]) -> Steadiness {
     let plain = shot.plain();
     assert!(plain.len() >= 2, "one frame is always steady");
     assert_eq!((stylized.len(), still.len()), (plain.len(), plain.len()), "a frame for every frame");
-    let ((error, counted), (plain_error, _)) = (warping_error(shot, stylized), warping_error(shot, &plain));
+    let (changes, of_plain) = (Changes::of(shot, stylized), Changes::of(shot, &plain));
     let energy = energy(stylized);
     Steadiness {
-        error,
-        ratio: error / plain_error,
+        error: changes.error(),
+        ratio: changes.error() / of_plain.error(),
         energy_of_plain: energy / self::energy(&plain),
         energy_of_still: energy / self::energy(still),
-        counted,
+        counted: changes.share(changes.counted),
+        jumps: changes.share(changes.jumps),
     }
 }
 
-/// The warping error, and the part of the pixels that count.
-fn warping_error(shot: &Shot, frames: &[Image]) -> (f64, f64) {
-    let (mut sum, mut counted, mut all) = (0.0, 0_u64, 0_u64);
-    for t in 1..frames.len() {
-        let width = frames[t].width() as usize;
-        for (index, before) in carried(shot, t, &frames[t - 1]).iter().enumerate() {
-            all += 1;
-            if before.counts {
-                let now = rgb(&frames[t], (index % width) as i32, (index / width) as i32);
-                sum += now.iter().zip(before.color).map(|(n, b)| f64::from((n - b).abs())).sum::<f64>() / 3.0;
-                counted += 1;
+/// Changes of all frames but the first against the frame before, carried.
+#[derive(Default)]
+struct Changes {
+    sum: f64,
+    counted: u64,
+    jumps: u64,
+    all: u64,
+}
+
+impl Changes {
+    fn of(shot: &Shot, frames: &[Image]) -> Self {
+        let mut changes = Self::default();
+        for t in 1..frames.len() {
+            let width = frames[t].width() as usize;
+            for (index, before) in carried(shot, t, &frames[t - 1]).iter().enumerate() {
+                changes.all += 1;
+                if before.counts {
+                    let now = rgb(&frames[t], (index % width) as i32, (index / width) as i32);
+                    let change =
+                        now.iter().zip(before.color).map(|(n, b)| f64::from((n - b).abs())).sum::<f64>()
+                            / 3.0;
+                    changes.sum += change;
+                    changes.counted += 1;
+                    changes.jumps += u64::from(change > JUMP);
+                }
             }
         }
+        changes
     }
-    (sum / counted as f64, counted as f64 / all as f64)
+
+    /// The warping error.
+    fn error(&self) -> f64 {
+        self.sum / self.counted as f64
+    }
+
+    fn share(&self, count: u64) -> f64 {
+        count as f64 / self.all as f64
+    }
 }
 
 /// Mean length of the gradient.
