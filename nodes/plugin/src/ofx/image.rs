@@ -273,13 +273,9 @@ impl<'h> Fetched<'h> {
         let form =
             format!("{inside:?} {} {} {:?} {}", self.sample, self.channels, self.alpha, self.blue_first);
         let rows: Vec<Mutex<u128>> = (inside.y0..inside.y1).map(|_| Mutex::default()).collect();
-        // SAFETY: the host gave the image, so that its memory may be read until it is released.
-        let read = unsafe {
-            checked.each_row(inside, threads, &|y, bytes| {
-                *lock(&rows[(y - inside.y0) as usize]) = content::of_bytes(bytes);
-            })
-        };
-        read.map_err(|_| kOfxStatErrMemory)?;
+        let look = |y: i32, bytes: &[u8]| *lock(&rows[(y - inside.y0) as usize]) = content::of_bytes(bytes);
+        // SAFETY: the host gave the image, so that its memory may be read, and is not written, until it is released.
+        unsafe { checked.each_row(inside, threads, &look) };
         let mut all = vec![content::of_text(&form)];
         all.extend(rows.iter().map(|row| *lock(row)));
         Ok(content::of_all(&all))
@@ -311,9 +307,9 @@ impl<'h> Fetched<'h> {
             return Ok(image);
         }
         let channels = if self.blue_first { channels.map(|c| [2, 1, 0, 3][c]) } else { channels };
-        // SAFETY: the host gave the image, so that its memory may be read until it is released.
+        // SAFETY: as in `content`.
         let read = unsafe { checked.read_pairs(inside, channels, &mut image, threads, change) };
-        read.map_err(|_| kOfxStatErrMemory)?;
+        read.map_err(|_| kOfxStatErrImageFormat)?;
         Ok(image)
     }
 
