@@ -5,6 +5,8 @@
 #import shared/value_noise
 
 struct Params {
+    /// Pixels by which cells begin before the picture.
+    offset: vec2f,
     /// Pixels of the finest level on a cell's side.
     cell: f32,
     /// Cells on each side in which strokes are that may cover a pixel.
@@ -97,7 +99,7 @@ fn main(@builtin(global_invocation_id) id: vec3u) {
     let p = centre(id);
     let own = fetch(below, 3u, pixel(id));
     let thing = select(0.0, fetch(ids, 5u, pixel(id)).x, params.by_id != 0u);
-    let middle = vec2i(floor(p / params.cell));
+    let middle = vec2i(floor((p + params.offset) / params.cell));
     let size = grid.inputs[0].zw;
     // The topmost first.
     var ranks = array<f32, 4>(-1e30, -1e30, -1e30, -1e30);

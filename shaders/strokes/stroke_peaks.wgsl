@@ -4,6 +4,8 @@
 #import gpu/grid
 
 struct Params {
+    /// Cells of the finer level by which those of this one begin before the picture, 0 or 1.
+    shift: vec2i,
     /// 1 or -1: peaks or valleys of the noise.
     side: f32,
     /// Factor on the noise's distance from its mean.
@@ -20,12 +22,12 @@ fn main(@builtin(global_invocation_id) id: vec3u) {
     if outside(id) {
         return;
     }
-    let p = 2 * pixel(id);
-    // At odd sizes the last children do not exist.
+    let p = 2 * pixel(id) - params.shift;
+    // At the borders some children do not exist.
     let size = grid.inputs[0].zw;
     var best = vec4f(0.0, 0.0, -1e30, 0.0);
-    for (var y = p.y; y < min(p.y + 2, size.y); y++) {
-        for (var x = p.x; x < min(p.x + 2, size.x); x++) {
+    for (var y = max(p.y, 0); y < min(p.y + 2, size.y); y++) {
+        for (var x = max(p.x, 0); x < min(p.x + 2, size.x); x++) {
             let v = fetch(source, 0u, vec2i(x, y));
             let first = vec4f(f32(x) + 0.5, f32(y) + 0.5, (v.x - 0.5) * params.gain * params.side, 0.0);
             let peak = select(v, first, params.begin != 0u);

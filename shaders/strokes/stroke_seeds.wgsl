@@ -6,6 +6,8 @@
 #import shared/value_noise
 
 struct Params {
+    /// Pixels by which cells begin before the picture.
+    offset: vec2f,
     /// Pixels of the finest level on a cell's side.
     cell: f32,
     /// Distance within which the highest peak alone is a seed, pixels.
@@ -71,7 +73,7 @@ fn turn(t: vec2f, p: vec2f) -> f32 {
 // The peak of a cell, kept inside it.
 fn peak_of(cell: vec2i) -> vec3f {
     let v = fetch(peaks, 0u, cell);
-    let low = vec2f(cell) * params.cell;
+    let low = vec2f(cell) * params.cell - params.offset;
     return vec3f(clamp(v.xy, low, low + params.cell), v.z);
 }
 

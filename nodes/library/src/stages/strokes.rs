@@ -14,7 +14,7 @@ use std::f32::consts::PI;
 pub(crate) struct Brush {
     /// Sizes of strokes, each half of the one before.
     pub layers: i32,
-    /// Half the width of strokes of the second layer.
+    /// Half the width of strokes of the third layer.
     pub half_width: f32,
     /// Half their length.
     pub half_length: f32,
@@ -28,6 +28,8 @@ pub(crate) struct Brush {
     pub variation: f32,
     /// How much of a stroke the paint does not cover, 0..=1.
     pub dryness: f32,
+    /// How ragged the ends of strokes are, 1 at the middle of a control.
+    pub raggedness: f32,
     /// Width and length of the marks of bristles.
     pub bristles: [f32; 2],
     /// Number of the noise that strokes begin with.
@@ -47,8 +49,8 @@ pub(crate) struct Subject {
 
 /// Strokes over each place, layer by layer: the first has to cover all.
 const DENSITY: [f32; 2] = [4.5, 3.5];
-/// Width of the noise's smoothing against half the width of strokes of the second layer.
-const GRAIN: f32 = 0.2;
+/// Width of the noise's smoothing against half the width of strokes of the third layer.
+const GRAIN: f32 = 0.4;
 /// Difference of colour, Lab, at which strokes end, and from which on finer ones are wanted at the middle of `detail`.
 const TOLERANCE: f32 = 14.0;
 const THRESHOLD: f32 = 6.0;
@@ -72,36 +74,39 @@ pub(crate) fn painted(scope: &mut Scope<'_>, subject: &Subject, brush: &Brush) -
     let sigma = GRAIN * brush.half_width;
     let noise = marks::grains(scope, sigma, brush.seed);
     let deviation = marks::deviation(scope, sigma);
+    let origin = scope.origin();
     let mut canvas: Option<[ImageId; 2]> = None;
     for layer in 0..brush.layers.max(1) {
-        let size = 2f32.powi(1 - layer);
+        let size = 2f32.powi(2 - layer);
         let (half_width, half_length) = (size * brush.half_width, size * brush.half_length);
         let density = DENSITY[usize::from(layer > 0)];
         let apart = (4.0 * half_width * half_length / (PI * density)).sqrt();
         let level = apart.log2().floor().clamp(1.0, 12.0) as i8;
         // Strokes of neighbouring layers begin at different places.
-        let peaks = Peaks { highest: layer % 2 == 0, deviation, level };
+        let peaks = Peaks { highest: layer % 2 == 0, deviation, level, origin };
         let peaks = stroke_peaks::pass(scope.plan, noise, &peaks);
         let below = canvas.map(|[picture, _]| picture);
         let inputs =
             Inputs { peaks, tensors: subject.tensors, picture: subject.picture, below, ids: subject.ids };
         let strokes = Strokes {
+            origin,
             half_width,
             half_length,
             apart,
             curve: brush.curve,
             tolerance: TOLERANCE * [1.3, 1.0, 0.8][layer.min(2) as usize],
             threshold: Some(THRESHOLD * 8f32.powf(0.5 - brush.detail)),
-            smoothing: brush.smoothing,
+            smoothing: size * brush.smoothing,
             variation: brush.variation * MOST_VARIATION[0],
             hue_variation: brush.variation * MOST_VARIATION[1],
         };
         let seeds = stroke_seeds::pass(scope.plan, &inputs, &strokes);
         let paint = Paint {
+            origin,
             half_width,
             half_length,
             bristles: brush.bristles,
-            ragged: RAGGED,
+            ragged: RAGGED * brush.raggedness,
             dryness: brush.dryness,
             heights: HEIGHTS,
             softness: SOFTNESS * scope.scale(),

@@ -10,6 +10,7 @@
 pub use crate::kernels::shaders::stroke_paint::Params;
 use crate::kernels::shared::value_noise::noise;
 use crate::kernels::simd::pixels::Block;
+use crate::kernels::strokes::stroke_peaks::offset;
 use isophote_engine::bounds::Bounds;
 use isophote_engine::fearless_simd::{Simd, f32x8, prelude::*};
 use isophote_engine::{Band, Class, CpuPass, ImageId, PlanBuilder, Rect, Support, Tolerance};
@@ -29,6 +30,8 @@ crate::kernel!(stroke_paint {
 /// Appearance of the paint; lengths in pixels of the picture that is rendered.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Paint {
+    /// Where the picture stands in the canonical one, as for the peaks.
+    pub origin: [f32; 2],
     /// Half the width of the strokes.
     pub half_width: f32,
     /// Half their length.
@@ -65,11 +68,13 @@ pub fn pass(
     ids: Option<ImageId>,
     paint: &Paint,
 ) -> [ImageId; 2] {
-    let cell = (1 << plan.desc(strokes[0]).level.clamp(0, 24)) as f32;
+    let of_cells = plan.desc(strokes[0]).level;
+    let cell = (1 << of_cells.clamp(0, 24)) as f32;
     let longest = (LONGER * paint.half_length).max(paint.half_width);
     // Strokes bend.
     let reach = 1.1 * (longest + paint.half_width) + 1.0;
     let params = Params {
+        offset: offset(paint.origin, of_cells),
         cell,
         cells: (reach / cell).ceil() as i32,
         reach,
@@ -87,7 +92,7 @@ pub fn pass(
     };
     let [places, shapes, colours] = strokes;
     let inputs = [places, shapes, colours, below, heights.unwrap_or(below), ids.unwrap_or(below)];
-    let cells = Support::Pixels(params.cells as u32);
+    let cells = Support::Pixels(params.cells as u32 + 1);
     let own = Support::Pixels(0);
     let supports = [cells, cells, cells, own, own, own];
     let classes = [Class::Colour, Class::Field];
@@ -161,9 +166,9 @@ fn paint<S: Simd>(simd: S, pass: &CpuPass<'_>, params: &Params, band: &mut Band<
 fn gather(pass: &CpuPass<'_>, params: &Params, tile: Rect, strokes: &mut Vec<Stroke>) {
     strokes.clear();
     let [width, height] = pass.inputs[0].full();
-    let cell = |v: i32| ((v as f32 + 0.5) / params.cell).floor() as i32;
-    let (left, right) = (cell(tile.x0) - params.cells, cell(tile.x1 - 1) + params.cells);
-    let (top, bottom) = (cell(tile.y0) - params.cells, cell(tile.y1 - 1) + params.cells);
+    let cell = |v: i32, c: usize| ((v as f32 + 0.5 + params.offset[c]) / params.cell).floor() as i32;
+    let (left, right) = (cell(tile.x0, 0) - params.cells, cell(tile.x1 - 1, 0) + params.cells);
+    let (top, bottom) = (cell(tile.y0, 1) - params.cells, cell(tile.y1 - 1, 1) + params.cells);
     for y in top.max(0)..=bottom.min(height - 1) {
         for x in left.max(0)..=right.min(width - 1) {
             if let Some(stroke) = Stroke::of(pass, params, x, y) {

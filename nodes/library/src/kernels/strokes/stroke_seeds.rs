@@ -8,6 +8,7 @@
 pub use crate::kernels::shaders::stroke_seeds::Params;
 use crate::kernels::shared::tensor;
 use crate::kernels::shared::value_noise::noise;
+use crate::kernels::strokes::stroke_peaks::offset;
 use isophote_engine::bounds::Bounds;
 use isophote_engine::fearless_simd::{Simd, f32x8, prelude::*};
 use isophote_engine::{Band, Class, CpuPass, ImageId, PlanBuilder, Support, Tolerance};
@@ -27,6 +28,8 @@ crate::kernel!(stroke_seeds {
 /// Strokes of a layer; lengths in pixels of the picture that is rendered.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Strokes {
+    /// Where the picture stands in the canonical one, as for the peaks.
+    pub origin: [f32; 2],
     /// Half the width.
     pub half_width: f32,
     /// Half the length.
@@ -67,6 +70,7 @@ pub struct Inputs {
 pub fn pass(plan: &mut PlanBuilder, inputs: &Inputs, strokes: &Strokes) -> [ImageId; 3] {
     let level = plan.desc(inputs.peaks).level;
     let params = Params {
+        offset: offset(strokes.origin, level),
         cell: (1 << level.clamp(0, 24)) as f32,
         apart: strokes.apart,
         half_width: strokes.half_width,
@@ -78,6 +82,7 @@ pub fn pass(plan: &mut PlanBuilder, inputs: &Inputs, strokes: &Strokes) -> [Imag
         variation: strokes.variation,
         hue_variation: strokes.hue_variation,
         by_id: inputs.ids.is_some().into(),
+        padding: Default::default(),
     };
     let picture = inputs.picture;
     let images = [
@@ -88,7 +93,7 @@ pub fn pass(plan: &mut PlanBuilder, inputs: &Inputs, strokes: &Strokes) -> [Imag
         inputs.ids.unwrap_or(picture),
     ];
     // A stroke that turns by MOST_TURN / 2 leaves its direction by that share of its half length.
-    let reach = (1.07 * params.half_length).max(params.half_width).ceil() as u32 + 1;
+    let reach = (1.07 * params.half_length).max(params.half_width).ceil() as u32 + 1 + params.cell as u32;
     let mut supports = [Support::Pixels(reach); 5];
     supports[0] = Support::Pixels(AROUND as u32);
     let classes = [Class::Field, Class::Field, Class::Colour];
@@ -124,7 +129,7 @@ fn seeds<S: Simd>(simd: S, pass: &CpuPass<'_>, params: &Params, band: &mut Band<
 #[inline(always)]
 fn peak_of(pass: &CpuPass<'_>, params: &Params, [x, y]: [i32; 2]) -> [f32; 3] {
     let v = pass.inputs[0].pixel4(x, y);
-    let low = [x as f32 * params.cell, y as f32 * params.cell];
+    let low = [x as f32 * params.cell - params.offset[0], y as f32 * params.cell - params.offset[1]];
     [v[0].within(low[0], low[0] + params.cell), v[1].within(low[1], low[1] + params.cell), v[2]]
 }
 

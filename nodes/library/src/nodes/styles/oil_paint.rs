@@ -30,7 +30,7 @@ pub static NODE: NodeSpec = NodeSpec {
         STROKE_WIDTH,
         Param::float("bristle", "Bristle", 0.5, [0.0, 1.0])
             .group(LOOK)
-            .hint("How clearly the marks of the bristles show.").doc("How dark and light the marks are: up to 20 units of L on white."),
+            .hint("How clearly the marks of the bristles show.").doc("How dark and light the marks are, up to 20 units of L on white, and how ragged the ends of strokes."),
         Param::float("shine", "Shine", 0.4, [0.0, 1.0])
             .group(LOOK)
             .hint("How much light the ridges of the paint catch.").doc("Up to 60 units of L on white."),
@@ -69,26 +69,26 @@ pub static NODE: NodeSpec = NodeSpec {
             .structural()
             .group(ADVANCED)
             .hint("Sizes of strokes, from coarse to fine: more paint finer things.")
-            .doc("Layers of strokes, each half as large as the one below; `stroke_length` and `stroke_width` are those of the second."),
+            .doc("Layers of strokes, each half as large as the one below; `stroke_length` and `stroke_width` are those of the third."),
         Param::float("curve", "Bend", 1.0, [0.0, 1.0])
             .group(ADVANCED)
             .hint("How far strokes bend with the shapes: 0 keeps them straight.")
             .doc("Share of the turn of the tangent along a stroke that its curvature takes on."),
-        Param::length("dilation_length", "Colour length", 20.0, [0.0, 100.0])
-            .slider(0.0, 50.0)
+        Param::length("dilation_length", "Colour length", 8.0, [0.0, 60.0])
+            .slider(0.0, 30.0)
             .structural()
             .group(ADVANCED)
-            .hint("How far a stroke keeps one colour, to each side.").doc("Half the length of strokes, along which they keep one colour."),
-        Param::length("sigma_t", "Colour smoothing", 12.0, [0.0, 60.0])
-            .slider(0.0, 40.0)
+            .hint("How far a stroke keeps one colour, to each side.").doc("Half the length of strokes of the third layer, along which they keep one colour."),
+        Param::length("sigma_t", "Colour smoothing", 3.0, [0.0, 40.0])
+            .slider(0.0, 20.0)
             .group(ADVANCED)
-            .hint("How far colours are smoothed along the strokes.").doc("Distance along a stroke at which the picture counts half for its colour."),
-        Param::length("sigma_n", "Bristle width", 1.3, [0.0, 10.0])
+            .hint("How far colours are smoothed along the strokes.").doc("Distance along a stroke of the third layer at which the picture counts half for its colour."),
+        Param::length("sigma_n", "Bristle width", 1.0, [0.0, 10.0])
             .slider(0.0, 4.0)
             .group(ADVANCED)
             .hint("How wide the marks of bristles are.").doc("Cells of the noise of bristles, across strokes."),
-        Param::length("sigma_b", "Bristle length", 12.0, [0.0, 60.0])
-            .slider(0.0, 40.0)
+        Param::length("sigma_b", "Bristle length", 10.0, [0.0, 40.0])
+            .slider(0.0, 20.0)
             .group(ADVANCED)
             .hint("How long the marks of bristles are.").doc("Cells of the noise of bristles, along strokes."),
         Param::int("seed", "Seed", 1, [0, 9999])
@@ -104,45 +104,51 @@ pub static NODE: NodeSpec = NodeSpec {
 };
 
 const OBJECT_ID: Port = Port { doc: "Object numbers; strokes end at borders.", ..flow_dog::OBJECT_ID };
-const STROKE_LENGTH: Param = Param::length("stroke_length", "Stroke length", 40.0, [0.0, 160.0])
-    .slider(4.0, 100.0)
+const STROKE_LENGTH: Param = Param::length("stroke_length", "Stroke length", 20.0, [0.0, 80.0])
+    .slider(2.0, 50.0)
     .structural()
     .group(LOOK)
-    .hint("How long brush strokes are.")
-    .doc("Scales `dilation_length`, `sigma_t` and `sigma_b` by length / 40.");
-const STROKE_WIDTH: Param = Param::length("stroke_width", "Stroke width", 10.0, [0.5, 50.0])
-    .slider(2.0, 30.0)
+    .hint("How long the finest brush strokes are; coarse ones are four times as long.")
+    .doc("Scales `dilation_length`, `sigma_t` and `sigma_b` by length / 20. Strokes of lower layers are two and four times as long.");
+const STROKE_WIDTH: Param = Param::length("stroke_width", "Stroke width", 4.0, [0.5, 20.0])
+    .slider(1.0, 12.0)
     .structural()
     .group(LOOK)
-    .hint("How wide brush strokes are.")
-    .doc("Width of strokes of the second layer; scales `sigma_n` and `rho` by its root, (width / 10)^1/2.");
+    .hint("How wide the finest brush strokes are; coarse ones are four times as wide.")
+    .doc("Width of strokes of the finest of three layers; scales `sigma_n` and `rho` by (width / 4)^1/2.");
 
 /// Units of L, on white, of the look controls at 1.
 const MOST_BRISTLE: f32 = 20.0;
 const MOST_SHINE: f32 = 60.0;
+/// How much larger strokes are than they look: their sides and ends are ragged.
+const FULL: f32 = 1.25;
+/// Cells of the noise of bristles against what looks one bristle wide.
+const BRISTLE: f32 = 1.25;
 
 fn build(scope: &mut Scope<'_>) -> ImageId {
     let scale = scope.scale();
     // Ratios of two lengths have no unit: the scale of the rendering is taken out again.
     let length = scope.float("stroke_length") / (STROKE_LENGTH.default_float() * scale);
-    let half_width = 0.5 * scope.float("stroke_width");
-    let width = (2.0 * half_width / (STROKE_WIDTH.default_float() * scale)).sqrt();
+    let width = scope.float("stroke_width");
+    let wider = (width / (STROKE_WIDTH.default_float() * scale)).sqrt();
     let options = TensorOptions {
-        rho: scope.float("rho") * width,
+        rho: scope.float("rho") * wider,
         levels: scope.int("levels"),
         ..TensorOptions::default()
     };
     let [picture, tensors] = abstraction::steady_regions(scope, &options);
     let brush = Brush {
         layers: scope.int("layers"),
-        half_width,
-        half_length: scope.float("dilation_length") * length,
+        half_width: 0.5 * FULL * width,
+        half_length: FULL * scope.float("dilation_length") * length,
         curve: scope.float("curve"),
         detail: scope.float("detail"),
         smoothing: scope.float("sigma_t") * length,
         variation: scope.float("variation"),
         dryness: scope.float("dryness"),
-        bristles: [scope.float("sigma_n") * width, scope.float("sigma_b") * length],
+        // A knife has no bristles, and leaves clean ends.
+        raggedness: (2.0 * scope.float("bristle")).min(1.5),
+        bristles: [BRISTLE * scope.float("sigma_n") * wider, BRISTLE * scope.float("sigma_b") * length],
         seed: scope.renewed(scope.int("seed") as u32),
     };
     let subject = Subject { picture, tensors, ids: scope.input("object_id") };
