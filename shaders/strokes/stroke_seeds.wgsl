@@ -33,7 +33,7 @@ struct Params {
 }
 
 #params
-#input peaks, tensors, flat_image, below, ids
+#input peaks, tensors, flat_image, below, ids, noise
 #output places rgba32float
 #output shapes rgba32float
 #output colours rgba32float
@@ -98,15 +98,31 @@ fn prominence(cell: vec2i, own: vec3f) -> f32 {
     return share;
 }
 
+// A value of the noise, of which `p` is one of the pixels.
+fn noise_at(p: vec2i) -> f32 {
+    return fetch(noise, 5u, p).x;
+}
+
+// How far beside a pixel's centre a parabola through it and its neighbours has its peak.
+fn beside(before: f32, middle: f32, after: f32) -> f32 {
+    let bend = 2.0 * middle - before - after;
+    return clamp(0.5 * (after - before) / select(1e-6, bend, abs(bend) > 1e-6), -0.5, 0.5);
+}
+
 fn main(@builtin(global_invocation_id) id: vec3u) {
     if outside(id) {
         return;
     }
     let cell = pixel(id);
-    let own = peak_of(cell);
+    let peak = peak_of(cell);
+    var own = peak;
     let seed = vec2i(floor(own.xy));
+    // Peaks lie between pixels: strokes that belong to things must not go from one to the next at once.
+    let summit = noise_at(seed);
+    own.x += beside(noise_at(seed - vec2i(1, 0)), summit, noise_at(seed + vec2i(1, 0)));
+    own.y += beside(noise_at(seed - vec2i(0, 1)), summit, noise_at(seed + vec2i(0, 1)));
     let middle = fetch(flat_image, 2u, seed);
-    var share = prominence(cell, own);
+    var share = prominence(cell, peak);
     if share < 0.2 || middle.a < 0.5 {
         textureStore(places, vec2i(id.xy), vec4f(0.0));
         textureStore(shapes, vec2i(id.xy), vec4f(0.0));
@@ -145,12 +161,12 @@ fn main(@builtin(global_invocation_id) id: vec3u) {
     let vary = 0.85 + 0.3 * value_noise(vec2f(own.z * 75.0, 7.0), 3u);
     ends = max(ends * vary, vec2f(w));
 
-    var beside = 0.6;
+    var room = 0.6;
     var missing = 0.0;
     for (var side = 0; side < 2; side++) {
         let along = select(1.0, -1.0, side == 1);
         let c = fetch(flat_image, 2u, vec2i(floor(own.xy + n * (along * 0.8 * w)))).rgb;
-        beside += select(0.0, 0.2, difference(c, middle.rgb) <= params.tolerance);
+        room += select(0.0, 0.2, difference(c, middle.rgb) <= params.tolerance);
         let across = vec2i(floor(own.xy + n * (along * 0.7 * w)));
         missing += difference(fetch(flat_image, 2u, across).rgb, fetch(below, 3u, across).rgb);
         let ahead = vec2i(floor(own.xy + t * (along * 0.35 * l)));
@@ -166,7 +182,7 @@ fn main(@builtin(global_invocation_id) id: vec3u) {
     let hue = params.hue_variation * wave(own.z * 11.0 + 0.3);
     let ab = vec2f(c.g - c.b * hue, c.b + c.g * hue) * grey;
     c = vec3f(c.r + params.variation * wave(own.z * 7.0), ab);
-    let width = select(0.0, w * beside * share, share >= 0.15);
+    let width = select(0.0, w * room * share, share >= 0.15);
     textureStore(places, vec2i(id.xy), vec4f(own.xy, own.z, width));
     textureStore(shapes, vec2i(id.xy), vec4f(t * ends.y, curvature, ends.x));
     textureStore(colours, vec2i(id.xy), vec4f(c, thing));

@@ -86,8 +86,14 @@ pub(crate) fn painted(scope: &mut Scope<'_>, subject: &Subject, brush: &Brush) -
         let peaks = Peaks { highest: layer % 2 == 0, deviation, level, origin };
         let peaks = stroke_peaks::pass(scope.plan, noise, &peaks);
         let below = canvas.map(|[picture, _]| picture);
-        let inputs =
-            Inputs { peaks, tensors: subject.tensors, picture: subject.picture, below, ids: subject.ids };
+        let inputs = Inputs {
+            noise,
+            peaks,
+            tensors: subject.tensors,
+            picture: subject.picture,
+            below,
+            ids: subject.ids,
+        };
         let strokes = Strokes {
             origin,
             half_width,

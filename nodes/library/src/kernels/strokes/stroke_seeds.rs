@@ -53,6 +53,8 @@ pub struct Strokes {
 /// Images that strokes are made after.
 #[derive(Clone, Copy, Debug)]
 pub struct Inputs {
+    /// The noise whose peaks are seeds.
+    pub noise: ImageId,
     /// Peaks of a level ([`stroke_peaks`](super::stroke_peaks)), at most [`Strokes::apart`] wide.
     pub peaks: ImageId,
     /// Tensors that strokes follow.
@@ -91,12 +93,15 @@ pub fn pass(plan: &mut PlanBuilder, inputs: &Inputs, strokes: &Strokes) -> [Imag
         picture,
         inputs.below.unwrap_or(picture),
         inputs.ids.unwrap_or(picture),
+        inputs.noise,
     ];
     // A stroke that turns by MOST_TURN / 2 leaves its direction by that share of its half length.
-    let reach = (1.07 * params.half_length).max(params.half_width).ceil() as u32 + 1 + params.cell as u32;
-    let mut supports = [Support::Pixels(reach); 5];
+    let reach = (1.07 * params.half_length).max(params.half_width).ceil() as u32 + 2 + params.cell as u32;
+    let mut supports = [Support::Pixels(reach); 6];
     supports[0] = Support::Pixels(AROUND as u32);
-    let classes = [Class::Field, Class::Field, Class::Colour];
+    supports[5] = Support::Pixels(1 + params.cell as u32);
+    // Colours stand beside ids, which 16-bit floats do not hold.
+    let classes = [Class::Field; 3];
     let first = plan.pass_reaching(&KERNEL, &images, &params, &classes, &supports, level);
     [first, plan.sibling(first, 1), plan.sibling(first, 2)]
 }
@@ -131,6 +136,20 @@ fn peak_of(pass: &CpuPass<'_>, params: &Params, [x, y]: [i32; 2]) -> [f32; 3] {
     let v = pass.inputs[0].pixel4(x, y);
     let low = [x as f32 * params.cell - params.offset[0], y as f32 * params.cell - params.offset[1]];
     [v[0].within(low[0], low[0] + params.cell), v[1].within(low[1], low[1] + params.cell), v[2]]
+}
+
+/// A peak between pixels: strokes that belong to things must not go from one to the next at once.
+#[inline(always)]
+fn summit(pass: &CpuPass<'_>, [x, y, _]: [f32; 3]) -> [f32; 2] {
+    let noise = &pass.inputs[5];
+    let at = |dx: i32, dy: i32| noise.pixel4(x.floor() as i32 + dx, y.floor() as i32 + dy)[0];
+    let middle = at(0, 0);
+    // How far beside its middle a parabola through three values has its peak.
+    let beside = |before: f32, after: f32| {
+        let bend = 2.0 * middle - before - after;
+        (0.5 * (after - before) / if bend.abs() > 1e-6 { bend } else { 1e-6 }).within(-0.5, 0.5)
+    };
+    [x + beside(at(-1, 0), at(1, 0)), y + beside(at(0, -1), at(0, 1))]
 }
 
 /// Share of its width that a stroke has at a peak, as other peaks near it are lower.
@@ -218,15 +237,15 @@ impl Surroundings<'_> {
 fn seed<S: Simd>(simd: S, pass: &CpuPass<'_>, params: &Params, cell: [i32; 2]) -> Record {
     const NONE: Record = [[0.0; 4]; 3];
     let own = peak_of(pass, params, cell);
-    let place = [own[0], own[1]];
+    let place = summit(pass, own);
     let share = prominence(pass, params, cell, own);
     if share < 0.2 {
         return NONE;
     }
-    let (tangent, bend) = direction(simd, pass, params, place);
+    let at = [own[0].floor() as i32, own[1].floor() as i32];
+    let (tangent, bend) = direction(simd, pass, params, at, place);
     let curvature = (bend * params.curve).within(-MOST_TURN, MOST_TURN) / params.half_length;
     let around = Surroundings { pass, params, place, tangent, curvature };
-    let at = around.pixel(0.0, 0.0);
     let middle = around.picture(at);
     if middle[3] < 0.5 {
         return NONE;
@@ -240,20 +259,20 @@ fn seed<S: Simd>(simd: S, pass: &CpuPass<'_>, params: &Params, cell: [i32; 2]) -
     let vary = 0.85 + 0.3 * noise(simd, splat(own[2] * 75.0), splat(7.0), 3)[0];
     let (forth, back) = ((forth * vary).at_least(w), (back * vary).at_least(w));
 
-    let (mut beside, mut missing) = (0.6, 0.0);
+    let (mut room, mut missing) = (0.6, 0.0);
     for along in [1.0, -1.0] {
         let like = difference(around.picture(around.pixel(0.0, along * 0.8 * w)), middle) <= params.tolerance;
-        beside += if like { 0.2 } else { 0.0 };
+        room += if like { 0.2 } else { 0.0 };
         missing += around.missing(around.pixel(0.0, along * 0.7 * w));
         missing += around.missing(around.pixel(along * 0.35 * params.half_length, 0.0));
     }
     missing = 0.2 * (missing + around.missing(at));
     let wanted = if params.threshold < 0.0 { 1.0 } else { rise(missing / params.threshold.max(1e-3) - 1.0) };
     let share = share * wanted;
-    let width = if share >= 0.15 { w * beside * share } else { 0.0 };
+    let width = if share >= 0.15 { w * room * share } else { 0.0 };
     let [l, a, b] = varied([sum[0] / sum[3], sum[1] / sum[3], sum[2] / sum[3]], own[2], params);
     [
-        [own[0], own[1], own[2], width],
+        [place[0], place[1], own[2], width],
         [tangent[0] * back, tangent[1] * back, curvature, forth],
         [l, a, b, thing],
     ]
@@ -269,9 +288,15 @@ fn varied([l, a, b]: [f32; 3], rank: f32, params: &Params) -> [f32; 3] {
 
 /// The tangent at a seed, and how far it turns over the length of a stroke.
 #[inline(always)]
-fn direction<S: Simd>(simd: S, pass: &CpuPass<'_>, params: &Params, [x, y]: [f32; 2]) -> ([f32; 2], f32) {
+fn direction<S: Simd>(
+    simd: S,
+    pass: &CpuPass<'_>,
+    params: &Params,
+    seed: [i32; 2],
+    [x, y]: [f32; 2],
+) -> ([f32; 2], f32) {
     let at = |x: f32, y: f32| pass.inputs[1].pixel4(x.floor() as i32, y.floor() as i32);
-    let [tx, ty] = tangents(simd, [at(x, y); 2])[0];
+    let [tx, ty] = tangents(simd, [pass.inputs[1].pixel4(seed[0], seed[1]); 2])[0];
     let (dx, dy) = (tx * 0.5 * params.half_length, ty * 0.5 * params.half_length);
     let ends = tangents(simd, [at(x + dx, y + dy), at(x - dx, y - dy)]);
     // About the sine of the angle between tangents, whose signs mean nothing.

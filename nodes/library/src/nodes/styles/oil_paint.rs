@@ -42,7 +42,7 @@ pub static NODE: NodeSpec = NodeSpec {
             .group(LOOK)
             .hint("How soon the brush runs dry: streaks of what lies below show.")
             .doc("Share of a stroke that paint does not cover, less at its beginning and more at its end."),
-        Param::float("variation", "Colour variation", 0.35, [0.0, 1.0])
+        Param::float("variation", "Colour variation", 0.5, [0.0, 1.0])
             .group(LOOK)
             .hint("How different the colours of neighbouring strokes are.")
             .doc("Up to 10 units of L, 0.35 radians of hue and two fifths of chroma from stroke to stroke."),
