@@ -54,12 +54,11 @@ struct Mark {
     height: f32,
 }
 
-// What the stroke of a cell leaves at `p`.
-fn mark(cell: vec2i, place: vec4f, p: vec2f) -> Mark {
+// What the stroke of a cell leaves `d` from its seed.
+fn mark(cell: vec2i, place: vec4f, d: vec2f) -> Mark {
     let shape = fetch(shapes, 1u, cell);
     let back = sqrt(dot(shape.xy, shape.xy));
     let t = shape.xy / max(back, 1e-6);
-    let d = p - place.xy;
     let u = dot(d, t);
     let v = d.y * t.x - d.x * t.y - 0.5 * shape.z * u * u;
     let len = clamp(select(back, shape.w, u > 0.0), 1e-3, params.longest);
@@ -98,7 +97,10 @@ fn main(@builtin(global_invocation_id) id: vec3u) {
     }
     let p = centre(id);
     let own = fetch(below, 3u, pixel(id));
-    let thing = select(0.0, fetch(ids, 5u, pixel(id)).x, params.by_id != 0u);
+    let v = fetch(ids, 5u, pixel(id)).x;
+    // Neither NaN nor infinity.
+    let good = (bitcast<u32>(v) & 0x7f800000u) != 0x7f800000u;
+    let thing = select(0.0, v, params.by_id != 0u && good);
     let middle = vec2i(floor((p + params.offset) / params.cell));
     let size = grid.inputs[0].zw;
     // The topmost first.
@@ -111,11 +113,11 @@ fn main(@builtin(global_invocation_id) id: vec3u) {
         for (var x = first.x; x <= last.x; x++) {
             let cell = vec2i(x, y);
             let place = fetch(places, 0u, cell);
-            let d = p - place.xy;
+            let d = p - (vec2f(cell) * params.cell - params.offset) - place.xy;
             if place.w <= 0.0 || place.z <= ranks[3] || any(abs(d) > vec2f(params.reach)) {
                 continue;
             }
-            let found = mark(cell, place, p);
+            let found = mark(cell, place, d);
             if found.alpha < LEAST {
                 continue;
             }

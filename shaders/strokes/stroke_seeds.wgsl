@@ -40,11 +40,19 @@ struct Params {
 
 // Steps to each side of a stroke.
 const STEPS: i32 = 6;
+// Where a picture is flat within so many widths, strokes lie as the hand has it: slope against the field at most, and the
+// difference in Lab that counts as flat no more.
+const FLAT_WITHIN: f32 = 1.5;
+const MOST_SLOPE: f32 = 0.5;
+const NOT_FLAT: f32 = 4.0;
 // Turn of a stroke along half its length at most.
 const MOST_TURN: f32 = 0.7;
 
 fn object_id(p: vec2i) -> f32 {
-    return select(0.0, fetch(ids, 4u, p).x, params.by_id != 0u);
+    let v = fetch(ids, 4u, p).x;
+    // Neither NaN nor infinity.
+    let good = (bitcast<u32>(v) & 0x7f800000u) != 0x7f800000u;
+    return select(0.0, v, params.by_id != 0u && good);
 }
 
 // Difference of two colours in Lab.
@@ -64,8 +72,8 @@ fn rise(t: f32) -> f32 {
 }
 
 // How far the tangent at `p` turns from `t`, about its sine.
-fn turn(t: vec2f, p: vec2f) -> f32 {
-    let other = tensor_tangent(fetch(tensors, 1u, vec2i(floor(p))));
+fn turn(t: vec2f, p: vec2i) -> f32 {
+    let other = tensor_tangent(fetch(tensors, 1u, p));
     let sine = t.x * other.y - t.y * other.x;
     return select(sine, -sine, dot(t, other) < 0.0);
 }
@@ -98,6 +106,11 @@ fn prominence(cell: vec2i, own: vec3f) -> f32 {
     return share;
 }
 
+// The pixel at a place beside a cell's corner.
+fn at(corner: vec2f, place: vec2f) -> vec2i {
+    return vec2i(corner) + vec2i(floor(place));
+}
+
 // A value of the noise, of which `p` is one of the pixels.
 fn noise_at(p: vec2i) -> f32 {
     return fetch(noise, 5u, p).x;
@@ -119,6 +132,9 @@ fn main(@builtin(global_invocation_id) id: vec3u) {
     let seed = vec2i(floor(own.xy));
     // Peaks lie between pixels: strokes that belong to things must not go from one to the next at once.
     let summit = noise_at(seed);
+    let corner = vec2f(cell) * params.cell - params.offset;
+    // From the corner of the cell, so that a picture's place in a larger one rounds nothing.
+    own = vec3f(own.xy - corner, own.z);
     own.x += beside(noise_at(seed - vec2i(1, 0)), summit, noise_at(seed + vec2i(1, 0)));
     own.y += beside(noise_at(seed - vec2i(0, 1)), summit, noise_at(seed + vec2i(0, 1)));
     let middle = fetch(flat_image, 2u, seed);
@@ -131,9 +147,17 @@ fn main(@builtin(global_invocation_id) id: vec3u) {
     }
     let w = params.half_width;
     let l = params.half_length;
-    let t = tensor_tangent(fetch(tensors, 1u, seed));
+    let field = tensor_tangent(fetch(tensors, 1u, seed));
+    var varied = 0.0;
+    for (var i = 0; i < 4; i++) {
+        let far = FLAT_WITHIN * w * select(1.0, -1.0, (i & 1) == 1);
+        let d = select(field, vec2f(-field.y, field.x), i < 2) * far;
+        varied = max(varied, difference(fetch(flat_image, 2u, at(corner, own.xy + d)).rgb, middle.rgb));
+    }
+    let slope = MOST_SLOPE * (1.0 - rise(varied / NOT_FLAT)) * wave(own.z * 3.0 + 0.7);
+    let t = (field + vec2f(-field.y, field.x) * slope) / sqrt(1.0 + slope * slope);
     let n = vec2f(-t.y, t.x);
-    let bend = turn(t, own.xy + t * (0.5 * l)) - turn(t, own.xy - t * (0.5 * l));
+    let bend = turn(field, at(corner, own.xy + field * (0.5 * l))) - turn(field, at(corner, own.xy - field * (0.5 * l)));
     let curvature = clamp(bend * params.curve, -MOST_TURN, MOST_TURN) / l;
 
     let thing = object_id(seed);
@@ -145,7 +169,7 @@ fn main(@builtin(global_invocation_id) id: vec3u) {
         for (var i = 1; i <= STEPS; i++) {
             let u = f32(i) * l / f32(STEPS);
             let q = own.xy + t * (along * u) + n * (0.5 * curvature * u * u);
-            let place = vec2i(floor(q));
+            let place = at(corner, q);
             let c = fetch(flat_image, 2u, place);
             let other = abs(object_id(place) - thing) > 0.5;
             if difference(c.rgb, middle.rgb) > params.tolerance || c.a < 0.5 || other {
@@ -165,11 +189,11 @@ fn main(@builtin(global_invocation_id) id: vec3u) {
     var missing = 0.0;
     for (var side = 0; side < 2; side++) {
         let along = select(1.0, -1.0, side == 1);
-        let c = fetch(flat_image, 2u, vec2i(floor(own.xy + n * (along * 0.8 * w)))).rgb;
+        let c = fetch(flat_image, 2u, at(corner, own.xy + n * (along * 0.8 * w))).rgb;
         room += select(0.0, 0.2, difference(c, middle.rgb) <= params.tolerance);
-        let across = vec2i(floor(own.xy + n * (along * 0.7 * w)));
+        let across = at(corner, own.xy + n * (along * 0.7 * w));
         missing += difference(fetch(flat_image, 2u, across).rgb, fetch(below, 3u, across).rgb);
-        let ahead = vec2i(floor(own.xy + t * (along * 0.35 * l)));
+        let ahead = at(corner, own.xy + t * (along * 0.35 * l));
         missing += difference(fetch(flat_image, 2u, ahead).rgb, fetch(below, 3u, ahead).rgb);
     }
     missing = 0.2 * (missing + difference(middle.rgb, fetch(below, 3u, seed).rgb));

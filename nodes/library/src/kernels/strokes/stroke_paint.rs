@@ -104,6 +104,8 @@ pub fn pass(
 /// A stroke as pixels need it.
 #[derive(Clone, Copy)]
 struct Stroke {
+    /// Pixels of the cell's corner, and of the seed from there.
+    corner: [f32; 2],
     place: [f32; 2],
     rank: f32,
     half_width: f32,
@@ -116,6 +118,12 @@ struct Stroke {
 }
 
 impl Stroke {
+    /// About where it is.
+    #[inline(always)]
+    fn centre(&self) -> [f32; 2] {
+        [self.corner[0] + self.place[0], self.corner[1] + self.place[1]]
+    }
+
     /// The stroke of a cell, if it has one.
     #[inline(always)]
     fn of(pass: &CpuPass<'_>, params: &Params, x: i32, y: i32) -> Option<Self> {
@@ -128,6 +136,7 @@ impl Stroke {
         let back = (shape[0] * shape[0] + shape[1] * shape[1]).sqrt();
         let length = back.at_least(1e-6);
         Some(Self {
+            corner: [x as f32 * params.cell - params.offset[0], y as f32 * params.cell - params.offset[1]],
             place: [place[0], place[1]],
             rank: place[2],
             half_width: place[3].at_most(params.widest),
@@ -172,7 +181,7 @@ fn gather(pass: &CpuPass<'_>, params: &Params, tile: Rect, strokes: &mut Vec<Str
     for y in top.max(0)..=bottom.min(height - 1) {
         for x in left.max(0)..=right.min(width - 1) {
             if let Some(stroke) = Stroke::of(pass, params, x, y) {
-                let [px, py] = stroke.place;
+                let [px, py] = stroke.centre();
                 let beside = (tile.x0 as f32 - px).at_least(px - tile.x1 as f32);
                 let above = (tile.y0 as f32 - py).at_least(py - tile.y1 as f32);
                 if beside <= params.reach && above <= params.reach {
@@ -196,13 +205,17 @@ fn painted<S: Simd>(
 ) -> [[f32x8<S>; 4]; 2] {
     let (zero, one) = (f32x8::splat(simd, 0.0), f32x8::splat(simd, 1.0));
     let [px, py] = block.centres(simd);
-    let thing = if params.by_id != 0 { block.read::<S, 1>(simd, &pass.inputs[5])[0] } else { zero };
+    let mut thing = zero;
+    if params.by_id != 0 {
+        let [id] = block.read::<S, 1>(simd, &pass.inputs[5]);
+        thing = id.abs().simd_le(f32::MAX).select(id, zero);
+    }
     let (mut rest, mut kept) = (one, zero);
     let mut sum = [zero; 3];
     let mut height = zero;
     let (first, last, row) = (block.x as f32, (block.x + 8) as f32, block.y as f32 + 0.5);
     for stroke in strokes {
-        let [x, y] = stroke.place;
+        let [x, y] = stroke.centre();
         let far = stroke.back.at_least(stroke.forth) * 1.1 + stroke.half_width * 1.1 + 1.0;
         if (row - y).abs() > far || x - last > far || first - x > far {
             continue;
@@ -211,7 +224,7 @@ fn painted<S: Simd>(
         if !open.any_true() {
             break;
         }
-        let d = [px - x, py - y];
+        let d = [px - stroke.corner[0] - stroke.place[0], py - stroke.corner[1] - stroke.place[1]];
         let near = d[0].abs().simd_le(params.reach) & d[1].abs().simd_le(params.reach);
         let here = if params.by_id != 0 { (thing - stroke.id).abs().simd_le(0.5) } else { near };
         let Some([alpha, top]) = mark(simd, params, stroke, d) else { continue };

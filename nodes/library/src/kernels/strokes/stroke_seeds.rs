@@ -96,7 +96,9 @@ pub fn pass(plan: &mut PlanBuilder, inputs: &Inputs, strokes: &Strokes) -> [Imag
         inputs.noise,
     ];
     // A stroke that turns by MOST_TURN / 2 leaves its direction by that share of its half length.
-    let reach = (1.07 * params.half_length).max(params.half_width).ceil() as u32 + 2 + params.cell as u32;
+    let reach = (1.07 * params.half_length).max(FLAT_WITHIN * params.half_width).ceil() as u32
+        + 2
+        + params.cell as u32;
     let mut supports = [Support::Pixels(reach); 6];
     supports[0] = Support::Pixels(AROUND as u32);
     supports[5] = Support::Pixels(1 + params.cell as u32);
@@ -110,6 +112,11 @@ pub fn pass(plan: &mut PlanBuilder, inputs: &Inputs, strokes: &Strokes) -> [Imag
 const AROUND: i32 = 2;
 /// Steps to each side of a stroke.
 const STEPS: i32 = 6;
+/// Where a picture is flat within so many widths, strokes lie as the hand has it: slope against the field at most, and the
+/// difference in Lab that counts as flat no more.
+const FLAT_WITHIN: f32 = 1.5;
+const MOST_SLOPE: f32 = 0.5;
+const NOT_FLAT: f32 = 4.0;
 /// Turn of a stroke along half its length at most.
 const MOST_TURN: f32 = 0.7;
 
@@ -138,9 +145,9 @@ fn peak_of(pass: &CpuPass<'_>, params: &Params, [x, y]: [i32; 2]) -> [f32; 3] {
     [v[0].within(low[0], low[0] + params.cell), v[1].within(low[1], low[1] + params.cell), v[2]]
 }
 
-/// A peak between pixels: strokes that belong to things must not go from one to the next at once.
+/// A peak between pixels, from its cell's corner: strokes that belong to things must not go from one to the next at once.
 #[inline(always)]
-fn summit(pass: &CpuPass<'_>, [x, y, _]: [f32; 3]) -> [f32; 2] {
+fn summit(pass: &CpuPass<'_>, [x, y, _]: [f32; 3], corner: [i32; 2]) -> [f32; 2] {
     let noise = &pass.inputs[5];
     let at = |dx: i32, dy: i32| noise.pixel4(x.floor() as i32 + dx, y.floor() as i32 + dy)[0];
     let middle = at(0, 0);
@@ -149,6 +156,7 @@ fn summit(pass: &CpuPass<'_>, [x, y, _]: [f32; 3]) -> [f32; 2] {
         let bend = 2.0 * middle - before - after;
         (0.5 * (after - before) / if bend.abs() > 1e-6 { bend } else { 1e-6 }).within(-0.5, 0.5)
     };
+    let [x, y] = [x - corner[0] as f32, y - corner[1] as f32];
     [x + beside(at(-1, 0), at(1, 0)), y + beside(at(0, -1), at(0, 1))]
 }
 
@@ -177,6 +185,8 @@ fn prominence(pass: &CpuPass<'_>, params: &Params, [x, y]: [i32; 2], own: [f32; 
 struct Surroundings<'a> {
     pass: &'a CpuPass<'a>,
     params: &'a Params,
+    /// Pixels of the cell's corner, and of the seed from there: where a picture stands in a larger one rounds nothing.
+    corner: [i32; 2],
     place: [f32; 2],
     tangent: [f32; 2],
     curvature: f32,
@@ -187,7 +197,8 @@ impl Surroundings<'_> {
     #[inline(always)]
     fn pixel(&self, u: f32, v: f32) -> [i32; 2] {
         let ([x, y], [tx, ty]) = (self.place, self.tangent);
-        [(x + tx * u - ty * v).floor() as i32, (y + ty * u + tx * v).floor() as i32]
+        let [x, y] = [x + tx * u - ty * v, y + ty * u + tx * v];
+        [self.corner[0] + x.floor() as i32, self.corner[1] + y.floor() as i32]
     }
 
     #[inline(always)]
@@ -201,13 +212,25 @@ impl Surroundings<'_> {
             return 0.0;
         }
         let ids = &self.pass.inputs[4];
-        ids.data()[ids.offset(x, y)]
+        let id = ids.data()[ids.offset(x, y)];
+        if id.is_finite() { id } else { 0.0 }
     }
 
     /// How far the picture is from what lies below.
     #[inline(always)]
     fn missing(&self, at: [i32; 2]) -> f32 {
         difference(self.picture(at), self.pass.inputs[3].pixel4(at[0], at[1]))
+    }
+
+    /// 1 where the picture is all of one colour around the seed, 0 where it is not.
+    #[inline(always)]
+    fn flatness(&self, middle: [f32; 4]) -> f32 {
+        let far = FLAT_WITHIN * self.params.half_width;
+        let mut varied = 0.0f32;
+        for [u, v] in [[0.0, far], [0.0, -far], [far, 0.0], [-far, 0.0]] {
+            varied = varied.at_least(difference(self.picture(self.pixel(u, v)), middle));
+        }
+        1.0 - rise(varied / NOT_FLAT)
     }
 
     /// Half length of the stroke on one side, and the colours along it, added to `sum`.
@@ -237,19 +260,25 @@ impl Surroundings<'_> {
 fn seed<S: Simd>(simd: S, pass: &CpuPass<'_>, params: &Params, cell: [i32; 2]) -> Record {
     const NONE: Record = [[0.0; 4]; 3];
     let own = peak_of(pass, params, cell);
-    let place = summit(pass, own);
+    let corner = [0, 1].map(|i| (cell[i] as f32 * params.cell - params.offset[i]) as i32);
+    let place = summit(pass, own, corner);
     let share = prominence(pass, params, cell, own);
     if share < 0.2 {
         return NONE;
     }
     let at = [own[0].floor() as i32, own[1].floor() as i32];
-    let (tangent, bend) = direction(simd, pass, params, at, place);
-    let curvature = (bend * params.curve).within(-MOST_TURN, MOST_TURN) / params.half_length;
-    let around = Surroundings { pass, params, place, tangent, curvature };
+    let mut around = Surroundings { pass, params, corner, place, tangent: [1.0, 0.0], curvature: 0.0 };
+    let (field, bend) = direction(simd, &around, at);
+    around.tangent = field;
+    around.curvature = (bend * params.curve).within(-MOST_TURN, MOST_TURN) / params.half_length;
     let middle = around.picture(at);
     if middle[3] < 0.5 {
         return NONE;
     }
+    let slope = MOST_SLOPE * around.flatness(middle) * wave(own[2] * 3.0 + 0.7);
+    let length = (1.0 + slope * slope).sqrt();
+    let tangent = [(field[0] - field[1] * slope) / length, (field[1] + field[0] * slope) / length];
+    around.tangent = tangent;
     let thing = around.id(at);
     let mut sum = [middle[0], middle[1], middle[2], 1.0];
     let forth = around.end(1.0, middle, thing, &mut sum);
@@ -273,7 +302,7 @@ fn seed<S: Simd>(simd: S, pass: &CpuPass<'_>, params: &Params, cell: [i32; 2]) -
     let [l, a, b] = varied([sum[0] / sum[3], sum[1] / sum[3], sum[2] / sum[3]], own[2], params);
     [
         [place[0], place[1], own[2], width],
-        [tangent[0] * back, tangent[1] * back, curvature, forth],
+        [tangent[0] * back, tangent[1] * back, around.curvature, forth],
         [l, a, b, thing],
     ]
 }
@@ -288,17 +317,12 @@ fn varied([l, a, b]: [f32; 3], rank: f32, params: &Params) -> [f32; 3] {
 
 /// The tangent at a seed, and how far it turns over the length of a stroke.
 #[inline(always)]
-fn direction<S: Simd>(
-    simd: S,
-    pass: &CpuPass<'_>,
-    params: &Params,
-    seed: [i32; 2],
-    [x, y]: [f32; 2],
-) -> ([f32; 2], f32) {
-    let at = |x: f32, y: f32| pass.inputs[1].pixel4(x.floor() as i32, y.floor() as i32);
-    let [tx, ty] = tangents(simd, [pass.inputs[1].pixel4(seed[0], seed[1]); 2])[0];
-    let (dx, dy) = (tx * 0.5 * params.half_length, ty * 0.5 * params.half_length);
-    let ends = tangents(simd, [at(x + dx, y + dy), at(x - dx, y - dy)]);
+fn direction<S: Simd>(simd: S, around: &Surroundings<'_>, seed: [i32; 2]) -> ([f32; 2], f32) {
+    let tensor = |at: [i32; 2]| around.pass.inputs[1].pixel4(at[0], at[1]);
+    let [tx, ty] = tangents(simd, [tensor(seed); 2])[0];
+    let along = Surroundings { tangent: [tx, ty], ..*around };
+    let half = 0.5 * around.params.half_length;
+    let ends = tangents(simd, [tensor(along.pixel(half, 0.0)), tensor(along.pixel(-half, 0.0))]);
     // About the sine of the angle between tangents, whose signs mean nothing.
     let turn = |[ox, oy]: [f32; 2]| {
         let sine = tx * oy - ty * ox;
