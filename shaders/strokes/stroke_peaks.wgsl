@@ -6,8 +6,6 @@
 struct Params {
     /// Cells of the finer level by which those of this one begin before the picture, 0 or 1.
     shift: vec2i,
-    /// 1 or -1: peaks or valleys of the noise.
-    side: f32,
     /// Factor on the noise's distance from its mean.
     gain: f32,
     /// Nonzero where the finer level is the noise itself.
@@ -29,7 +27,7 @@ fn main(@builtin(global_invocation_id) id: vec3u) {
     for (var y = max(p.y, 0); y < min(p.y + 2, size.y); y++) {
         for (var x = max(p.x, 0); x < min(p.x + 2, size.x); x++) {
             let v = fetch(source, 0u, vec2i(x, y));
-            let first = vec4f(f32(x) + 0.5, f32(y) + 0.5, (v.x - 0.5) * params.gain * params.side, 0.0);
+            let first = vec4f(f32(x) + 0.5, f32(y) + 0.5, (v.x - 0.5) * params.gain, 0.0);
             let peak = select(v, first, params.begin != 0u);
             if peak.z > best.z {
                 best = peak;

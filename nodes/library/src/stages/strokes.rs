@@ -49,7 +49,7 @@ pub(crate) struct Subject {
 
 /// Strokes over each place, layer by layer: the first has to cover all.
 const DENSITY: [f32; 2] = [4.5, 3.5];
-/// Width of the noise's smoothing against half the width of strokes of the third layer.
+/// Width of the noise's smoothing against half the width of strokes.
 const GRAIN: f32 = 0.4;
 /// Difference of colour, Lab, at which strokes end, and from which on finer ones are wanted at the middle of `detail`.
 const TOLERANCE: f32 = 14.0;
@@ -63,6 +63,8 @@ const HEIGHTS: [f32; 2] = [0.25, 0.65];
 /// Pixels of the full-size picture over which borders of strokes are soft.
 const SOFTNESS: f32 = 1.2;
 
+/// Pixels of the finest marks of bristles.
+const FINEST: f32 = 1.0;
 /// Half lengths below which there are no strokes, pixels.
 const LEAST: f32 = 0.5;
 
@@ -71,9 +73,6 @@ pub(crate) fn painted(scope: &mut Scope<'_>, subject: &Subject, brush: &Brush) -
     if brush.half_length < LEAST || brush.half_width < 0.5 * LEAST {
         return None;
     }
-    let sigma = GRAIN * brush.half_width;
-    let noise = marks::grains(scope, sigma, brush.seed);
-    let deviation = marks::deviation(scope, sigma);
     let origin = scope.origin();
     let mut canvas: Option<[ImageId; 2]> = None;
     for layer in 0..brush.layers.max(1) {
@@ -82,8 +81,10 @@ pub(crate) fn painted(scope: &mut Scope<'_>, subject: &Subject, brush: &Brush) -
         let density = DENSITY[usize::from(layer > 0)];
         let apart = (4.0 * half_width * half_length / (PI * density)).sqrt();
         let level = apart.log2().floor().clamp(1.0, 12.0) as i8;
-        // Strokes of neighbouring layers begin at different places.
-        let peaks = Peaks { highest: layer % 2 == 0, deviation, level, origin };
+        // Of noise as coarse as the strokes nearly all peaks are seeds, whatever the size of the picture.
+        let sigma = GRAIN * half_width;
+        let noise = marks::grains(scope, sigma, brush.seed.wrapping_add(layer as u32 * 0x51ed_270b));
+        let peaks = Peaks { deviation: marks::deviation(scope, sigma), level, origin };
         let peaks = stroke_peaks::pass(scope.plan, noise, &peaks);
         let below = canvas.map(|[picture, _]| picture);
         let inputs = Inputs {
@@ -107,15 +108,17 @@ pub(crate) fn painted(scope: &mut Scope<'_>, subject: &Subject, brush: &Brush) -
             hue_variation: brush.variation * MOST_VARIATION[1],
         };
         let seeds = stroke_seeds::pass(scope.plan, &inputs, &strokes);
+        let [bristle, bristle_length] = brush.bristles;
         let paint = Paint {
             origin,
             half_width,
             half_length,
-            bristles: brush.bristles,
+            bristles: [bristle.max(FINEST), bristle_length.max(FINEST)],
             ragged: RAGGED * brush.raggedness,
             dryness: brush.dryness,
-            heights: HEIGHTS,
-            softness: SOFTNESS * scope.scale(),
+            // Finer ones than pixels can show are as faint as from further away.
+            heights: [HEIGHTS[0], HEIGHTS[1] * (bristle / FINEST).min(1.0)],
+            softness: (SOFTNESS * scope.scale()).max(1.0),
         };
         let ground = (below.unwrap_or(subject.picture), canvas.map(|[_, heights]| heights));
         canvas = Some(stroke_paint::pass(scope.plan, seeds, ground, subject.ids, &paint));

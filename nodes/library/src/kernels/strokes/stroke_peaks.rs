@@ -12,11 +12,9 @@ crate::kernel!(stroke_peaks {
     tolerance: Tolerance::of_rounding(1e-6, 1e-6, "a product; peaks are compared in the same order"),
 });
 
-/// Which extremes of the noise are peaks.
+/// Noise, and cells in which it has peaks.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Peaks {
-    /// True for the highest values, false for the lowest.
-    pub highest: bool,
     /// Standard deviation of the noise.
     pub deviation: f32,
     /// Level of the cells, from 1 on.
@@ -27,13 +25,10 @@ pub struct Peaks {
 
 /// Adds the passes: (x, y, height in standard deviations) of the highest peak of the first channel of `noise` in each cell.
 pub fn pass(plan: &mut PlanBuilder, noise: ImageId, peaks: &Peaks) -> ImageId {
-    let side = if peaks.highest { 1.0 } else { -1.0 };
     let params = |level: i8| Params {
         shift: offset(peaks.origin, level).map(|o| (o as i32) >> (level - 1)),
-        side,
         gain: 1.0 / peaks.deviation.max(1e-6),
         begin: (level == 1).into(),
-        padding: Default::default(),
     };
     let mut found = noise;
     for level in 1..=peaks.level {
@@ -62,7 +57,7 @@ fn run(pass: &CpuPass<'_>, band: &mut Band<'_>) {
                 for i in (2 * x - params.shift[0]).max(0)..(2 * x - params.shift[0] + 2).min(width) {
                     let mut peak = view.pixel4(i, j);
                     if params.begin != 0 {
-                        let v = (peak[0] - 0.5) * params.gain * params.side;
+                        let v = (peak[0] - 0.5) * params.gain;
                         peak = [i as f32 + 0.5, j as f32 + 0.5, v, 0.0];
                     }
                     if peak[2] > best[2] {
