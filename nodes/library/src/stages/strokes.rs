@@ -49,8 +49,8 @@ pub(crate) struct Subject {
 
 /// Strokes over each place, layer by layer: the first has to cover all.
 const DENSITY: [f32; 2] = [4.5, 3.5];
-/// Width of the noise's smoothing against half the width of strokes.
-const GRAIN: f32 = 0.4;
+/// Width of the noise's smoothing against the distance of seeds.
+const GRAIN: f32 = 0.28;
 /// Difference of colour, Lab, at which strokes end, and from which on finer ones are wanted at the middle of `detail`.
 const TOLERANCE: f32 = 14.0;
 const THRESHOLD: f32 = 6.0;
@@ -81,8 +81,8 @@ pub(crate) fn painted(scope: &mut Scope<'_>, subject: &Subject, brush: &Brush) -
         let density = DENSITY[usize::from(layer > 0)];
         let apart = (4.0 * half_width * half_length / (PI * density)).sqrt();
         let level = apart.log2().floor().clamp(1.0, 12.0) as i8;
-        // Of noise as coarse as the strokes nearly all peaks are seeds, whatever the size of the picture.
-        let sigma = GRAIN * half_width;
+        // Of noise as coarse as the seeds nearly all peaks are seeds, whatever the size of the picture.
+        let sigma = GRAIN * apart;
         let noise = marks::grains(scope, sigma, brush.seed.wrapping_add(layer as u32 * 0x51ed_270b));
         let peaks = Peaks { deviation: marks::deviation(scope, sigma), level, origin };
         let peaks = stroke_peaks::pass(scope.plan, noise, &peaks);
