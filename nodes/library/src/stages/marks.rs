@@ -22,6 +22,11 @@ pub(crate) fn grains(scope: &mut Scope<'_>, sigma: f32, seed: u32) -> ImageId {
     on_things(scope, screen, &Marks::of_smoothed_noise(sigma, scale, seed))
 }
 
+/// Standard deviation of the values of [`grains`].
+pub(crate) fn deviation(scope: &Scope<'_>, sigma: f32) -> f32 {
+    Marks::of_smoothed_noise(sigma, scope.scale(), 0).deviation
+}
+
 /// Clouds of the size of those of the screen; none where they are to stay there. Of both `layers` together marks on
 /// things have one size.
 pub(crate) fn clouds(scope: &mut Scope<'_>, layers: [Layer; 2]) -> Option<ImageId> {
