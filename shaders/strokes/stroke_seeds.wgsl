@@ -1,6 +1,6 @@
-// What is painted from the highest peak of a cell: a stroke along the tensor field, as long and as wide as the picture
-// keeps its colour (Hertzmann 1998, 2.2), where no higher peak is near and what lies below differs from the picture.
-// Cost: 25 loads of peaks; where there is a stroke about 30 loads and 500 operations.
+// What is painted from the point of a cell: a stroke along the tensor field, as long and as wide as the picture keeps its
+// colour (Hertzmann 1998, 2.2), where no higher point is near and the picture has detail of its size.
+// Cost: 25 loads of points; where there is a stroke about 30 loads and 500 operations.
 #import gpu/grid
 #import shared/tensor
 #import shared/value_noise
@@ -10,7 +10,7 @@ struct Params {
     offset: vec2f,
     /// Pixels of the finest level on a cell's side.
     cell: f32,
-    /// Distance within which the highest peak alone is a seed, pixels.
+    /// Distance within which the highest point alone is a seed, pixels.
     apart: f32,
     /// Half the width of strokes, pixels.
     half_width: f32,
@@ -20,7 +20,7 @@ struct Params {
     curve: f32,
     /// Difference of colour from which on a stroke ends, Lab.
     tolerance: f32,
-    /// Difference between the picture and what lies below from which on there are strokes, Lab; below 0: everywhere.
+    /// Difference between the picture and the coarse one from which on there are strokes, Lab; below 0: everywhere.
     threshold: f32,
     /// 1 / distance along a stroke at which colours count half, pixels.
     inverse_smoothing: f32,
@@ -33,11 +33,13 @@ struct Params {
 }
 
 #params
-#input peaks, tensors, flat_image, below, ids, noise
+#input points, tensors, flat_image, coarse, ids
 #output places rgba32float
 #output shapes rgba32float
 #output colours rgba32float
 
+// Size below which a stroke is none.
+const LEAST: f32 = 0.1;
 // Steps to each side of a stroke.
 const STEPS: i32 = 6;
 // Where a picture is flat within so many widths, strokes lie as the hand has it: slope against the field at most, and the
@@ -78,29 +80,23 @@ fn turn(t: vec2f, p: vec2i) -> f32 {
     return select(sine, -sine, dot(t, other) < 0.0);
 }
 
-// The peak of a cell, kept inside it.
-fn peak_of(cell: vec2i) -> vec3f {
-    let v = fetch(peaks, 0u, cell);
-    let low = vec2f(cell) * params.cell - params.offset;
-    return vec3f(clamp(v.xy, low, low + params.cell), v.z);
-}
-
-// Share of its width that a stroke has at a peak, as other peaks near it are lower.
-fn prominence(cell: vec2i, own: vec3f) -> f32 {
+// Size of the stroke of a point, as higher ones are near it.
+fn prominence(cell: vec2i, own: vec4f) -> f32 {
     let size = grid.inputs[0].zw;
-    var share = 1.0;
+    var share = own.w;
     for (var dy = -2; dy <= 2; dy++) {
         for (var dx = -2; dx <= 2; dx++) {
             let c = cell + vec2i(dx, dy);
-            if (dx == 0 && dy == 0) || any(c < vec2i(0)) || any(c >= size) {
+            if any(c < vec2i(0)) || any(c >= size) {
                 continue;
             }
-            let other = peak_of(c);
-            let d = other.xy - own.xy;
-            // What comes nearer counts little by little, so that strokes neither appear nor vanish at once.
-            let far = clamp((sqrt(dot(d, d)) / params.apart - 0.85) * 6.6666667, 0.0, 1.0);
-            let higher = clamp((own.z - other.z) * 8.0 + 0.5, 0.0, 1.0);
-            share = min(share, higher + (1.0 - higher) * far);
+            let other = fetch(points, 0u, c);
+            if other.z > own.z {
+                let d = other.xy - own.xy + vec2f(f32(dx), f32(dy)) * params.cell;
+                // What comes nearer counts little by little, so that strokes neither appear nor vanish at once.
+                let near = clamp(6.6666665 - sqrt(dot(d, d)) / params.apart * 6.6666665, 0.0, 1.0);
+                share = min(share, 1.0 - near * other.w);
+            }
         }
     }
     return share;
@@ -111,35 +107,18 @@ fn at(corner: vec2f, place: vec2f) -> vec2i {
     return vec2i(corner) + vec2i(floor(place));
 }
 
-// A value of the noise, of which `p` is one of the pixels.
-fn noise_at(p: vec2i) -> f32 {
-    return fetch(noise, 5u, p).x;
-}
-
-// How far beside a pixel's centre a parabola through it and its neighbours has its peak.
-fn beside(before: f32, middle: f32, after: f32) -> f32 {
-    let bend = 2.0 * middle - before - after;
-    return clamp(0.5 * (after - before) / select(1e-6, bend, abs(bend) > 1e-6), -0.5, 0.5);
-}
-
 fn main(@builtin(global_invocation_id) id: vec3u) {
     if outside(id) {
         return;
     }
     let cell = pixel(id);
-    let peak = peak_of(cell);
-    var own = peak;
-    let seed = vec2i(floor(own.xy));
-    // Peaks lie between pixels: strokes that belong to things must not go from one to the next at once.
-    let summit = noise_at(seed);
-    let corner = vec2f(cell) * params.cell - params.offset;
+    let own = fetch(points, 0u, cell);
     // From the corner of the cell, so that a picture's place in a larger one rounds nothing.
-    own = vec3f(own.xy - corner, own.z);
-    own.x += beside(noise_at(seed - vec2i(1, 0)), summit, noise_at(seed + vec2i(1, 0)));
-    own.y += beside(noise_at(seed - vec2i(0, 1)), summit, noise_at(seed + vec2i(0, 1)));
+    let corner = vec2f(cell) * params.cell - params.offset;
+    let seed = at(corner, own.xy);
     let middle = fetch(flat_image, 2u, seed);
-    var share = prominence(cell, peak);
-    if share < 0.2 || middle.a < 0.5 {
+    var share = prominence(cell, own);
+    if share <= LEAST || middle.a < 0.5 {
         textureStore(places, vec2i(id.xy), vec4f(0.0));
         textureStore(shapes, vec2i(id.xy), vec4f(0.0));
         textureStore(colours, vec2i(id.xy), vec4f(0.0));
@@ -164,18 +143,27 @@ fn main(@builtin(global_invocation_id) id: vec3u) {
     var sum = middle.rgb;
     var weight = 1.0;
     var ends = vec2f(l);
+    let step_length = l / f32(STEPS);
     for (var side = 0; side < 2; side++) {
         let along = select(1.0, -1.0, side == 1);
+        var before = 0.0;
         for (var i = 1; i <= STEPS; i++) {
-            let u = f32(i) * l / f32(STEPS);
+            let u = f32(i) * step_length;
             let q = own.xy + t * (along * u) + n * (0.5 * curvature * u * u);
             let place = at(corner, q);
             let c = fetch(flat_image, 2u, place);
-            let other = abs(object_id(place) - thing) > 0.5;
-            if difference(c.rgb, middle.rgb) > params.tolerance || c.a < 0.5 || other {
-                ends[side] = u - 0.5 * l / f32(STEPS);
+            if c.a < 0.5 || abs(object_id(place) - thing) > 0.5 {
+                ends[side] = u - 0.5 * step_length;
                 break;
             }
+            let now = difference(c.rgb, middle.rgb);
+            if now > params.tolerance {
+                // Between two steps, so that ends do not jump.
+                let rest = 1.0 - (params.tolerance - before) / max(now - before, 1e-3);
+                ends[side] = u - step_length * clamp(rest, 0.0, 1.0);
+                break;
+            }
+            before = now;
             let far = u * params.inverse_smoothing;
             let counts = 1.0 / (1.0 + far * far);
             sum += c.rgb * counts;
@@ -183,30 +171,32 @@ fn main(@builtin(global_invocation_id) id: vec3u) {
         }
     }
     let vary = 0.85 + 0.3 * value_noise(vec2f(own.z * 75.0, 7.0), 3u);
-    ends = max(ends * vary, vec2f(w));
 
     var room = 0.6;
     var missing = 0.0;
     for (var side = 0; side < 2; side++) {
         let along = select(1.0, -1.0, side == 1);
         let c = fetch(flat_image, 2u, at(corner, own.xy + n * (along * 0.8 * w))).rgb;
-        room += select(0.0, 0.2, difference(c, middle.rgb) <= params.tolerance);
+        room += 0.2 - 0.2 * rise(2.0 * difference(c, middle.rgb) / params.tolerance - 1.5);
         let across = at(corner, own.xy + n * (along * 0.7 * w));
-        missing += difference(fetch(flat_image, 2u, across).rgb, fetch(below, 3u, across).rgb);
+        missing += difference(fetch(flat_image, 2u, across).rgb, fetch(coarse, 3u, across).rgb);
         let ahead = at(corner, own.xy + t * (along * 0.35 * l));
-        missing += difference(fetch(flat_image, 2u, ahead).rgb, fetch(below, 3u, ahead).rgb);
+        missing += difference(fetch(flat_image, 2u, ahead).rgb, fetch(coarse, 3u, ahead).rgb);
     }
-    missing = 0.2 * (missing + difference(middle.rgb, fetch(below, 3u, seed).rgb));
+    missing = 0.2 * (missing + difference(middle.rgb, fetch(coarse, 3u, seed).rgb));
     if params.threshold >= 0.0 {
-        share *= rise(missing / max(params.threshold, 1e-3) - 1.0);
+        share *= rise(missing / params.threshold - 1.0);
     }
+    share = (share - LEAST) * (1.0 / (1.0 - LEAST));
+    let width = w * room * max(share, 0.0);
+    // A stroke that comes or goes is small, not thin.
+    ends = max(ends * (vary * (0.4 + 0.6 * clamp(share, 0.0, 1.0))), vec2f(width));
 
     var c = sum / weight;
     let grey = 1.0 + 0.04 * params.variation * wave(own.z * 5.0);
     let hue = params.hue_variation * wave(own.z * 11.0 + 0.3);
     let ab = vec2f(c.g - c.b * hue, c.b + c.g * hue) * grey;
     c = vec3f(c.r + params.variation * wave(own.z * 7.0), ab);
-    let width = select(0.0, w * room * share, share >= 0.15);
     textureStore(places, vec2i(id.xy), vec4f(own.xy, own.z, width));
     textureStore(shapes, vec2i(id.xy), vec4f(t * ends.y, curvature, ends.x));
     textureStore(colours, vec2i(id.xy), vec4f(c, thing));

@@ -1,9 +1,10 @@
-//! Brush strokes in layers from coarse to fine (Hertzmann 1998): each paints only where what lies below differs from the
-//! picture. Seeds are peaks of noise that belongs to things, so that strokes move with what they paint.
+//! Brush strokes in layers from coarse to fine (Hertzmann 1998): finer ones paint only where the picture has detail of their
+//! size. Seeds are points that belong to things, so that strokes move with what they paint.
 
 use crate::declare::spec::Scope;
 use crate::kernels::strokes::stroke_paint::{self, Paint};
-use crate::kernels::strokes::stroke_peaks::{self, Peaks};
+use crate::kernels::smoothing::gaussian_blur;
+use crate::kernels::strokes::stroke_points::{self, Points};
 use crate::kernels::strokes::stroke_seeds::{self, Inputs, Strokes};
 use crate::stages::marks;
 use isophote_engine::ImageId;
@@ -49,8 +50,8 @@ pub(crate) struct Subject {
 
 /// Strokes over each place, layer by layer: the first has to cover all.
 const DENSITY: [f32; 2] = [4.5, 3.5];
-/// Width of the noise's smoothing against the distance of seeds.
-const GRAIN: f32 = 0.28;
+/// Standard deviation of the smoothing that leaves what strokes of the layer below show, in half widths of this one.
+const COARSE: f32 = 1.2;
 /// Difference of colour, Lab, at which strokes end, and from which on finer ones are wanted at the middle of `detail`.
 const TOLERANCE: f32 = 14.0;
 const THRESHOLD: f32 = 6.0;
@@ -74,27 +75,22 @@ pub(crate) fn painted(scope: &mut Scope<'_>, subject: &Subject, brush: &Brush) -
         return None;
     }
     let origin = scope.origin();
+    let anchor = marks::anchor(scope);
     let mut canvas: Option<[ImageId; 2]> = None;
     for layer in 0..brush.layers.max(1) {
         let size = 2f32.powi(2 - layer);
         let (half_width, half_length) = (size * brush.half_width, size * brush.half_length);
         let density = DENSITY[usize::from(layer > 0)];
         let apart = (4.0 * half_width * half_length / (PI * density)).sqrt();
-        let level = apart.log2().floor().clamp(1.0, 12.0) as i8;
-        // Of noise as coarse as the seeds nearly all peaks are seeds, whatever the size of the picture.
-        let sigma = GRAIN * apart;
-        let noise = marks::grains(scope, sigma, brush.seed.wrapping_add(layer as u32 * 0x51ed_270b));
-        let peaks = Peaks { deviation: marks::deviation(scope, sigma), level, origin };
-        let peaks = stroke_peaks::pass(scope.plan, noise, &peaks);
+        let seed = brush.seed.wrapping_add(layer as u32 * 0x51ed_270b);
+        let points = Points { apart, origin, seed };
+        let points = stroke_points::pass(scope.plan, subject.picture, anchor, &points);
+        // Detail decides where finer strokes are, not the colours that coarse ones happen to have: it moves with things.
+        let coarse = (layer > 0)
+            .then(|| gaussian_blur::pass_colour(scope.plan, subject.picture, COARSE * half_width));
         let below = canvas.map(|[picture, _]| picture);
-        let inputs = Inputs {
-            noise,
-            peaks,
-            tensors: subject.tensors,
-            picture: subject.picture,
-            below,
-            ids: subject.ids,
-        };
+        let inputs =
+            Inputs { points, tensors: subject.tensors, picture: subject.picture, coarse, ids: subject.ids };
         let strokes = Strokes {
             origin,
             half_width,
@@ -102,7 +98,7 @@ pub(crate) fn painted(scope: &mut Scope<'_>, subject: &Subject, brush: &Brush) -
             apart,
             curve: brush.curve,
             tolerance: TOLERANCE * [1.3, 1.0, 0.8][layer.min(2) as usize],
-            threshold: Some(THRESHOLD * 8f32.powf(0.5 - brush.detail)),
+            threshold: THRESHOLD * 8f32.powf(0.5 - brush.detail),
             smoothing: size * brush.smoothing,
             variation: brush.variation * MOST_VARIATION[0],
             hue_variation: brush.variation * MOST_VARIATION[1],

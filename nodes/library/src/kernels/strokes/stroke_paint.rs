@@ -10,7 +10,7 @@
 pub use crate::kernels::shaders::stroke_paint::Params;
 use crate::kernels::shared::value_noise::noise;
 use crate::kernels::simd::pixels::Block;
-use crate::kernels::strokes::stroke_peaks::offset;
+use crate::kernels::strokes::stroke_points::offset;
 use isophote_engine::bounds::Bounds;
 use isophote_engine::fearless_simd::{Simd, f32x8, prelude::*};
 use isophote_engine::{Band, Class, CpuPass, ImageId, PlanBuilder, Rect, Support, Tolerance};

@@ -1,14 +1,14 @@
-//! What is painted from the highest peak of a cell: a stroke along the tensor field, as long and as wide as the picture keeps
-//! its colour, of a colour of its own, and only where what lies below differs from the picture (Hertzmann, Painterly
-//! rendering with curved brush strokes of multiple sizes, 1998). Peaks near higher ones are no seeds, so that strokes keep
-//! their distance; which of two wins changes little by little, as moving noise does.
+//! What is painted from the point of a cell ([`stroke_points`](crate::kernels::strokes::stroke_points)): a stroke along the
+//! tensor field, as long and as wide as the picture keeps its colour, of a colour of its own, and only where the picture has
+//! detail of its size (after Hertzmann, Painterly rendering with curved brush strokes of multiple sizes, 1998). Points near
+//! higher ones are no seeds, so that strokes keep their distance; they shrink as a higher one comes nearer.
 //!
 //! Cost per cell: 25 distances; where there is a stroke, about 30 loads and 500 operations.
 
 pub use crate::kernels::shaders::stroke_seeds::Params;
 use crate::kernels::shared::tensor;
 use crate::kernels::shared::value_noise::noise;
-use crate::kernels::strokes::stroke_peaks::offset;
+use crate::kernels::strokes::stroke_points::offset;
 use isophote_engine::bounds::Bounds;
 use isophote_engine::fearless_simd::{Simd, f32x8, prelude::*};
 use isophote_engine::{Band, Class, CpuPass, ImageId, PlanBuilder, Support, Tolerance};
@@ -40,8 +40,8 @@ pub struct Strokes {
     pub curve: f32,
     /// Difference of colour from which on a stroke ends, Lab.
     pub tolerance: f32,
-    /// Difference between the picture and what lies below from which on there are strokes, Lab; none: everywhere.
-    pub threshold: Option<f32>,
+    /// Difference between the picture and the coarse one from which on there are strokes, Lab.
+    pub threshold: f32,
     /// Distance along a stroke at which colours count half.
     pub smoothing: f32,
     /// Largest change of lightness from stroke to stroke, L.
@@ -53,16 +53,14 @@ pub struct Strokes {
 /// Images that strokes are made after.
 #[derive(Clone, Copy, Debug)]
 pub struct Inputs {
-    /// The noise whose peaks are seeds.
-    pub noise: ImageId,
-    /// Peaks of a level ([`stroke_peaks`](super::stroke_peaks)), at most [`Strokes::apart`] wide.
-    pub peaks: ImageId,
+    /// Points by cell, which are at most [`Strokes::apart`] wide.
+    pub points: ImageId,
     /// Tensors that strokes follow.
     pub tensors: ImageId,
     /// The picture to paint, Lab.
     pub picture: ImageId,
-    /// What lies below, Lab; none for the first layer.
-    pub below: Option<ImageId>,
+    /// The picture without what is finer than strokes of the layer below, Lab; none for the first layer.
+    pub coarse: Option<ImageId>,
     /// Object ids, where they are known: strokes end at borders.
     pub ids: Option<ImageId>,
 }
@@ -70,7 +68,7 @@ pub struct Inputs {
 /// Strokes by cell, three images: place, rank and half width, 0 for none; direction, longer by the half length against it, bend
 /// and half length along it; colour in Lab and object id.
 pub fn pass(plan: &mut PlanBuilder, inputs: &Inputs, strokes: &Strokes) -> [ImageId; 3] {
-    let level = plan.desc(inputs.peaks).level;
+    let level = plan.desc(inputs.points).level;
     let params = Params {
         offset: offset(strokes.origin, level),
         cell: (1 << level.clamp(0, 24)) as f32,
@@ -79,7 +77,7 @@ pub fn pass(plan: &mut PlanBuilder, inputs: &Inputs, strokes: &Strokes) -> [Imag
         half_length: strokes.half_length,
         curve: strokes.curve,
         tolerance: strokes.tolerance,
-        threshold: if inputs.below.is_some() { strokes.threshold.unwrap_or(-1.0) } else { -1.0 },
+        threshold: if inputs.coarse.is_some() { strokes.threshold.max(1e-3) } else { -1.0 },
         inverse_smoothing: 1.0 / strokes.smoothing.max(1e-3),
         variation: strokes.variation,
         hue_variation: strokes.hue_variation,
@@ -88,27 +86,27 @@ pub fn pass(plan: &mut PlanBuilder, inputs: &Inputs, strokes: &Strokes) -> [Imag
     };
     let picture = inputs.picture;
     let images = [
-        inputs.peaks,
+        inputs.points,
         inputs.tensors,
         picture,
-        inputs.below.unwrap_or(picture),
+        inputs.coarse.unwrap_or(picture),
         inputs.ids.unwrap_or(picture),
-        inputs.noise,
     ];
     // A stroke that turns by MOST_TURN / 2 leaves its direction by that share of its half length.
     let reach = (1.07 * params.half_length).max(FLAT_WITHIN * params.half_width).ceil() as u32
         + 2
         + params.cell as u32;
-    let mut supports = [Support::Pixels(reach); 6];
+    let mut supports = [Support::Pixels(reach); 5];
     supports[0] = Support::Pixels(AROUND as u32);
-    supports[5] = Support::Pixels(1 + params.cell as u32);
     // Colours stand beside ids, which 16-bit floats do not hold.
     let classes = [Class::Field; 3];
     let first = plan.pass_reaching(&KERNEL, &images, &params, &classes, &supports, level);
     [first, plan.sibling(first, 1), plan.sibling(first, 2)]
 }
 
-/// Cells to each side whose peaks may be too near.
+/// Size below which a stroke is none.
+const LEAST: f32 = 0.1;
+/// Cells to each side whose points may be too near.
 const AROUND: i32 = 2;
 /// Steps to each side of a stroke.
 const STEPS: i32 = 6;
@@ -137,51 +135,27 @@ fn seeds<S: Simd>(simd: S, pass: &CpuPass<'_>, params: &Params, band: &mut Band<
     }
 }
 
-/// The peak of a cell, kept inside it.
+/// Size of the stroke of a point, as higher ones are near it.
 #[inline(always)]
-fn peak_of(pass: &CpuPass<'_>, params: &Params, [x, y]: [i32; 2]) -> [f32; 3] {
-    let v = pass.inputs[0].pixel4(x, y);
-    let low = [x as f32 * params.cell - params.offset[0], y as f32 * params.cell - params.offset[1]];
-    [v[0].within(low[0], low[0] + params.cell), v[1].within(low[1], low[1] + params.cell), v[2]]
-}
-
-/// A peak between pixels, from its cell's corner: strokes that belong to things must not go from one to the next at once.
-#[inline(always)]
-fn summit(pass: &CpuPass<'_>, [x, y, _]: [f32; 3], corner: [i32; 2]) -> [f32; 2] {
-    let noise = &pass.inputs[5];
-    let at = |dx: i32, dy: i32| noise.pixel4(x.floor() as i32 + dx, y.floor() as i32 + dy)[0];
-    let middle = at(0, 0);
-    // How far beside its middle a parabola through three values has its peak.
-    let beside = |before: f32, after: f32| {
-        let bend = 2.0 * middle - before - after;
-        (0.5 * (after - before) / if bend.abs() > 1e-6 { bend } else { 1e-6 }).within(-0.5, 0.5)
-    };
-    let [x, y] = [x - corner[0] as f32, y - corner[1] as f32];
-    [x + beside(at(-1, 0), at(1, 0)), y + beside(at(0, -1), at(0, 1))]
-}
-
-/// Share of its width that a stroke has at a peak, as other peaks near it are lower.
-#[inline(always)]
-fn prominence(pass: &CpuPass<'_>, params: &Params, [x, y]: [i32; 2], own: [f32; 3]) -> f32 {
+fn prominence(pass: &CpuPass<'_>, params: &Params, [x, y]: [i32; 2], own: [f32; 4]) -> f32 {
     let [width, height] = pass.inputs[0].full();
-    let mut share = 1.0f32;
+    let mut share = own[3];
     for j in (y - AROUND).max(0)..=(y + AROUND).min(height - 1) {
         for i in (x - AROUND).max(0)..=(x + AROUND).min(width - 1) {
-            if [i, j] == [x, y] {
-                continue;
+            let other = pass.inputs[0].pixel4(i, j);
+            if other[2] > own[2] {
+                let dx = other[0] - own[0] + (i - x) as f32 * params.cell;
+                let dy = other[1] - own[1] + (j - y) as f32 * params.cell;
+                // What comes nearer counts little by little, so that strokes neither appear nor vanish at once.
+                let near = (6.666_666_5 - (dx * dx + dy * dy).sqrt() / params.apart * 6.666_666_5).within(0.0, 1.0);
+                share = share.at_most(1.0 - near * other[3]);
             }
-            let other = peak_of(pass, params, [i, j]);
-            let (dx, dy) = (other[0] - own[0], other[1] - own[1]);
-            // What comes nearer counts little by little, so that strokes neither appear nor vanish at once.
-            let far = (((dx * dx + dy * dy).sqrt() / params.apart - 0.85) * 6.666_666_5).within(0.0, 1.0);
-            let higher = ((own[2] - other[2]) * 8.0 + 0.5).within(0.0, 1.0);
-            share = share.at_most(higher + (1.0 - higher) * far);
         }
     }
     share
 }
 
-/// The picture, what lies below and the ids, around a seed.
+/// The pictures and the ids around a seed.
 struct Surroundings<'a> {
     pass: &'a CpuPass<'a>,
     params: &'a Params,
@@ -216,7 +190,7 @@ impl Surroundings<'_> {
         if id.is_finite() { id } else { 0.0 }
     }
 
-    /// How far the picture is from what lies below.
+    /// How far the picture is from the coarse one.
     #[inline(always)]
     fn missing(&self, at: [i32; 2]) -> f32 {
         difference(self.picture(at), self.pass.inputs[3].pixel4(at[0], at[1]))
@@ -237,14 +211,21 @@ impl Surroundings<'_> {
     #[inline(always)]
     fn end(&self, along: f32, middle: [f32; 4], thing: f32, sum: &mut [f32; 4]) -> f32 {
         let length = self.params.half_length;
+        let step = length / STEPS as f32;
+        let mut before = 0.0;
         for i in 1..=STEPS {
-            let u = i as f32 * length / STEPS as f32;
+            let u = i as f32 * step;
             let at = self.pixel(along * u, 0.5 * self.curvature * u * u);
             let c = self.picture(at);
-            let other = (self.id(at) - thing).abs() > 0.5;
-            if difference(c, middle) > self.params.tolerance || c[3] < 0.5 || other {
-                return u - 0.5 * length / STEPS as f32;
+            if c[3] < 0.5 || (self.id(at) - thing).abs() > 0.5 {
+                return u - 0.5 * step;
             }
+            let now = difference(c, middle);
+            if now > self.params.tolerance {
+                // Between two steps, so that ends do not jump.
+                return u - step * (1.0 - (self.params.tolerance - before) / (now - before).at_least(1e-3)).within(0.0, 1.0);
+            }
+            before = now;
             let far = u * self.params.inverse_smoothing;
             let counts = 1.0 / (1.0 + far * far);
             for k in 0..3 {
@@ -259,14 +240,14 @@ impl Surroundings<'_> {
 #[inline(always)]
 fn seed<S: Simd>(simd: S, pass: &CpuPass<'_>, params: &Params, cell: [i32; 2]) -> Record {
     const NONE: Record = [[0.0; 4]; 3];
-    let own = peak_of(pass, params, cell);
+    let own = pass.inputs[0].pixel4(cell[0], cell[1]);
     let corner = [0, 1].map(|i| (cell[i] as f32 * params.cell - params.offset[i]) as i32);
-    let place = summit(pass, own, corner);
+    let place = [own[0], own[1]];
     let share = prominence(pass, params, cell, own);
-    if share < 0.2 {
+    if share <= LEAST {
         return NONE;
     }
-    let at = [own[0].floor() as i32, own[1].floor() as i32];
+    let at = [0, 1].map(|i| corner[i] + place[i].floor() as i32);
     let mut around = Surroundings { pass, params, corner, place, tangent: [1.0, 0.0], curvature: 0.0 };
     let (field, bend) = direction(simd, &around, at);
     around.tangent = field;
@@ -286,19 +267,21 @@ fn seed<S: Simd>(simd: S, pass: &CpuPass<'_>, params: &Params, cell: [i32; 2]) -
     let w = params.half_width;
     let splat = |v: f32| f32x8::splat(simd, v);
     let vary = 0.85 + 0.3 * noise(simd, splat(own[2] * 75.0), splat(7.0), 3)[0];
-    let (forth, back) = ((forth * vary).at_least(w), (back * vary).at_least(w));
 
     let (mut room, mut missing) = (0.6, 0.0);
     for along in [1.0, -1.0] {
-        let like = difference(around.picture(around.pixel(0.0, along * 0.8 * w)), middle) <= params.tolerance;
-        room += if like { 0.2 } else { 0.0 };
+        let apart = difference(around.picture(around.pixel(0.0, along * 0.8 * w)), middle);
+        room += 0.2 - 0.2 * rise(2.0 * apart / params.tolerance - 1.5);
         missing += around.missing(around.pixel(0.0, along * 0.7 * w));
         missing += around.missing(around.pixel(along * 0.35 * params.half_length, 0.0));
     }
     missing = 0.2 * (missing + around.missing(at));
-    let wanted = if params.threshold < 0.0 { 1.0 } else { rise(missing / params.threshold.max(1e-3) - 1.0) };
-    let share = share * wanted;
-    let width = if share >= 0.15 { w * room * share } else { 0.0 };
+    let wanted = if params.threshold < 0.0 { 1.0 } else { rise(missing / params.threshold - 1.0) };
+    let share = (share * wanted - LEAST) * (1.0 / (1.0 - LEAST));
+    let width = w * room * share.at_least(0.0);
+    // A stroke that comes or goes is small, not thin.
+    let longer = vary * (0.4 + 0.6 * share.within(0.0, 1.0));
+    let (forth, back) = ((forth * longer).at_least(width), (back * longer).at_least(width));
     let [l, a, b] = varied([sum[0] / sum[3], sum[1] / sum[3], sum[2] / sum[3]], own[2], params);
     [
         [place[0], place[1], own[2], width],
