@@ -2,8 +2,8 @@
 //! size. Seeds are points that belong to things, so that strokes move with what they paint.
 
 use crate::declare::spec::Scope;
-use crate::kernels::strokes::stroke_paint::{self, Paint};
 use crate::kernels::smoothing::gaussian_blur;
+use crate::kernels::strokes::stroke_paint::{self, Paint};
 use crate::kernels::strokes::stroke_points::{self, Points};
 use crate::kernels::strokes::stroke_seeds::{self, Inputs, Strokes};
 use crate::stages::marks;
@@ -86,8 +86,8 @@ pub(crate) fn painted(scope: &mut Scope<'_>, subject: &Subject, brush: &Brush) -
         let points = Points { apart, origin, seed };
         let points = stroke_points::pass(scope.plan, subject.picture, anchor, &points);
         // Detail decides where finer strokes are, not the colours that coarse ones happen to have: it moves with things.
-        let coarse = (layer > 0)
-            .then(|| gaussian_blur::pass_colour(scope.plan, subject.picture, COARSE * half_width));
+        let coarse =
+            (layer > 0).then(|| gaussian_blur::pass_colour(scope.plan, subject.picture, COARSE * half_width));
         let below = canvas.map(|[picture, _]| picture);
         let inputs =
             Inputs { points, tensors: subject.tensors, picture: subject.picture, coarse, ids: subject.ids };

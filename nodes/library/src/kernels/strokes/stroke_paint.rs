@@ -30,7 +30,7 @@ crate::kernel!(stroke_paint {
 /// Appearance of the paint; lengths in pixels of the picture that is rendered.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Paint {
-    /// Where the picture stands in the canonical one, as for the peaks.
+    /// Where the picture stands in the canonical one, as for the points.
     pub origin: [f32; 2],
     /// Half the width of the strokes.
     pub half_width: f32,

@@ -117,7 +117,8 @@ impl Point {
     #[inline(always)]
     fn of([x, y, z]: [i32; 3], seed: u32) -> Self {
         let products = [(x, 0x9e37_79b1), (y, 0x85eb_ca77), (z, 0xc2b2_ae3d)];
-        let [x_part, y_part, z_part] = products.map(|(v, factor): (i32, u32)| (v as u32).wrapping_mul(factor));
+        let [x_part, y_part, z_part] =
+            products.map(|(v, factor): (i32, u32)| (v as u32).wrapping_mul(factor));
         let a = mixed(x_part ^ y_part ^ z_part ^ seed);
         let b = mixed(a ^ 0x68e3_1da4);
         let d = mixed(b ^ 0xb529_7a4d);
@@ -282,7 +283,8 @@ impl Cell<'_> {
             let first = s.point.map(|v| (v * unit - 0.5).floor() as i32);
             let seed = self.params.seed.wrapping_add((octave as u32).wrapping_mul(0x9e37_79b9));
             for i in 0..8 {
-                let found = Point::of([first[0] + (i & 1), first[1] + ((i >> 1) & 1), first[2] + (i >> 2)], seed);
+                let found =
+                    Point::of([first[0] + (i & 1), first[1] + ((i >> 1) & 1), first[2] + (i >> 2)], seed);
                 self.solid_point(p, s, &found, octave);
             }
         }
@@ -431,10 +433,8 @@ fn run(pass: &CpuPass<'_>, band: &mut Band<'_>) {
     for y in window.y0..window.y1 {
         let row = band.row_mut(0, y);
         for (x, target) in (window.x0..window.x1).zip(row.chunks_exact_mut(4)) {
-            let corner = [
-                x * params.cell - params.offset[0] as i32,
-                y * params.cell - params.offset[1] as i32,
-            ];
+            let corner =
+                [x * params.cell - params.offset[0] as i32, y * params.cell - params.offset[1] as i32];
             let mut cell = Cell { params: &params, inputs: pass.inputs, corner, best: [0.0; 4] };
             if params.way == 0 {
                 cell.flat();

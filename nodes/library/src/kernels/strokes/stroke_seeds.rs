@@ -28,7 +28,7 @@ crate::kernel!(stroke_seeds {
 /// Strokes of a layer; lengths in pixels of the picture that is rendered.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Strokes {
-    /// Where the picture stands in the canonical one, as for the peaks.
+    /// Where the picture stands in the canonical one, as for the points.
     pub origin: [f32; 2],
     /// Half the width.
     pub half_width: f32,
@@ -147,7 +147,8 @@ fn prominence(pass: &CpuPass<'_>, params: &Params, [x, y]: [i32; 2], own: [f32; 
                 let dx = other[0] - own[0] + (i - x) as f32 * params.cell;
                 let dy = other[1] - own[1] + (j - y) as f32 * params.cell;
                 // What comes nearer counts little by little, so that strokes neither appear nor vanish at once.
-                let near = (6.666_666_5 - (dx * dx + dy * dy).sqrt() / params.apart * 6.666_666_5).within(0.0, 1.0);
+                let near =
+                    (6.666_666_5 - (dx * dx + dy * dy).sqrt() / params.apart * 6.666_666_5).within(0.0, 1.0);
                 share = share.at_most(1.0 - near * other[3]);
             }
         }
@@ -223,7 +224,9 @@ impl Surroundings<'_> {
             let now = difference(c, middle);
             if now > self.params.tolerance {
                 // Between two steps, so that ends do not jump.
-                return u - step * (1.0 - (self.params.tolerance - before) / (now - before).at_least(1e-3)).within(0.0, 1.0);
+                return u - step
+                    * (1.0 - (self.params.tolerance - before) / (now - before).at_least(1e-3))
+                        .within(0.0, 1.0);
             }
             before = now;
             let far = u * self.params.inverse_smoothing;
