@@ -29,6 +29,11 @@ struct Params {
 #input guide, scales
 #output target_image rgba32float
 
+// How soon all points of a carried layer are there, against its share.
+const LASTING: f32 = 3.0;
+// Change of the weight of an octave from a pixel to one beside a cell, at most.
+const SOON: f32 = 0.2;
+
 // A point of the lattice: its place in it, its height, and two more numbers of its own in 0..1.
 struct Point {
     place: vec3f,
@@ -63,7 +68,7 @@ fn lattice_point(c: vec3i, seed: u32) -> Point {
 
 // 1 for points whose chance is below a weight, those about there little by little.
 fn counted(weight: f32, chance: f32) -> f32 {
-    return clamp((1.25 * weight - chance) * 4.0, 0.0, 1.0);
+    return clamp((1.125 * weight - chance) * 8.0, 0.0, 1.0);
 }
 
 // Of the points of a cell the best one stays: high ones that are as large as they may be.
@@ -126,7 +131,7 @@ fn octave_weight(above: f32) -> f32 {
 
 fn near_cell(corner: vec2i, target_place: vec2f) -> bool {
     let d = target_place - vec2f(corner);
-    return all(d > vec2f(-1.5)) && all(d < vec2f(f32(params.cell) + 1.5));
+    return all(d > vec2f(-1.0)) && all(d < vec2f(f32(params.cell) + 1.0));
 }
 
 fn in_picture(p: vec2i) -> bool {
@@ -142,6 +147,11 @@ fn solid(corner: vec2i, p: vec2i, s: Surface, so_far: vec4f) -> vec4f {
         let seed = params.seed + u32(octave) * 0x9e3779b9u;
         for (var i = 0; i < 8; i++) {
             let found = lattice_point(first + vec3i(i & 1, (i >> 1u) & 1, i >> 2u), seed);
+            // Nothing can come of what is lower than the best so far, or far from its turn.
+            let soon = octave_weight(f32(octave) - s.level) + SOON;
+            if found.rank <= best.z * best.w || counted(soon, found.chance.x) <= 0.0 {
+                continue;
+            }
             let way = nearest(s, unit, found.place);
             let there = vec2f(p) + 0.5 + way.xy;
             let landed = vec2i(floor(there));
@@ -154,7 +164,7 @@ fn solid(corner: vec2i, p: vec2i, s: Surface, so_far: vec4f) -> vec4f {
             }
             let rest = nearest(below, unit, found.place);
             let weight = octave_weight(f32(octave) - below.level);
-            let share = counted(weight, found.chance.x) * clamp((0.55 - rest.z) * 10.0, 0.0, 1.0);
+            let share = counted(weight, found.chance.x) * clamp((0.525 - rest.z) * 20.0, 0.0, 1.0);
             if all(abs(rest.xy) < vec2f(1.5)) {
                 best = better(best, vec2f(landed - corner) + 0.5 + rest.xy, found.rank, share);
             }
@@ -179,6 +189,9 @@ fn carried(corner: vec2i, p: vec2i, so_far: vec4f) -> vec4f {
             let own = u32(i >> 2u);
             let seed = params.seed + own * (layer + 1u) * 0x9e3779b9u;
             let found = lattice_point(vec3i(first + vec2i(i & 1, (i >> 1u) & 1), 0), seed);
+            if found.rank <= best.z * best.w {
+                continue;
+            }
             var landed = p;
             var d = (found.place.xy - q) * params.spacing;
             var good = near_cell(corner, vec2f(p) + 0.5 + d);
@@ -199,10 +212,10 @@ fn carried(corner: vec2i, p: vec2i, so_far: vec4f) -> vec4f {
             let between = ways.zw - ways.xy;
             let t = min(sqrt(dot(between, between)) * params.decay, 1.0);
             let shared_part = 1.0 - t * t * (3.0 - 2.0 * t);
-            // The one goes as the other comes.
+            // The one goes while the other is there.
             let part = select(
-                counted(1.0 - params.share, found.chance.x),
-                counted(params.share, 1.0 - found.chance.x),
+                counted(min(LASTING * (1.0 - params.share), 1.0), found.chance.x),
+                counted(min(LASTING * params.share, 1.0), 1.0 - found.chance.x),
                 layer == 1u,
             );
             var share = part * counted(select(shared_part, 1.0 - shared_part, own == 1u), found.chance.y);

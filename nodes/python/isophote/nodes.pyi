@@ -491,8 +491,8 @@ def oil_paint(
 ) -> Array:
     """Oil paint. Brush strokes of thick paint that follow the shapes, with marks of bristles and light
     on them. Brush strokes that follow the shapes: regions are flattened and painted in layers of
-    strokes, coarse ones everywhere and finer ones where the picture differs from what is painted
-    (Hertzmann 1998). A stroke has a colour of its own, bends with the local orientation and ends
+    strokes, coarse ones everywhere and finer ones where the picture has detail of their size (after
+    Hertzmann 1998). A stroke has a colour of its own, bends with the local orientation and ends
     where the colour does; its bristles leave ridges, and the light lies on them. Strokes belong to
     things: to their rest position, else to their motion. (thesis § 1.2)
 

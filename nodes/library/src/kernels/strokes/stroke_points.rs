@@ -99,6 +99,11 @@ pub fn offset(origin: [f32; 2], level: i8) -> [f32; 2] {
 pub const HIGHEST: f32 = 4.0;
 /// Distance of places, against that of points, from which on carried layers have no points in common.
 const COMMON: f32 = 0.3;
+/// How soon all points of a carried layer are there, against its share: for most of its life, so that few strokes change from
+/// frame to frame.
+const LASTING: f32 = 3.0;
+/// Change of the weight of an octave from a pixel to one beside a cell, at most.
+const SOON: f32 = 0.2;
 
 /// A point of the lattice: its place in it, its height, and two more numbers of its own in 0..1.
 struct Point {
@@ -134,7 +139,7 @@ impl Point {
 /// 1 for points whose chance is below a weight, those about there little by little.
 #[inline(always)]
 fn counted(weight: f32, chance: f32) -> f32 {
-    ((1.25 * weight - chance) * 4.0).within(0.0, 1.0)
+    ((1.125 * weight - chance) * 8.0).within(0.0, 1.0)
 }
 
 /// A cell of the screen, and the best point in it so far.
@@ -225,7 +230,7 @@ impl Cell<'_> {
     fn is_near(&self, place: [f32; 2]) -> bool {
         (0..2).all(|i| {
             let d = place[i] - self.corner[i] as f32;
-            d > -1.5 && d < self.params.cell as f32 + 1.5
+            d > -1.0 && d < self.params.cell as f32 + 1.0
         })
     }
 
@@ -292,6 +297,11 @@ impl Cell<'_> {
 
     #[inline(always)]
     fn solid_point(&mut self, p: [i32; 2], s: &Surface, found: &Point, octave: i32) {
+        // Nothing can come of what is lower than the best so far, or far from its turn.
+        let soon = octave_weight(octave as f32 - s.level) + SOON;
+        if found.rank <= self.best[2] * self.best[3] || counted(soon, found.chance[0]) <= 0.0 {
+            return;
+        }
         let unit = f32::from_bits(((127 - octave) as u32) << 23);
         let Some([dx, dy, far]) = s.nearest(unit, found.place) else { return };
         let there = [p[0] as f32 + 0.5 + dx, p[1] as f32 + 0.5 + dy];
@@ -302,7 +312,7 @@ impl Cell<'_> {
         let Some(below) = self.surface(landed) else { return };
         let Some([dx, dy, far]) = below.nearest(unit, found.place) else { return };
         let weight = octave_weight(octave as f32 - below.level);
-        let share = counted(weight, found.chance[0]) * ((0.55 - far) * 10.0).within(0.0, 1.0);
+        let share = counted(weight, found.chance[0]) * ((0.525 - far) * 20.0).within(0.0, 1.0);
         if dx.abs() < 1.5 && dy.abs() < 1.5 {
             self.offer(self.from_corner(landed, [dx, dy]), found.rank, share);
         }
@@ -338,6 +348,9 @@ impl Cell<'_> {
 
     #[inline(always)]
     fn carried_point(&mut self, p: [i32; 2], q: [f32; 2], found: &Point, [layer, own]: [usize; 2]) {
+        if found.rank <= self.best[2] * self.best[3] {
+            return;
+        }
         let spacing = self.params.spacing;
         let mut landed = p;
         let mut d = [0, 1].map(|i| (found.place[i] - q[i]) * spacing);
@@ -362,7 +375,7 @@ impl Cell<'_> {
         }
     }
 
-    /// Size of the stroke of a point: one layer goes as the other comes.
+    /// Size of the stroke of a point: one layer goes while the other is there.
     #[inline(always)]
     fn carried_share(&self, ways: [f32; 4], found: &Point, [layer, own]: [usize; 2]) -> f32 {
         let [dx, dy] = [ways[2] - ways[0], ways[3] - ways[1]];
@@ -372,9 +385,9 @@ impl Cell<'_> {
         }
         let common = 1.0 - t * t * (3.0 - 2.0 * t);
         let part = if layer == 0 {
-            counted(1.0 - self.params.share, found.chance[0])
+            counted((LASTING * (1.0 - self.params.share)).at_most(1.0), found.chance[0])
         } else {
-            counted(self.params.share, 1.0 - found.chance[0])
+            counted((LASTING * self.params.share).at_most(1.0), 1.0 - found.chance[0])
         };
         part * counted(if own == 0 { common } else { 1.0 - common }, found.chance[1])
     }

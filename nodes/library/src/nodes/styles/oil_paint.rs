@@ -18,10 +18,10 @@ pub static NODE: NodeSpec = NodeSpec {
     group: "styles",
     hint: "Brush strokes of thick paint that follow the shapes, with marks of bristles and light on them.",
     doc: "Brush strokes that follow the shapes: regions are flattened and painted in layers of strokes, coarse \
-          ones everywhere and finer ones where the picture differs from what is painted (Hertzmann 1998). A stroke \
-          has a colour of its own, bends with the local orientation and ends where the colour does; its bristles \
-          leave ridges, and the light lies on them. Strokes belong to things: to their rest position, else to \
-          their motion.",
+          ones everywhere and finer ones where the picture has detail of their size (after Hertzmann 1998). A \
+          stroke has a colour of its own, bends with the local orientation and ends where the colour does; its \
+          bristles leave ridges, and the light lies on them. Strokes belong to things: to their rest position, \
+          else to their motion.",
     section: "1.2",
     inputs: &[ports::COLOR, OBJECT_ID, ports::REST_POSITION],
     output: ports::color_output("The painting."),
