@@ -1,6 +1,6 @@
 // Where strokes may begin: in each cell of the screen the highest of the points of a lattice that lie there. Points of the
 // lattice belong to rest positions, else to what motion carries, else to the screen, and so does all that is random of them.
-// Cost: on the screen 4 hashes; else up to 64 hashes and about 3000 operations.
+// Cost: on the screen 4 hashes; else up to 64 hashes and about 1500 operations.
 #import shared/rest_position
 #import gpu/grid
 
@@ -15,13 +15,13 @@ struct Params {
     spacing: f32,
     /// Its logarithm, to base 2.
     level: f32,
-    /// Share of the second layer of what is carried, 0..=1.
-    share: f32,
     /// 1 / distance in pixels of both layers' places from which on they have points of their own.
     decay: f32,
     /// Another number gives other points.
     seed: u32,
-    /// 0 for points of the screen, 1 of what is carried, 2 of rest positions.
+    /// What is added to it for points of a carried layer's life alone.
+    life: u32,
+    /// 0 for points of the screen, 1 and 2 of the first and the second layer that are carried, 3 of rest positions.
     way: u32,
 }
 
@@ -29,8 +29,6 @@ struct Params {
 #input guide, scales
 #output target_image rgba32float
 
-// How soon all points of a carried layer are there, against its share.
-const LASTING: f32 = 3.0;
 // Change of the weight of an octave from a pixel to one beside a cell, at most.
 const SOON: f32 = 0.2;
 
@@ -138,12 +136,36 @@ fn in_picture(p: vec2i) -> bool {
     return all(p >= vec2i(0)) && all(p < grid.inputs[0].zw);
 }
 
-fn solid(corner: vec2i, p: vec2i, s: Surface, so_far: vec4f) -> vec4f {
+// Blocks of eight cells of the lattice, or of four, whose points were looked at: pixels side by side mostly see the same.
+struct Seen {
+    blocks: array<vec4i, 8>,
+    count: u32,
+}
+
+// True for a block of the lattice that was not looked at before.
+fn is_new(seen: ptr<function, Seen>, block: vec4i) -> bool {
+    for (var i = 0u; i < (*seen).count; i++) {
+        if all((*seen).blocks[i] == block) {
+            return false;
+        }
+    }
+    if (*seen).count == 8u {
+        return false;
+    }
+    (*seen).blocks[(*seen).count] = block;
+    (*seen).count += 1u;
+    return true;
+}
+
+fn solid(corner: vec2i, p: vec2i, s: Surface, so_far: vec4f, seen: ptr<function, Seen>) -> vec4f {
     var best = so_far;
     for (var n = 0; n < 2; n++) {
         let octave = i32(floor(s.level)) + n;
         let unit = bitcast<f32>(u32(127 - octave) << 23u);
         let first = vec3i(floor(s.point * unit - 0.5));
+        if !is_new(seen, vec4i(first, octave)) {
+            continue;
+        }
         let seed = params.seed + u32(octave) * 0x9e3779b9u;
         for (var i = 0; i < 8; i++) {
             let found = lattice_point(first + vec3i(i & 1, (i >> 1u) & 1, i >> 2u), seed);
@@ -173,57 +195,50 @@ fn solid(corner: vec2i, p: vec2i, s: Surface, so_far: vec4f) -> vec4f {
     return best;
 }
 
-// Where the centre of a pixel belongs to in the lattice of a layer.
-fn carried_place(p: vec2i, layer: u32) -> vec2f {
+// Where the centre of a pixel belongs to in the lattice of the layer.
+fn carried_place(p: vec2i) -> vec2f {
     let ways = fetch(guide, 0u, p);
-    return (vec2f(p) + 0.5 + params.origin + select(ways.xy, ways.zw, layer == 1u)) / params.spacing;
+    return (vec2f(p) + 0.5 + params.origin + select(ways.xy, ways.zw, params.way == 2u)) / params.spacing;
 }
 
-fn carried(corner: vec2i, p: vec2i, so_far: vec4f) -> vec4f {
+fn carried(corner: vec2i, p: vec2i, so_far: vec4f, seen: ptr<function, Seen>) -> vec4f {
     var best = so_far;
-    for (var layer = 0u; layer < 2u; layer++) {
-        let q = carried_place(p, layer);
-        let first = vec2i(floor(q - 0.5));
-        for (var i = 0; i < 8; i++) {
-            // Points that both layers have in common, and those of one alone.
-            let own = u32(i >> 2u);
-            let seed = params.seed + own * (layer + 1u) * 0x9e3779b9u;
-            let found = lattice_point(vec3i(first + vec2i(i & 1, (i >> 1u) & 1), 0), seed);
-            if found.rank <= best.z * best.w {
-                continue;
-            }
-            var landed = p;
-            var d = (found.place.xy - q) * params.spacing;
-            var good = near_cell(corner, vec2f(p) + 0.5 + d);
-            for (var n = 0; n < 2; n++) {
-                landed = vec2i(floor(vec2f(landed) + 0.5 + d));
-                good = good && in_picture(landed);
-                landed = clamp(landed, vec2i(0), grid.inputs[0].zw - 1);
-                d = (found.place.xy - carried_place(landed, layer)) * params.spacing;
-                good = good && near_cell(corner, vec2f(landed) + 0.5 + d);
-                if !good {
-                    break;
-                }
-            }
-            if !good || any(abs(d) > vec2f(1.0)) {
-                continue;
-            }
-            let ways = fetch(guide, 0u, landed);
-            let between = ways.zw - ways.xy;
-            let t = min(sqrt(dot(between, between)) * params.decay, 1.0);
-            let shared_part = 1.0 - t * t * (3.0 - 2.0 * t);
-            // The one goes while the other is there.
-            let part = select(
-                counted(min(LASTING * (1.0 - params.share), 1.0), found.chance.x),
-                counted(min(LASTING * params.share, 1.0), 1.0 - found.chance.x),
-                layer == 1u,
-            );
-            var share = part * counted(select(shared_part, 1.0 - shared_part, own == 1u), found.chance.y);
-            if t <= 0.0 {
-                share = select(0.0, 1.0, own == 0u && layer == 0u);
-            }
-            best = better(best, vec2f(landed - corner) + 0.5 + d, found.rank, share);
+    let q = carried_place(p);
+    let first = vec2i(floor(q - 0.5));
+    if !is_new(seen, vec4i(first, 0, 0)) {
+        return best;
+    }
+    for (var i = 0; i < 8; i++) {
+        // Points that all layers have in common, and those of this life alone.
+        let is_own = i >= 4;
+        let seed = params.seed + select(0u, params.life, is_own);
+        let found = lattice_point(vec3i(first + vec2i(i & 1, (i >> 1u) & 1), 0), seed);
+        if found.rank <= best.z * best.w {
+            continue;
         }
+        var landed = p;
+        var d = (found.place.xy - q) * params.spacing;
+        var good = near_cell(corner, vec2f(p) + 0.5 + d);
+        for (var n = 0; n < 2; n++) {
+            landed = vec2i(floor(vec2f(landed) + 0.5 + d));
+            good = good && in_picture(landed);
+            landed = clamp(landed, vec2i(0), grid.inputs[0].zw - 1);
+            d = (found.place.xy - carried_place(landed)) * params.spacing;
+            good = good && near_cell(corner, vec2f(landed) + 0.5 + d);
+            if !good {
+                break;
+            }
+        }
+        if !good || any(abs(d) > vec2f(1.0)) {
+            continue;
+        }
+        // Where both layers are at one place they have the same points.
+        let ways = fetch(guide, 0u, landed);
+        let between = ways.zw - ways.xy;
+        let t = min(sqrt(dot(between, between)) * params.decay, 1.0);
+        let own = t * t * (3.0 - 2.0 * t);
+        let share = counted(select(1.0 - own, own, is_own), found.chance.y);
+        best = better(best, vec2f(landed - corner) + 0.5 + d, found.rank, share);
     }
     return best;
 }
@@ -249,21 +264,26 @@ fn main(@builtin(global_invocation_id) id: vec3u) {
     if params.way == 0u {
         best = flat(corner, best);
     } else {
+        var is_beside = false;
+        var seen: Seen;
         for (var n = 0; n < 4; n++) {
             let p = corner + vec2i((1 + 2 * (n & 1)) * params.cell, (1 + 2 * (n >> 1u)) * params.cell) / 4;
             if !in_picture(p) {
                 continue;
             }
-            if params.way == 1u {
-                best = carried(corner, p, best);
+            if params.way < 3u {
+                best = carried(corner, p, best, &seen);
                 continue;
             }
             let s = surface(p);
             if s.found {
-                best = solid(corner, p, s, best);
+                best = solid(corner, p, s, best, &seen);
             } else {
-                best = beside(corner, best);
+                is_beside = true;
             }
+        }
+        if is_beside {
+            best = beside(corner, best);
         }
     }
     textureStore(target_image, vec2i(id.xy), best);

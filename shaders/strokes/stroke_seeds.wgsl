@@ -1,6 +1,6 @@
 // What is painted from the point of a cell: a stroke along the tensor field, as long and as wide as the picture keeps its
 // colour (Hertzmann 1998, 2.2), where no higher point is near and the picture has detail of its size.
-// Cost: 25 loads of points; where there is a stroke about 30 loads and 500 operations.
+// Cost: 25 loads of points; where there is a stroke about 45 loads and 500 operations.
 #import gpu/grid
 #import shared/tensor
 #import shared/value_noise
@@ -33,7 +33,7 @@ struct Params {
 }
 
 #params
-#input points, tensors, flat_image, coarse, ids
+#input points, tensors, flat_image, coarse, ids, smooth_image
 #output places rgba32float
 #output shapes rgba32float
 #output colours rgba32float
@@ -124,6 +124,7 @@ fn main(@builtin(global_invocation_id) id: vec3u) {
         textureStore(colours, vec2i(id.xy), vec4f(0.0));
         return;
     }
+    let base = fetch(smooth_image, 5u, seed).rgb;
     let w = params.half_width;
     let l = params.half_length;
     let field = tensor_tangent(fetch(tensors, 1u, seed));
@@ -131,7 +132,7 @@ fn main(@builtin(global_invocation_id) id: vec3u) {
     for (var i = 0; i < 4; i++) {
         let far = FLAT_WITHIN * w * select(1.0, -1.0, (i & 1) == 1);
         let d = select(field, vec2f(-field.y, field.x), i < 2) * far;
-        varied = max(varied, difference(fetch(flat_image, 2u, at(corner, own.xy + d)).rgb, middle.rgb));
+        varied = max(varied, difference(fetch(smooth_image, 5u, at(corner, own.xy + d)).rgb, base));
     }
     let slope = MOST_SLOPE * (1.0 - rise(varied / NOT_FLAT)) * wave(own.z * 3.0 + 0.7);
     let t = (field + vec2f(-field.y, field.x) * slope) / sqrt(1.0 + slope * slope);
@@ -156,7 +157,7 @@ fn main(@builtin(global_invocation_id) id: vec3u) {
                 ends[side] = u - 0.5 * step_length;
                 break;
             }
-            let now = difference(c.rgb, middle.rgb);
+            let now = difference(fetch(smooth_image, 5u, place).rgb, base);
             if now > params.tolerance {
                 // Between two steps, so that ends do not jump.
                 let rest = 1.0 - (params.tolerance - before) / max(now - before, 1e-3);
@@ -176,8 +177,8 @@ fn main(@builtin(global_invocation_id) id: vec3u) {
     var missing = 0.0;
     for (var side = 0; side < 2; side++) {
         let along = select(1.0, -1.0, side == 1);
-        let c = fetch(flat_image, 2u, at(corner, own.xy + n * (along * 0.8 * w))).rgb;
-        room += 0.2 - 0.2 * rise(2.0 * difference(c, middle.rgb) / params.tolerance - 1.5);
+        let c = fetch(smooth_image, 5u, at(corner, own.xy + n * (along * 0.8 * w))).rgb;
+        room += 0.2 - 0.2 * rise(2.0 * difference(c, base) / params.tolerance - 1.5);
         let across = at(corner, own.xy + n * (along * 0.7 * w));
         missing += difference(fetch(flat_image, 2u, across).rgb, fetch(coarse, 3u, across).rgb);
         let ahead = at(corner, own.xy + t * (along * 0.35 * l));

@@ -23,16 +23,17 @@ pub(crate) fn grains(scope: &mut Scope<'_>, sigma: f32, seed: u32) -> ImageId {
     on_things(scope, screen, &Marks::of_smoothed_noise(sigma, scale, seed))
 }
 
-/// What strokes and other marks with places of their own belong to.
-pub(crate) fn anchor(scope: &mut Scope<'_>) -> Anchor {
+/// What strokes and other marks with places of their own belong to; where motion carries them, two layers that fade into
+/// one another, and the share of the second one.
+pub(crate) fn anchors(scope: &mut Scope<'_>) -> (Anchor, Option<(Anchor, f32)>) {
     if let Some(points) = scope.input(REST_POSITION.id) {
         let footprints = rest_footprint::pass(scope.plan, points);
-        return Anchor::Rest { points, scales: rest_scale::pass(scope.plan, points, footprints) };
+        return (Anchor::Rest { points, scales: rest_scale::pass(scope.plan, points, footprints) }, None);
     }
-    match chain(scope) {
-        Some(Carried { chain, share, farthest }) => Anchor::Carried { chain, share, farthest },
-        None => Anchor::Screen,
-    }
+    let Some(Carried { chain, share, lives, .. }) = chain(scope) else { return (Anchor::Screen, None) };
+    let [first, second] =
+        [false, true].map(|second| Anchor::Carried { chain, second, life: lives[usize::from(second)] });
+    (first, Some((second, share)))
 }
 
 /// Clouds of the size of those of the screen; none where they are to stay there. Of both `layers` together marks on
@@ -122,6 +123,8 @@ struct Carried {
     share: f32,
     /// Farthest on each axis that marks are carried, pixels.
     farthest: f32,
+    /// Number of the life that each layer is in, odd for the first and even for the second.
+    lives: [u32; 2],
 }
 
 /// The motion of the frames before for two layers of marks, half a period apart, each of which begins anew when the other one
@@ -129,7 +132,12 @@ struct Carried {
 /// show the same.
 fn chain(scope: &mut Scope<'_>) -> Option<Carried> {
     let (period, frame) = scope.renewal()?;
-    let ages = [0, period / 2].map(|offset| (frame + i64::from(offset)).rem_euclid(i64::from(period)) as i32);
+    let since = [0, period / 2].map(|offset| frame + i64::from(offset));
+    let ages = since.map(|frames| frames.rem_euclid(i64::from(period)) as i32);
+    let lives = [0, 1].map(|n| {
+        let before = since[n].div_euclid(i64::from(period)) as u32;
+        before.wrapping_mul(2).wrapping_add(n as u32 + 1)
+    });
     let longest = scope.max_motion;
     let farthest = longest * FARTHEST;
     let mut chain = None;
@@ -142,13 +150,13 @@ fn chain(scope: &mut Scope<'_>) -> Option<Carried> {
     }
     // A triangle: 1 in the middle of a layer's life, 0 at its ends.
     let share = 1.0 - (2.0 * ages[1] as f32 / period as f32 - 1.0).abs();
-    chain.map(|chain| Carried { chain, share, farthest })
+    chain.map(|chain| Carried { chain, share, farthest, lives })
 }
 
 /// The noise that `screen` makes of a seed, carried along the motion of the frames before in two layers.
 fn carried(scope: &mut Scope<'_>, screen: impl Fn(&mut Scope<'_>, u32) -> ImageId, marks: &Marks) -> ImageId {
     let common = screen(scope, marks.seed);
-    let Some(Carried { chain, share, farthest }) = chain(scope) else { return common };
+    let Some(Carried { chain, share, farthest, .. }) = chain(scope) else { return common };
     let layers = Layers { share, sigma: marks.sigma, farthest };
     let [first, second] =
         [1, 2].map(|n: u32| screen(scope, marks.seed.wrapping_add(n.wrapping_mul(0x9e37_79b9))));

@@ -3,8 +3,9 @@
 
 use crate::declare::spec::Scope;
 use crate::kernels::smoothing::gaussian_blur;
+use crate::kernels::strokes::stroke_fade;
 use crate::kernels::strokes::stroke_paint::{self, Paint};
-use crate::kernels::strokes::stroke_points::{self, Points};
+use crate::kernels::strokes::stroke_points::{self, Anchor, Points};
 use crate::kernels::strokes::stroke_seeds::{self, Inputs, Strokes};
 use crate::stages::marks;
 use isophote_engine::ImageId;
@@ -50,8 +51,9 @@ pub(crate) struct Subject {
 
 /// Strokes over each place, layer by layer: the first has to cover all.
 const DENSITY: [f32; 2] = [4.5, 3.5];
-/// Standard deviation of the smoothing that leaves what strokes of the layer below show, in half widths of this one.
-const COARSE: f32 = 1.2;
+/// Standard deviation of the smoothing that leaves what strokes of a layer can show, in half their widths (Hertzmann's f_sigma
+/// is 0.5 of a brush's radius).
+const SMOOTH: f32 = 0.6;
 /// Difference of colour, Lab, at which strokes end, and from which on finer ones are wanted at the middle of `detail`.
 const TOLERANCE: f32 = 14.0;
 const THRESHOLD: f32 = 6.0;
@@ -74,50 +76,86 @@ pub(crate) fn painted(scope: &mut Scope<'_>, subject: &Subject, brush: &Brush) -
     if brush.half_length < LEAST || brush.half_width < 0.5 * LEAST {
         return None;
     }
+    let mut smooth = Vec::new();
+    let (anchor, other) = marks::anchors(scope);
+    let first = layered(scope, subject, brush, anchor, &mut smooth)?;
+    let Some((anchor, share)) = other else { return Some(first) };
+    let second = layered(scope, subject, brush, anchor, &mut smooth)?;
+    Some(stroke_fade::pass(scope.plan, subject.picture, [first, second], share))
+}
+
+/// All layers of strokes that belong to `anchor`; `smooth` takes the smooth pictures that are not there yet.
+fn layered(
+    scope: &mut Scope<'_>,
+    subject: &Subject,
+    brush: &Brush,
+    anchor: Anchor,
+    smooth: &mut Vec<ImageId>,
+) -> Option<[ImageId; 2]> {
+    (0..brush.layers.max(1) as usize).fold(None, |below, number| {
+        if smooth.len() == number {
+            let sigma = SMOOTH * size_of(number) * brush.half_width;
+            smooth.push(gaussian_blur::pass_colour(scope.plan, subject.picture, sigma));
+        }
+        Some(layer(scope, subject, brush, anchor, (number, smooth), below))
+    })
+}
+
+/// Size of strokes of a layer against those of the third.
+fn size_of(layer: usize) -> f32 {
+    2f32.powi(2 - layer as i32)
+}
+
+/// A layer of strokes on what lies below, but for the first one only where the picture has detail that strokes of the layer
+/// below cannot show. Detail decides, not the colours that coarse strokes happen to have: it moves with things.
+fn layer(
+    scope: &mut Scope<'_>,
+    subject: &Subject,
+    brush: &Brush,
+    anchor: Anchor,
+    (number, smooth): (usize, &[ImageId]),
+    below: Option<[ImageId; 2]>,
+) -> [ImageId; 2] {
     let origin = scope.origin();
-    let anchor = marks::anchor(scope);
-    let mut canvas: Option<[ImageId; 2]> = None;
-    for layer in 0..brush.layers.max(1) {
-        let size = 2f32.powi(2 - layer);
-        let (half_width, half_length) = (size * brush.half_width, size * brush.half_length);
-        let density = DENSITY[usize::from(layer > 0)];
-        let apart = (4.0 * half_width * half_length / (PI * density)).sqrt();
-        let seed = brush.seed.wrapping_add(layer as u32 * 0x51ed_270b);
-        let points = Points { apart, origin, seed };
-        let points = stroke_points::pass(scope.plan, subject.picture, anchor, &points);
-        // Detail decides where finer strokes are, not the colours that coarse ones happen to have: it moves with things.
-        let coarse =
-            (layer > 0).then(|| gaussian_blur::pass_colour(scope.plan, subject.picture, COARSE * half_width));
-        let below = canvas.map(|[picture, _]| picture);
-        let inputs =
-            Inputs { points, tensors: subject.tensors, picture: subject.picture, coarse, ids: subject.ids };
-        let strokes = Strokes {
-            origin,
-            half_width,
-            half_length,
-            apart,
-            curve: brush.curve,
-            tolerance: TOLERANCE * [1.3, 1.0, 0.8][layer.min(2) as usize],
-            threshold: THRESHOLD * 8f32.powf(0.5 - brush.detail),
-            smoothing: size * brush.smoothing,
-            variation: brush.variation * MOST_VARIATION[0],
-            hue_variation: brush.variation * MOST_VARIATION[1],
-        };
-        let seeds = stroke_seeds::pass(scope.plan, &inputs, &strokes);
-        let [bristle, bristle_length] = brush.bristles;
-        let paint = Paint {
-            origin,
-            half_width,
-            half_length,
-            bristles: [bristle.max(FINEST), bristle_length.max(FINEST)],
-            ragged: RAGGED * brush.raggedness,
-            dryness: brush.dryness,
-            // Finer ones than pixels can show are as faint as from further away.
-            heights: [HEIGHTS[0], HEIGHTS[1] * (bristle / FINEST).min(1.0)],
-            softness: (SOFTNESS * scope.scale()).max(1.0),
-        };
-        let ground = (below.unwrap_or(subject.picture), canvas.map(|[_, heights]| heights));
-        canvas = Some(stroke_paint::pass(scope.plan, seeds, ground, subject.ids, &paint));
-    }
-    canvas
+    let size = size_of(number);
+    let (half_width, half_length) = (size * brush.half_width, size * brush.half_length);
+    let density = DENSITY[usize::from(number > 0)];
+    let apart = (4.0 * half_width * half_length / (PI * density)).sqrt();
+    let seed = brush.seed.wrapping_add(number as u32 * 0x51ed_270b);
+    let points = stroke_points::pass(scope.plan, subject.picture, anchor, &Points { apart, origin, seed });
+    let inputs = Inputs {
+        points,
+        tensors: subject.tensors,
+        picture: subject.picture,
+        smooth: smooth[number],
+        coarse: number.checked_sub(1).map(|before| smooth[before]),
+        ids: subject.ids,
+    };
+    let strokes = Strokes {
+        origin,
+        half_width,
+        half_length,
+        apart,
+        curve: brush.curve,
+        tolerance: TOLERANCE * [1.3, 1.0, 0.8][number.min(2)],
+        threshold: THRESHOLD * 8f32.powf(0.5 - brush.detail),
+        smoothing: size * brush.smoothing,
+        variation: brush.variation * MOST_VARIATION[0],
+        hue_variation: brush.variation * MOST_VARIATION[1],
+    };
+    let seeds = stroke_seeds::pass(scope.plan, &inputs, &strokes);
+    let [bristle, bristle_length] = brush.bristles;
+    let paint = Paint {
+        origin,
+        half_width,
+        half_length,
+        bristles: [bristle.max(FINEST), bristle_length.max(FINEST)],
+        ragged: RAGGED * brush.raggedness,
+        dryness: brush.dryness,
+        // Finer ones than pixels can show are as faint as from further away.
+        heights: [HEIGHTS[0], HEIGHTS[1] * (bristle / FINEST).min(1.0)],
+        softness: (SOFTNESS * scope.scale()).max(1.0),
+    };
+    let ground = below.map_or((subject.picture, None), |[picture, heights]| (picture, Some(heights)));
+    stroke_paint::pass(scope.plan, seeds, ground, subject.ids, &paint)
 }

@@ -6,16 +6,17 @@
 //! the camera comes closer, points of the finer one of two octaves come one after another while those of the coarser one
 //! go, so that there are always as many on the screen.
 //!
-//! Cost: on the screen four hashes a cell; else up to 64 hashes and about 3000 operations.
+//! Cost: on the screen four hashes a cell; else up to 64 hashes and about 1500 operations.
 
 pub use crate::kernels::shaders::stroke_points::Params;
 use crate::kernels::shared::rest_position::NO_FOOTPRINT;
 use isophote_engine::bounds::Bounds;
+use isophote_engine::fearless_simd::Simd;
 use isophote_engine::{Band, Class, CpuPass, ImageId, PlanBuilder, Support, Tolerance, View};
 
 crate::kernel!(stroke_points {
-    cpu: run,
-    cost: |p| if p.way == 0 { 100.0 } else { 3000.0 },
+    cpu: |simd, pass, params, band| run(simd, pass, &params, band),
+    cost: |p| if p.way == 0 { 100.0 } else { 1500.0 },
     tolerance: Tolerance {
         absolute: 2e-3,
         relative: 0.0,
@@ -29,14 +30,14 @@ crate::kernel!(stroke_points {
 pub enum Anchor {
     /// The screen.
     Screen,
-    /// Two layers that motion carries ([`mark_chain`](crate::kernels::time::mark_chain)).
+    /// One of two layers that motion carries ([`mark_chain`](crate::kernels::time::mark_chain)).
     Carried {
-        /// Where their pixels come from.
+        /// Where the pixels of both come from.
         chain: ImageId,
-        /// Share of the second one, 0..=1.
-        share: f32,
-        /// Farthest on each axis that they are carried, pixels.
-        farthest: f32,
+        /// True for the second one.
+        second: bool,
+        /// Number of the layer's life: each has points of its own.
+        life: u32,
     },
     /// Rest positions.
     Rest {
@@ -67,10 +68,11 @@ pub fn pass(plan: &mut PlanBuilder, picture: ImageId, anchor: Anchor, points: &P
     let level = points.apart.log2().floor().clamp(1.0, 12.0) as i8;
     let spacing = (DENSE * points.apart).max(1e-3);
     let cell = 1 << level;
-    let (way, inputs, share) = match anchor {
-        Anchor::Screen => (0, [picture, picture], 0.0),
-        Anchor::Carried { chain, share, .. } => (1, [chain, chain], share),
-        Anchor::Rest { points, scales } => (2, [points, scales], 0.0),
+    let (way, inputs, life) = match anchor {
+        Anchor::Screen => (0, [picture, picture], 0),
+        Anchor::Carried { chain, second: false, life } => (1, [chain, chain], life),
+        Anchor::Carried { chain, second: true, life } => (2, [chain, chain], life),
+        Anchor::Rest { points, scales } => (3, [points, scales], 0),
     };
     let params = Params {
         offset: offset(points.origin, level),
@@ -78,7 +80,7 @@ pub fn pass(plan: &mut PlanBuilder, picture: ImageId, anchor: Anchor, points: &P
         cell,
         spacing,
         level: spacing.log2(),
-        share,
+        life: life.wrapping_mul(0x9e37_79b9),
         decay: 1.0 / (COMMON * spacing),
         seed: points.seed,
         way,
@@ -99,9 +101,6 @@ pub fn offset(origin: [f32; 2], level: i8) -> [f32; 2] {
 pub const HIGHEST: f32 = 4.0;
 /// Distance of places, against that of points, from which on carried layers have no points in common.
 const COMMON: f32 = 0.3;
-/// How soon all points of a carried layer are there, against its share: for most of its life, so that few strokes change from
-/// frame to frame.
-const LASTING: f32 = 3.0;
 /// Change of the weight of an octave from a pixel to one beside a cell, at most.
 const SOON: f32 = 0.2;
 
@@ -148,6 +147,9 @@ struct Cell<'a> {
     inputs: &'a [View<'a>],
     corner: [i32; 2],
     best: [f32; 4],
+    /// Blocks of eight cells of the lattice, or of four, whose points were looked at: pixels side by side mostly see the same.
+    seen: [[i32; 4]; 8],
+    blocks: usize,
 }
 
 /// Surface at a pixel: its point, its change per pixel, and the logarithm of the spacing that points are to have there.
@@ -219,6 +221,17 @@ impl Cell<'_> {
         }
     }
 
+    /// True for a block of the lattice that was not looked at before.
+    #[inline(always)]
+    fn is_new(&mut self, block: [i32; 4]) -> bool {
+        if self.blocks == 8 || self.seen[..self.blocks].contains(&block) {
+            return false;
+        }
+        self.seen[self.blocks] = block;
+        self.blocks += 1;
+        true
+    }
+
     #[inline(always)]
     fn is_in_picture(&self, [x, y]: [i32; 2]) -> bool {
         let [width, height] = self.inputs[0].full();
@@ -286,6 +299,9 @@ impl Cell<'_> {
             let octave = s.level.floor() as i32 + n;
             let unit = f32::from_bits(((127 - octave) as u32) << 23);
             let first = s.point.map(|v| (v * unit - 0.5).floor() as i32);
+            if !self.is_new([first[0], first[1], first[2], octave]) {
+                continue;
+            }
             let seed = self.params.seed.wrapping_add((octave as u32).wrapping_mul(0x9e37_79b9));
             for i in 0..8 {
                 let found =
@@ -318,36 +334,34 @@ impl Cell<'_> {
         }
     }
 
-    /// Where the centre of a pixel belongs to in the lattice of a layer.
+    /// Where the centre of a pixel belongs to in the lattice of the layer.
     #[inline(always)]
-    fn carried_place(&self, [x, y]: [i32; 2], layer: usize) -> [f32; 2] {
-        let ways = self.inputs[0].pixel4(x, y);
-        let Params { origin, spacing, .. } = self.params;
-        [
-            (x as f32 + 0.5 + origin[0] + ways[2 * layer]) / spacing,
-            (y as f32 + 0.5 + origin[1] + ways[2 * layer + 1]) / spacing,
-        ]
+    fn carried_place(&self, [x, y]: [i32; 2]) -> [f32; 2] {
+        let [ax, ay, bx, by] = self.inputs[0].pixel4(x, y);
+        let Params { origin, spacing, way, .. } = self.params;
+        let [dx, dy] = if *way == 2 { [bx, by] } else { [ax, ay] };
+        [(x as f32 + 0.5 + origin[0] + dx) / spacing, (y as f32 + 0.5 + origin[1] + dy) / spacing]
     }
 
     /// The points that motion carried to about a pixel.
     #[inline(always)]
     fn carried(&mut self, p: [i32; 2]) {
-        for layer in 0..2 {
-            let q = self.carried_place(p, layer);
-            let first = q.map(|v| (v - 0.5).floor() as i32);
-            for i in 0..8 {
-                // Points that both layers have in common, and those of one alone.
-                let own = (i >> 2) as u32;
-                let number = own.wrapping_mul(layer as u32 + 1).wrapping_mul(0x9e37_79b9);
-                let seed = self.params.seed.wrapping_add(number);
-                let found = Point::of([first[0] + (i & 1), first[1] + ((i >> 1) & 1), 0], seed);
-                self.carried_point(p, q, &found, [layer, own as usize]);
-            }
+        let q = self.carried_place(p);
+        let first = q.map(|v| (v - 0.5).floor() as i32);
+        if !self.is_new([first[0], first[1], 0, 0]) {
+            return;
+        }
+        for i in 0..8 {
+            // Points that all layers have in common, and those of this life alone.
+            let is_own = i >= 4;
+            let seed = self.params.seed.wrapping_add(if is_own { self.params.life } else { 0 });
+            let found = Point::of([first[0] + (i & 1), first[1] + ((i >> 1) & 1), 0], seed);
+            self.carried_point(p, q, &found, is_own);
         }
     }
 
     #[inline(always)]
-    fn carried_point(&mut self, p: [i32; 2], q: [f32; 2], found: &Point, [layer, own]: [usize; 2]) {
+    fn carried_point(&mut self, p: [i32; 2], q: [f32; 2], found: &Point, is_own: bool) {
         if found.rank <= self.best[2] * self.best[3] {
             return;
         }
@@ -362,7 +376,7 @@ impl Cell<'_> {
             if !self.is_in_picture(landed) {
                 return;
             }
-            let q = self.carried_place(landed, layer);
+            let q = self.carried_place(landed);
             d = [0, 1].map(|i| (found.place[i] - q[i]) * spacing);
             if !self.is_near([0, 1].map(|i| landed[i] as f32 + 0.5 + d[i])) {
                 return;
@@ -370,26 +384,18 @@ impl Cell<'_> {
         }
         if d[0].abs() <= 1.0 && d[1].abs() <= 1.0 {
             let ways = self.inputs[0].pixel4(landed[0], landed[1]);
-            let share = self.carried_share(ways, found, [layer, own]);
+            let share = self.carried_share(ways, found, is_own);
             self.offer(self.from_corner(landed, d), found.rank, share);
         }
     }
 
-    /// Size of the stroke of a point: one layer goes while the other is there.
+    /// Size of the stroke of a point: where both layers are at one place they have the same points.
     #[inline(always)]
-    fn carried_share(&self, ways: [f32; 4], found: &Point, [layer, own]: [usize; 2]) -> f32 {
+    fn carried_share(&self, ways: [f32; 4], found: &Point, is_own: bool) -> f32 {
         let [dx, dy] = [ways[2] - ways[0], ways[3] - ways[1]];
         let t = ((dx * dx + dy * dy).sqrt() * self.params.decay).at_most(1.0);
-        if t <= 0.0 {
-            return if own == 0 && layer == 0 { 1.0 } else { 0.0 };
-        }
-        let common = 1.0 - t * t * (3.0 - 2.0 * t);
-        let part = if layer == 0 {
-            counted((LASTING * (1.0 - self.params.share)).at_most(1.0), found.chance[0])
-        } else {
-            counted((LASTING * self.params.share).at_most(1.0), 1.0 - found.chance[0])
-        };
-        part * counted(if own == 0 { common } else { 1.0 - common }, found.chance[1])
+        let own = t * t * (3.0 - 2.0 * t);
+        counted(if is_own { own } else { 1.0 - own }, found.chance[1])
     }
 
     /// The points of the screen.
@@ -421,6 +427,7 @@ impl Cell<'_> {
     #[inline(always)]
     fn from_pixels(&mut self) {
         let side = self.params.cell;
+        let mut is_beside = false;
         for n in 0..4 {
             let p = [
                 self.corner[0] + (1 + 2 * (n & 1)) * side / 4,
@@ -429,26 +436,30 @@ impl Cell<'_> {
             if !self.is_in_picture(p) {
                 continue;
             }
-            if self.params.way == 1 {
+            if self.params.way < 3 {
                 self.carried(p);
             } else if let Some(surface) = self.surface(p) {
                 self.solid(p, &surface);
             } else {
-                self.beside();
+                is_beside = true;
             }
+        }
+        if is_beside {
+            self.beside();
         }
     }
 }
 
-fn run(pass: &CpuPass<'_>, band: &mut Band<'_>) {
-    let params: Params = pass.params();
+#[inline(always)]
+fn run<S: Simd>(_: S, pass: &CpuPass<'_>, params: &Params, band: &mut Band<'_>) {
     let window = band.window;
     for y in window.y0..window.y1 {
         let row = band.row_mut(0, y);
         for (x, target) in (window.x0..window.x1).zip(row.chunks_exact_mut(4)) {
             let corner =
                 [x * params.cell - params.offset[0] as i32, y * params.cell - params.offset[1] as i32];
-            let mut cell = Cell { params: &params, inputs: pass.inputs, corner, best: [0.0; 4] };
+            let mut cell =
+                Cell { params, inputs: pass.inputs, corner, best: [0.0; 4], seen: [[0; 4]; 8], blocks: 0 };
             if params.way == 0 {
                 cell.flat();
             } else {

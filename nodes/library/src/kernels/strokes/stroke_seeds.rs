@@ -3,7 +3,7 @@
 //! detail of its size (after Hertzmann, Painterly rendering with curved brush strokes of multiple sizes, 1998). Points near
 //! higher ones are no seeds, so that strokes keep their distance; they shrink as a higher one comes nearer.
 //!
-//! Cost per cell: 25 distances; where there is a stroke, about 30 loads and 500 operations.
+//! Cost per cell: 25 distances; where there is a stroke, about 45 loads and 500 operations.
 
 pub use crate::kernels::shaders::stroke_seeds::Params;
 use crate::kernels::shared::tensor;
@@ -59,6 +59,9 @@ pub struct Inputs {
     pub tensors: ImageId,
     /// The picture to paint, Lab.
     pub picture: ImageId,
+    /// The picture without what is finer than strokes, Lab: where its colour changes strokes end, so that neither a thin line
+    /// nor a grain cuts a stroke off in one size of the picture and not in another.
+    pub smooth: ImageId,
     /// The picture without what is finer than strokes of the layer below, Lab; none for the first layer.
     pub coarse: Option<ImageId>,
     /// Object ids, where they are known: strokes end at borders.
@@ -91,12 +94,13 @@ pub fn pass(plan: &mut PlanBuilder, inputs: &Inputs, strokes: &Strokes) -> [Imag
         picture,
         inputs.coarse.unwrap_or(picture),
         inputs.ids.unwrap_or(picture),
+        inputs.smooth,
     ];
     // A stroke that turns by MOST_TURN / 2 leaves its direction by that share of its half length.
     let reach = (1.07 * params.half_length).max(FLAT_WITHIN * params.half_width).ceil() as u32
         + 2
         + params.cell as u32;
-    let mut supports = [Support::Pixels(reach); 5];
+    let mut supports = [Support::Pixels(reach); 6];
     supports[0] = Support::Pixels(AROUND as u32);
     // Colours stand beside ids, which 16-bit floats do not hold.
     let classes = [Class::Field; 3];
@@ -182,6 +186,11 @@ impl Surroundings<'_> {
     }
 
     #[inline(always)]
+    fn smooth(&self, [x, y]: [i32; 2]) -> [f32; 4] {
+        self.pass.inputs[5].pixel4(x, y)
+    }
+
+    #[inline(always)]
     fn id(&self, [x, y]: [i32; 2]) -> f32 {
         if self.params.by_id == 0 {
             return 0.0;
@@ -203,7 +212,7 @@ impl Surroundings<'_> {
         let far = FLAT_WITHIN * self.params.half_width;
         let mut varied = 0.0f32;
         for [u, v] in [[0.0, far], [0.0, -far], [far, 0.0], [-far, 0.0]] {
-            varied = varied.at_least(difference(self.picture(self.pixel(u, v)), middle));
+            varied = varied.at_least(difference(self.smooth(self.pixel(u, v)), middle));
         }
         1.0 - rise(varied / NOT_FLAT)
     }
@@ -221,7 +230,7 @@ impl Surroundings<'_> {
             if c[3] < 0.5 || (self.id(at) - thing).abs() > 0.5 {
                 return u - 0.5 * step;
             }
-            let now = difference(c, middle);
+            let now = difference(self.smooth(at), middle);
             if now > self.params.tolerance {
                 // Between two steps, so that ends do not jump.
                 return u - step
@@ -259,21 +268,22 @@ fn seed<S: Simd>(simd: S, pass: &CpuPass<'_>, params: &Params, cell: [i32; 2]) -
     if middle[3] < 0.5 {
         return NONE;
     }
-    let slope = MOST_SLOPE * around.flatness(middle) * wave(own[2] * 3.0 + 0.7);
+    let smooth = around.smooth(at);
+    let slope = MOST_SLOPE * around.flatness(smooth) * wave(own[2] * 3.0 + 0.7);
     let length = (1.0 + slope * slope).sqrt();
     let tangent = [(field[0] - field[1] * slope) / length, (field[1] + field[0] * slope) / length];
     around.tangent = tangent;
     let thing = around.id(at);
     let mut sum = [middle[0], middle[1], middle[2], 1.0];
-    let forth = around.end(1.0, middle, thing, &mut sum);
-    let back = around.end(-1.0, middle, thing, &mut sum);
+    let forth = around.end(1.0, smooth, thing, &mut sum);
+    let back = around.end(-1.0, smooth, thing, &mut sum);
     let w = params.half_width;
     let splat = |v: f32| f32x8::splat(simd, v);
     let vary = 0.85 + 0.3 * noise(simd, splat(own[2] * 75.0), splat(7.0), 3)[0];
 
     let (mut room, mut missing) = (0.6, 0.0);
     for along in [1.0, -1.0] {
-        let apart = difference(around.picture(around.pixel(0.0, along * 0.8 * w)), middle);
+        let apart = difference(around.smooth(around.pixel(0.0, along * 0.8 * w)), smooth);
         room += 0.2 - 0.2 * rise(2.0 * apart / params.tolerance - 1.5);
         missing += around.missing(around.pixel(0.0, along * 0.7 * w));
         missing += around.missing(around.pixel(along * 0.35 * params.half_length, 0.0));
