@@ -49,6 +49,8 @@ pub(crate) struct Subject {
     pub ids: Option<ImageId>,
 }
 
+/// Most layers that there may be.
+const MOST_LAYERS: usize = 4;
 /// Strokes over each place, layer by layer: the first has to cover all.
 const DENSITY: [f32; 2] = [4.5, 3.5];
 /// Standard deviation of the smoothing that leaves what strokes of a layer can show, in half their widths (Hertzmann's f_sigma
@@ -76,7 +78,7 @@ pub(crate) fn painted(scope: &mut Scope<'_>, subject: &Subject, brush: &Brush) -
     if brush.half_length < LEAST || brush.half_width < 0.5 * LEAST {
         return None;
     }
-    let mut smooth = Vec::new();
+    let mut smooth = [None; MOST_LAYERS];
     let (anchor, other) = marks::anchors(scope);
     let first = layered(scope, subject, brush, anchor, &mut smooth)?;
     let Some((anchor, share)) = other else { return Some(first) };
@@ -90,15 +92,19 @@ fn layered(
     subject: &Subject,
     brush: &Brush,
     anchor: Anchor,
-    smooth: &mut Vec<ImageId>,
+    smooth: &mut [Option<ImageId>; MOST_LAYERS],
 ) -> Option<[ImageId; 2]> {
-    (0..brush.layers.max(1) as usize).fold(None, |below, number| {
-        if smooth.len() == number {
+    let mut below = None;
+    let mut coarse = None;
+    for (number, smooth) in smooth.iter_mut().enumerate().take(brush.layers.max(1) as usize) {
+        let smooth = *smooth.get_or_insert_with(|| {
             let sigma = SMOOTH * size_of(number) * brush.half_width;
-            smooth.push(gaussian_blur::pass_colour(scope.plan, subject.picture, sigma));
-        }
-        Some(layer(scope, subject, brush, anchor, (number, smooth), below))
-    })
+            gaussian_blur::pass_colour(scope.plan, subject.picture, sigma)
+        });
+        below = Some(layer(scope, subject, brush, anchor, (number, smooth), below.zip(coarse)));
+        coarse = Some(smooth);
+    }
+    below
 }
 
 /// Size of strokes of a layer against those of the third.
@@ -106,15 +112,16 @@ fn size_of(layer: usize) -> f32 {
     2f32.powi(2 - layer as i32)
 }
 
-/// A layer of strokes on what lies below, but for the first one only where the picture has detail that strokes of the layer
-/// below cannot show. Detail decides, not the colours that coarse strokes happen to have: it moves with things.
+/// A layer of strokes. But for the first one it lies on another, of which the smooth picture is given too, and only where the
+/// picture has detail that strokes of that one cannot show. Detail decides, not the colours that coarse strokes happen to
+/// have: it moves with things.
 fn layer(
     scope: &mut Scope<'_>,
     subject: &Subject,
     brush: &Brush,
     anchor: Anchor,
-    (number, smooth): (usize, &[ImageId]),
-    below: Option<[ImageId; 2]>,
+    (number, smooth): (usize, ImageId),
+    below: Option<([ImageId; 2], ImageId)>,
 ) -> [ImageId; 2] {
     let origin = scope.origin();
     let size = size_of(number);
@@ -127,8 +134,8 @@ fn layer(
         points,
         tensors: subject.tensors,
         picture: subject.picture,
-        smooth: smooth[number],
-        coarse: number.checked_sub(1).map(|before| smooth[before]),
+        smooth,
+        coarse: below.map(|(_, coarse)| coarse),
         ids: subject.ids,
     };
     let strokes = Strokes {
@@ -156,6 +163,6 @@ fn layer(
         heights: [HEIGHTS[0], HEIGHTS[1] * (bristle / FINEST).min(1.0)],
         softness: (SOFTNESS * scope.scale()).max(1.0),
     };
-    let ground = below.map_or((subject.picture, None), |[picture, heights]| (picture, Some(heights)));
+    let ground = below.map_or((subject.picture, None), |([picture, heights], _)| (picture, Some(heights)));
     stroke_paint::pass(scope.plan, seeds, ground, subject.ids, &paint)
 }

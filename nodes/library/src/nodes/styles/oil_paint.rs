@@ -117,6 +117,8 @@ const STROKE_WIDTH: Param = Param::length("stroke_width", "Stroke width", 4.0, [
     .hint("How wide the finest brush strokes are; coarse ones are four times as wide.")
     .doc("Width of strokes of the finest of three layers; scales `sigma_n` and `rho` by (width / 4)^1/2.");
 
+/// How much more detail is painted where `steadiness` is 1: fine strokes follow what moves, coarse ones jump with it.
+const FINER: f32 = 0.4;
 /// Units of L, on white, of the look controls at 1.
 const MOST_BRISTLE: f32 = 20.0;
 const MOST_SHINE: f32 = 60.0;
@@ -142,7 +144,7 @@ fn build(scope: &mut Scope<'_>) -> ImageId {
         half_width: 0.5 * FULL * width,
         half_length: FULL * scope.float("dilation_length") * length,
         curve: scope.float("curve"),
-        detail: scope.float("detail"),
+        detail: scope.float("detail") + FINER * scope.float(STEADINESS.id),
         smoothing: scope.float("sigma_t") * length,
         variation: scope.float("variation"),
         dryness: scope.float("dryness"),
