@@ -249,7 +249,7 @@ impl Cell<'_> {
 
     /// A place beside a pixel's centre, from the corner of the cell.
     #[inline(always)]
-    fn from_corner(&self, p: [i32; 2], d: [f32; 2]) -> [f32; 2] {
+    fn past_corner(&self, p: [i32; 2], d: [f32; 2]) -> [f32; 2] {
         [0, 1].map(|i| (p[i] - self.corner[i]) as f32 + 0.5 + d[i])
     }
 
@@ -279,7 +279,8 @@ impl Cell<'_> {
         let point = self.inputs[0].pixel4(x, y);
         let scales = &self.inputs[1];
         let scale = scales.data()[scales.offset(x, y)];
-        if !is_at_rest(point) || !(scale < 0.1 * NO_FOOTPRINT) {
+        let is_known = scale < 0.1 * NO_FOOTPRINT;
+        if !is_at_rest(point) || !is_known {
             return None;
         }
         // So far from 0 that floats do not tell finer cells apart, points are farther apart.
@@ -330,7 +331,7 @@ impl Cell<'_> {
         let weight = octave_weight(octave as f32 - below.level);
         let share = counted(weight, found.chance[0]) * ((0.525 - far) * 20.0).within(0.0, 1.0);
         if dx.abs() < 1.5 && dy.abs() < 1.5 {
-            self.offer(self.from_corner(landed, [dx, dy]), found.rank, share);
+            self.offer(self.past_corner(landed, [dx, dy]), found.rank, share);
         }
     }
 
@@ -385,7 +386,7 @@ impl Cell<'_> {
         if d[0].abs() <= 1.0 && d[1].abs() <= 1.0 {
             let ways = self.inputs[0].pixel4(landed[0], landed[1]);
             let share = self.carried_share(ways, found, is_own);
-            self.offer(self.from_corner(landed, d), found.rank, share);
+            self.offer(self.past_corner(landed, d), found.rank, share);
         }
     }
 
@@ -425,7 +426,7 @@ impl Cell<'_> {
 
     /// The points that are found from four pixels of the cell.
     #[inline(always)]
-    fn from_pixels(&mut self) {
+    fn gather(&mut self) {
         let side = self.params.cell;
         let mut is_beside = false;
         for n in 0..4 {
@@ -463,7 +464,7 @@ fn run<S: Simd>(_: S, pass: &CpuPass<'_>, params: &Params, band: &mut Band<'_>) 
             if params.way == 0 {
                 cell.flat();
             } else {
-                cell.from_pixels();
+                cell.gather();
             }
             target.copy_from_slice(&cell.best);
         }
