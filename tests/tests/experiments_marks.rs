@@ -230,6 +230,30 @@ fn far_from_the_origin_marks_are_the_same() {
 }
 
 #[test]
+fn strokes_end_at_the_borders_of_objects() {
+    // Neither bristles nor colours of strokes' own, and no borders that strokes would end at by themselves.
+    let graph =
+        run::single("oil_paint", &[("bristle", "0"), ("shine", "0"), ("variation", "0"), ("n_a", "0")]);
+    let [width, height] = [128, 96];
+    let picture = from_fn(width, height, |x, _| {
+        let v = if x < 64 { 0.45 } else { 0.5 };
+        [v, v, v, 1.0]
+    });
+    let object_id = from_fn(width, height, |x, _| [if x < 64 { 1.0 } else { 2.0 }]);
+    let crossed = |knows_objects: bool| {
+        let guides = Guides::of(|input| knows_objects && input == GraphInput::ObjectId);
+        let request = Request { guides, ..Request::new(width, height) };
+        let mut inputs = vec![("color", picture.clone())];
+        inputs.extend(knows_objects.then(|| ("object_id", object_id.clone())));
+        let result = run::whole(run::planned(&graph, request).plan(), &inputs);
+        let pairs = result.data().iter().zip(picture.data());
+        pairs.map(|(a, b)| (a - b).abs()).fold(0.0, f32::max)
+    };
+    assert!(crossed(false) > 0.02, "{}", crossed(false));
+    assert!(crossed(true) < 0.002, "{}", crossed(true));
+}
+
+#[test]
 fn hold_renews_marks_on_things() {
     let graph = run::single("oil_paint", &[("hold", "2")]);
     let inputs = [

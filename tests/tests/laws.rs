@@ -10,8 +10,8 @@ use isophote_tests::shaders;
 use std::collections::BTreeSet;
 use std::path::{Path, PathBuf};
 
-const GROUPS: [&str; 8] =
-    ["structure", "smoothing", "lines", "painting", "coherence", "colour", "time", "styles"];
+const GROUPS: [&str; 9] =
+    ["structure", "smoothing", "lines", "painting", "strokes", "coherence", "colour", "time", "styles"];
 
 fn root() -> PathBuf {
     Path::new(env!("CARGO_MANIFEST_DIR")).join("..")

@@ -27,6 +27,7 @@ pub(crate) mod quantization;
 pub(crate) mod quantize_luminance;
 pub(crate) mod shock;
 pub(crate) mod steady;
+pub(crate) mod strokes;
 pub(crate) mod structure_tensor;
 pub(crate) mod tensor_options;
 pub(crate) mod tone;

@@ -460,18 +460,20 @@ def oil_paint(
     image: Any,
     /,
     *,
+    object_id: Any = None,
     rest_position: Any = None,
     mask: Any = None,
     flow: Any = None,
     motion: Any = None,
     motion_forward: Any = None,
     depth: Any = None,
-    object_id: Any = None,
     stroke_length: float = 20.0,
     stroke_width: float = 4.0,
     bristle: float = 0.5,
     shine: float = 0.4,
     light_angle: float = 120.0,
+    dryness: float = 0.0,
+    variation: float = 0.5,
     detail: float = 0.5,
     saturation: float = 1.0,
     lights: float = 0.0,
@@ -482,6 +484,8 @@ def oil_paint(
     sigma_r: float = 4.25,
     rho: float = 3.0,
     levels: int = 5,
+    layers: int = 3,
+    curve: float = 1.0,
     dilation_length: float = 8.0,
     sigma_t: float = 3.0,
     sigma_n: float = 1.0,
@@ -497,12 +501,15 @@ def oil_paint(
     **picture: Unpack[Picture],
 ) -> Array:
     """Oil paint. Brush strokes of thick paint that follow the shapes, with marks of bristles and light
-    on them. Brush strokes that follow the shapes: regions are flattened, painted in strokes of one
-    colour along the local orientation and smoothed along it; noise smoothed the same way gives the
-    marks of bristles, and the light on them. (thesis § 1.2)
+    on them. Brush strokes that follow the shapes: regions are flattened and painted in layers of
+    strokes, coarse ones everywhere and finer ones where the picture has detail of their size (after
+    Hertzmann 1998). A stroke has a colour of its own, bends with the local orientation and ends
+    where the colour does; its bristles leave ridges, and the light lies on them. Strokes belong to
+    things: to their rest position, else to their motion. (thesis § 1.2)
 
     Inputs:
         image: The picture.
+        object_id: Object numbers; strokes end at borders.
         rest_position: Points of the undeformed objects, in any unit and 32 bits a channel: marks
             move with things, and keep their size on screen.
         mask: How much of the result is used, 0..=1, times `mix`; all of it when open.
@@ -513,20 +520,26 @@ def oil_paint(
         motion_forward: Pixels from where a point is to where it will be in the next frame; without
             it the frames that follow count for nothing.
         depth: Distance from the camera: neighbouring frames count where it agrees.
-        object_id: Object numbers: neighbouring frames count where they agree.
 
     Parameters:
-        stroke_length: How long brush strokes are. Scales `dilation_length`, `sigma_t` and `sigma_b`
-            by length / 20. 0 to 80 px.
-        stroke_width: How wide brush strokes are. Scales `sigma_n` and `rho` by width / 4. 0.5 to 20
-            px.
-        bristle: How clearly the marks of the bristles show. How dark and light the marks are: up to
-            20 units of L on white. 0 to 1.
-        shine: How much light the ridges of the paint catch. Up to 30 units of L on white. 0 to 1.
+        stroke_length: How long the finest brush strokes are; coarse ones are four times as long.
+            Scales `dilation_length`, `sigma_t` and `sigma_b` by length / 20. Strokes of lower
+            layers are two and four times as long. 0 to 80 px.
+        stroke_width: How wide the finest brush strokes are; coarse ones are four times as wide.
+            Width of strokes of the finest of three layers; scales `sigma_n` and `rho` by (width /
+            4)^1/2. 0.5 to 20 px.
+        bristle: How clearly the marks of the bristles show. How dark and light the marks are, up to
+            20 units of L on white, and how ragged the ends of strokes. 0 to 1.
+        shine: How much light the ridges of the paint catch. Up to 60 units of L on white. 0 to 1.
         light_angle: Where the light comes from: 0 is the right, 90 above, 180 the left. 0 to 360
             deg.
+        dryness: How soon the brush runs dry: streaks of what lies below show. Share of a stroke
+            that paint does not cover, less at its beginning and more at its end. 0 to 1.
+        variation: How different the colours of neighbouring strokes are. Up to 10 units of L, 0.35
+            radians of hue and two fifths of chroma from stroke to stroke. 0 to 1.
         detail: How much of the picture's detail stays: low values give flat areas, high ones keep
-            small things. Scales `sigma_r` from 3 to 1/3 times and `sigma_d` from 2 to 1/2. 0 to 1.
+            small things. Scales `sigma_r` from 3 to 1/3 times and `sigma_d` from 2 to 1/2, and the
+            difference from which on finer strokes are painted from 17 to 2 units of Lab. 0 to 1.
         saturation: Strength of the colours: 0 is grey, 1 leaves them as they are. Factor on the
             colour axes of CIELAB. 0 to 4.
         lights: Brightens the light tones above 0, and darkens them below. -1 to 1.
@@ -546,14 +559,19 @@ def oil_paint(
             strokes turn no faster. 0 to 20 px.
         levels: Sizes at which directions are looked for: more let strokes in flat areas follow what
             is around. Scales at which the orientation is found (2.8). 1 to 8.
-        dilation_length: How far a stroke keeps one colour, to each side. Arc length on each side
-            over which strokes take one colour (5.1). 0 to 60 px.
-        sigma_t: How far colours are smoothed along the strokes. Standard deviation of the smoothing
-            of colours along the flow. 0 to 40 px.
-        sigma_n: How wide strokes and the marks of bristles are. Standard deviation of the smoothing
-            of the noise. 0 to 10 px.
-        sigma_b: How long the marks of bristles are. Standard deviation of the smoothing of the
-            noise along the flow. 0 to 40 px.
+        layers: Sizes of strokes, from coarse to fine: more paint finer things. Layers of strokes,
+            each half as large as the one below; `stroke_length` and `stroke_width` are those of the
+            third. 1 to 4.
+        curve: How far strokes bend with the shapes: 0 keeps them straight. Share of the turn of the
+            tangent along a stroke that its curvature takes on. 0 to 1.
+        dilation_length: How far a stroke keeps one colour, to each side. Half the length of strokes
+            of the third layer, along which they keep one colour. 0 to 60 px.
+        sigma_t: How far colours are smoothed along the strokes. Distance along a stroke of the
+            third layer at which the picture counts half for its colour. 0 to 40 px.
+        sigma_n: How wide the marks of bristles are. Cells of the noise of bristles, across strokes.
+            0 to 10 px.
+        sigma_b: How long the marks of bristles are. Cells of the noise of bristles, along strokes.
+            0 to 40 px.
         seed: Another number gives other strokes. 0 to 9999.
         steadiness: How calm moving pictures are: neighbouring frames are averaged along the motion.
             0 is off, 0.5 suits most shots. How much neighbouring frames count, carried here along

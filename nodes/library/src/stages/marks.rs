@@ -5,6 +5,7 @@ use crate::declare::ports::REST_POSITION;
 use crate::declare::spec::Scope;
 use crate::kernels::smoothing::gaussian_blur;
 use crate::kernels::smoothing::line_blur::{self, Lines};
+use crate::kernels::strokes::stroke_points::Anchor;
 use crate::kernels::structure::smooth_noise::{self, Layer};
 use crate::kernels::structure::solid_noise::{self, Marks};
 use crate::kernels::structure::{noise, rest_footprint, rest_scale};
@@ -20,6 +21,19 @@ pub(crate) fn grains(scope: &mut Scope<'_>, sigma: f32, seed: u32) -> ImageId {
         gaussian_blur::pass(scope.plan, white, sigma, Class::Colour)
     };
     on_things(scope, screen, &Marks::of_smoothed_noise(sigma, scale, seed))
+}
+
+/// What strokes and other marks with places of their own belong to; where motion carries them, two layers that fade into
+/// one another, and the share of the second one.
+pub(crate) fn anchors(scope: &mut Scope<'_>) -> (Anchor, Option<(Anchor, f32)>) {
+    if let Some(points) = scope.input(REST_POSITION.id) {
+        let footprints = rest_footprint::pass(scope.plan, points);
+        return (Anchor::Rest { points, scales: rest_scale::pass(scope.plan, points, footprints) }, None);
+    }
+    let Some(Carried { chain, share, lives, .. }) = chain(scope) else { return (Anchor::Screen, None) };
+    let [first, second] =
+        [false, true].map(|second| Anchor::Carried { chain, second, life: lives[usize::from(second)] });
+    (first, Some((second, share)))
 }
 
 /// Clouds of the size of those of the screen; none where they are to stay there. Of both `layers` together marks on
@@ -102,13 +116,28 @@ fn on_things(
 /// can follow, would make tiles read much of the picture.
 const FARTHEST: f32 = 2.0;
 
-/// The noise that `screen` makes of a seed, carried along the motion of the frames before: two layers of it, half a
-/// period apart, each of which begins anew when the other one alone is seen. The number of the frame decides when, so
-/// that frames in any order show the same.
-fn carried(scope: &mut Scope<'_>, screen: impl Fn(&mut Scope<'_>, u32) -> ImageId, marks: &Marks) -> ImageId {
-    let common = screen(scope, marks.seed);
-    let Some((period, frame)) = scope.renewal() else { return common };
-    let ages = [0, period / 2].map(|offset| (frame + i64::from(offset)).rem_euclid(i64::from(period)) as i32);
+/// Motion of the frames before, added up for two layers.
+struct Carried {
+    chain: ImageId,
+    /// Share of the second layer.
+    share: f32,
+    /// Farthest on each axis that marks are carried, pixels.
+    farthest: f32,
+    /// Number of the life that each layer is in, odd for the first and even for the second.
+    lives: [u32; 2],
+}
+
+/// The motion of the frames before for two layers of marks, half a period apart, each of which begins anew when the other one
+/// alone is seen; none where marks stay on the screen. The number of the frame decides when, so that frames in any order
+/// show the same.
+fn chain(scope: &mut Scope<'_>) -> Option<Carried> {
+    let (period, frame) = scope.renewal()?;
+    let since = [0, period / 2].map(|offset| frame + i64::from(offset));
+    let ages = since.map(|frames| frames.rem_euclid(i64::from(period)) as i32);
+    let lives = [0, 1].map(|n| {
+        let before = since[n].div_euclid(i64::from(period)) as u32;
+        before.wrapping_mul(2).wrapping_add(n as u32 + 1)
+    });
     let longest = scope.max_motion;
     let farthest = longest * FARTHEST;
     let mut chain = None;
@@ -119,9 +148,15 @@ fn carried(scope: &mut Scope<'_>, screen: impl Fn(&mut Scope<'_>, u32) -> ImageI
         let step = Step { longest, farthest, count: count as u32, advance };
         chain = Some(mark_chain::pass(scope.plan, chain, motion, &step));
     }
-    let Some(chain) = chain else { return common };
     // A triangle: 1 in the middle of a layer's life, 0 at its ends.
     let share = 1.0 - (2.0 * ages[1] as f32 / period as f32 - 1.0).abs();
+    chain.map(|chain| Carried { chain, share, farthest, lives })
+}
+
+/// The noise that `screen` makes of a seed, carried along the motion of the frames before in two layers.
+fn carried(scope: &mut Scope<'_>, screen: impl Fn(&mut Scope<'_>, u32) -> ImageId, marks: &Marks) -> ImageId {
+    let common = screen(scope, marks.seed);
+    let Some(Carried { chain, share, farthest, .. }) = chain(scope) else { return common };
     let layers = Layers { share, sigma: marks.sigma, farthest };
     let [first, second] =
         [1, 2].map(|n: u32| screen(scope, marks.seed.wrapping_add(n.wrapping_mul(0x9e37_79b9))));
