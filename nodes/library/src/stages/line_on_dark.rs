@@ -28,7 +28,7 @@ choice! {
         /// The colour of the lines, however dark the ground is.
         Off ("off", "As elsewhere"),
         /// A lighter tint of the ground where it is dark, if normals, depth or object ids are known.
-        Forms ("forms", "Light on known forms"),
+        Forms ("forms", "Light on forms"),
         /// The same without them, as on photographs.
         Light ("light", "Light everywhere"),
     }
