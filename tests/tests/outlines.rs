@@ -147,7 +147,7 @@ fn black_things_have_their_silhouettes_and_creases() {
         println!("{id} {params:?}: outlines {:.3}, by lines {alone:.3}, creases {:.3}", found[0], found[1]);
         found
     };
-    for (id, on_dark, more) in [("cartoon", "forms", SMOOTH_TONES), ("ink", "light", NO_GRAIN)] {
+    for (id, on_dark, more) in [("cartoon", "light", SMOOTH_TONES), ("ink", "light", NO_GRAIN)] {
         let [outline, crease] = recalls(id, &[("line_on_dark", on_dark), more]);
         assert!(
             outline >= 0.97 && crease >= 0.9,

@@ -10,7 +10,7 @@ use isophote_engine::ImageId;
 const ID: &str = "line_on_dark";
 const LABEL: &str = "Lines on dark";
 
-pub(crate) const LINE_ON_DARK: Param = Param::choice(ID, LABEL, OnDark::Forms.selected())
+pub(crate) const LINE_ON_DARK: Param = Param::choice(ID, LABEL, OnDark::Off.selected())
     .hint("Turns lines light where the picture is darker than they are seen on, as in a black car or coat.")
     .doc(
         "The mean lightness around a line decides, in a window of about 12 pixels: 25 units of L above the line's \
@@ -27,10 +27,8 @@ choice! {
     pub(crate) enum OnDark {
         /// The colour of the lines, however dark the ground is.
         Off ("off", "As elsewhere"),
-        /// A lighter tint of the ground where it is dark, if normals, depth or object ids are known.
-        Forms ("forms", "Light on forms"),
-        /// The same without them, as on photographs.
-        Light ("light", "Light everywhere"),
+        /// A lighter tint of the ground where it is dark.
+        Light ("light", "Light"),
     }
 }
 

@@ -1,4 +1,4 @@
-//! Draws lines over a picture, or over paper in its place, as [`composite_lines`](super::composite_lines) does (§ 4.6), but
+//! Draws lines over a picture, or over paper in its place, as `composite_lines` does (§ 4.6), but
 //! light where the ground around is darker than a dark line can show, as an inker draws the folds of a black coat.
 //!
 //! The mean of the ground decides, not the pixel, so that a line does not change its tone along its length by noise.

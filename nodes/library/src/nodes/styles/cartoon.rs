@@ -181,15 +181,12 @@ fn build(scope: &mut Scope<'_>) -> ImageId {
 /// A picture with its lines, of which those turn light that lie on dark tones; `toned` is in Lab.
 fn lined(scope: &mut Scope<'_>, [rgb, edges, toned]: [ImageId; 3], guide_weight: f32) -> ImageId {
     let line = scope.color("line_color");
-    let guided = flow_dog::guides(scope, guide_weight) != Guides::default();
-    let turns = match scope.option(LINE_ON_DARK.id) {
-        OnDark::Off => false,
-        OnDark::Forms => guided,
-        OnDark::Light => true,
-    };
-    if !turns {
-        return composite_lines::pass(scope.plan, rgb, edges, &Composite { line, paper: [0.0; 4] });
+    match scope.option(LINE_ON_DARK.id) {
+        OnDark::Off => composite_lines::pass(scope.plan, rgb, edges, &Composite { line, paper: [0.0; 4] }),
+        OnDark::Light => {
+            let guided = flow_dog::guides(scope, guide_weight) != Guides::default();
+            let lightness = lightness::pass_lab(scope.plan, toned);
+            line_on_dark::drawn(scope, [rgb, edges, lightness], line, guided)
+        }
     }
-    let lightness = lightness::pass_lab(scope.plan, toned);
-    line_on_dark::drawn(scope, [rgb, edges, lightness], line, guided)
 }
