@@ -202,7 +202,7 @@ def cartoon(
     local_contrast: float = 1.0,
     inhibition: float = 1.0,
     colour_edges: float = 0.5,
-    line_on_dark: Literal['off', 'forms', 'light'] = 'forms',
+    line_on_dark: Literal['off', 'light'] = 'off',
     mix: float = 1.0,
     out: Any = None,
     frame: int = 0,
