@@ -31,10 +31,12 @@ struct Params {
     ground: f32,
     /// How light own colours are in what is drawn, 0..=1.
     tint: f32,
+    /// How far lines are cut out of marks, 0..=1.
+    cut: f32,
 }
 
 #params
-// Black lines on white.
+// Black lines on white; in the second channel those that are cut out of marks.
 #input lines
 #input source, strokes
 // The share of the paper that marks cover, and how far grain shows in them.
@@ -66,7 +68,8 @@ fn of_pixel(id: vec3u, lines: vec4f, v: vec4f, strokes: vec4f, marks: vec4f) -> 
     // A dry tool leaves out the valleys of the paper even where it presses hard; in light tones nothing breaks.
     let dry = params.dryness * max(height - 0.55, 0.0);
     let pressed = catches(line, height, params.dryness * params.grain) * (1.0 - dry);
-    let toned = catches(mark.x, height, params.grain * mark.y) * (1.0 - dry * mark.y);
+    let kept = 1.0 - (1.0 - clamp(lines.y, 0.0, 1.0)) * params.cut;
+    let toned = catches(mark.x, height, params.grain * mark.y) * (1.0 - dry * mark.y) * kept;
     let ink = (1.0 - (1.0 - pressed) * (1.0 - toned)) * params.line.a * alpha;
 
     // Chalk: the picture's own colours, a little lighter, where the paper catches them.

@@ -40,6 +40,8 @@ struct Params {
     given_gain: f32,
     /// How soft they are in this one, whose pixels may be wider.
     edge: f32,
+    /// By how much less than the whole paper the darkest marks cover, 0..=1.
+    open: f32,
 }
 
 #params
@@ -117,7 +119,8 @@ fn main(@builtin(global_invocation_id) id: vec3u) {
     let v = fetch(tones, 0u, p).xy;
     let lightness = select(100.0, v.x / v.y, v.y > 1e-4);
     let t = clamp((params.light - lightness) * params.slope, 0.0, 1.0);
-    let d = t * (1.0 - params.ease * (1.0 - t));
+    let eased = t * (1.0 - params.ease * (1.0 - t));
+    let d = eased - params.open * eased * eased * eased;
     let marked = (1.0 - params.rubbed) * rise((params.smooth_from - lightness) * params.inverse_fade);
     var density = d;
     if marked > 0.0 {

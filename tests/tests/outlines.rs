@@ -9,6 +9,10 @@ use isophote_tests::pictures::from_fn;
 use isophote_tests::scenery::forms;
 use isophote_tests::{device, png, run};
 
+/// What hides nothing of the lines.
+const SMOOTH_TONES: (&str, &str) = ("posterize", "0");
+const NO_GRAIN: (&str, &str) = ("grain", "0");
+
 /// A style, its parameters without tones, and whether a luma is of a line.
 type Style = (&'static str, &'static [(&'static str, &'static str)], fn(f32) -> bool);
 
@@ -60,12 +64,46 @@ fn drawn((id, params, is_line): Style) -> Vec<bool> {
         .collect()
 }
 
+/// The forms in black: what is lit of them, and the floor, is at most as light as coal.
+fn black_forms() -> Vec<(&'static str, Image)> {
+    let [(_, color), (_, normal), (_, depth), (_, id)] = forms() else { panic!("four pictures") };
+    let black = from_fn(color.width(), color.height(), |x, y| {
+        let p = at(color, [x, y]);
+        let share = if at(id, [x, y])[0] > 0.0 { 0.16 } else { 1.0 };
+        [p[0] * share, p[1] * share, p[2] * share, 1.0]
+    });
+    vec![("color", black), ("normal", normal.clone()), ("depth", depth.clone()), ("object_id", id.clone())]
+}
+
+/// Pixels of a picture in which lines change the luma by so much that they are seen, and those that differ as much from their
+/// neighbours without any line, as black things do from the sky.
+fn seen(id: &str, params: &[(&str, &str)], inputs: &[(&'static str, Image)]) -> [Vec<bool>; 2] {
+    let color = &inputs[0].1;
+    let guides = Guides { normal: true, depth: true, object_id: true, ..Guides::default() };
+    let request = Request { guides, ..Request::new(color.width(), color.height()) };
+    let none = [params, GUIDES_OFF, COLOURS_OFF].concat();
+    let [with, without] = [params, &none].map(|params| {
+        let result = run::whole(run::planned(&run::single(id, params), request).plan(), inputs);
+        let luma = |p: &[f32]| 0.2126 * p[0] + 0.7152 * p[1] + 0.0722 * p[2];
+        (result.data().chunks_exact(4).map(luma).collect::<Vec<_>>(), result)
+    });
+    png::write(&png::results().join(format!("outlines-black-{id}-{}.png", params[0].1)), &with.1);
+    let lines = with.0.iter().zip(&without.0).map(|(a, b)| (a - b).abs() >= 0.2).collect();
+    let (width, height) = (color.width() as i32, color.height() as i32);
+    let mut edges = vec![false; without.0.len()];
+    let luma = |[x, y]: [i32; 2]| without.0[(y * width + x) as usize];
+    for [x, y] in beside(width, height, |a, b| (luma(a) - luma(b)).abs() >= 0.2) {
+        edges[(y * width + x) as usize] = true;
+    }
+    [lines, edges]
+}
+
 fn at(image: &Image, [x, y]: [i32; 2]) -> &[f32] {
     image.pixel(x, y)
 }
 
-#[test]
-fn silhouettes_and_creases_are_drawn() {
+/// Pixels beside outlines of the forms, and beside their creases.
+fn outlines_and_creases() -> [Vec<[i32; 2]>; 2] {
     let [(_, color), (_, normal), _, (_, id)] = forms() else { panic!("four pictures") };
     let (width, height) = (color.width() as i32, color.height() as i32);
     let outlines = beside(width, height, |a, b| at(id, a) != at(id, b));
@@ -75,14 +113,49 @@ fn silhouettes_and_creases_are_drawn() {
         is_there && at(id, a) == at(id, b) && dot < 30f32.to_radians().cos() * 0.98
     });
     assert!(outlines.len() > 200 && creases.len() > 40, "{} {}", outlines.len(), creases.len());
+    [outlines, creases]
+}
+
+/// The share of `wanted` that has a line within a pixel and a half.
+fn recall(lines: &[bool], wanted: &[[i32; 2]]) -> f32 {
+    let color = &forms()[0].1;
+    let (width, height) = (color.width() as i32, color.height() as i32);
+    let found = wanted.iter().filter(|p| is_near(lines, width, height, **p, 1.5)).count();
+    found as f32 / wanted.len() as f32
+}
+
+#[test]
+fn silhouettes_and_creases_are_drawn() {
+    let wanted = outlines_and_creases();
     for style in STYLES {
         let lines = drawn(style);
-        let recall = |wanted: &[[i32; 2]]| {
-            let found = wanted.iter().filter(|p| is_near(&lines, width, height, **p, 1.5)).count();
-            found as f32 / wanted.len() as f32
-        };
-        let (outline, crease) = (recall(&outlines), recall(&creases));
+        let [outline, crease] = [0, 1].map(|kind| recall(&lines, &wanted[kind]));
         assert!(outline >= 0.97 && crease >= 0.9, "{}: outlines {outline:.3}, creases {crease:.3}", style.0);
+    }
+}
+
+#[test]
+fn black_things_have_their_silhouettes_and_creases() {
+    let wanted = outlines_and_creases();
+    let forms = black_forms();
+    // An outline that parts black from light is seen without a line.
+    let recalls = |id: &str, params: &[(&str, &str)]| {
+        let [lines, edges] = seen(id, params, &forms);
+        let either: Vec<bool> = lines.iter().zip(&edges).map(|(line, edge)| *line || *edge).collect();
+        let alone = recall(&lines, &wanted[0]);
+        let found = [recall(&either, &wanted[0]), recall(&lines, &wanted[1])];
+        println!("{id} {params:?}: outlines {:.3}, by lines {alone:.3}, creases {:.3}", found[0], found[1]);
+        found
+    };
+    for (id, on_dark, more) in [("cartoon", "light", SMOOTH_TONES), ("ink", "light", NO_GRAIN)] {
+        let [outline, crease] = recalls(id, &[("line_on_dark", on_dark), more]);
+        assert!(
+            outline >= 0.97 && crease >= 0.9,
+            "{id} {on_dark}: outlines {outline:.3}, creases {crease:.3}"
+        );
+        // Dark lines on dark ground are lost.
+        let [_, lost] = recalls(id, &[("line_on_dark", "off"), more]);
+        assert!(lost < 0.8, "{id}: creases {lost:.3}");
     }
 }
 
@@ -110,6 +183,22 @@ fn no_line_is_without_cause() {
         let precision = caused as f32 / all.len() as f32;
         assert!(precision >= 0.95, "{}: {precision:.3} of {} line pixels", style.0, all.len());
     }
+}
+
+/// The floor of the black forms: solid ink as ever, and a third of it or so paper where masses open.
+#[test]
+fn black_masses_open_to_hatching() {
+    let forms = black_forms();
+    let guides = Guides { normal: true, depth: true, object_id: true, ..Guides::default() };
+    let request = Request { guides, ..Request::new(forms[0].1.width(), forms[0].1.height()) };
+    let [solid, open] = ["off", "open"].map(|on_dark| {
+        let graph = run::single("ink", &[("line_on_dark", on_dark), NO_GRAIN]);
+        let drawn = run::whole(run::planned(&graph, request).plan(), &forms);
+        let floor = (165..180).flat_map(|y| (0..240).map(move |x| [x, y]));
+        floor.clone().filter(|p| at(&drawn, *p)[1] > 0.5).count() as f32 / floor.count() as f32
+    });
+    println!("paper: {solid:.3}, {open:.3} where masses open");
+    assert!(solid < 0.02 && open > 0.15 && open < 0.5, "{solid} {open}");
 }
 
 /// Line filter, and how it is told to draw no lines.

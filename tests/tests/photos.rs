@@ -1,4 +1,5 @@
-//! The cartoon style on photographs, where they lie beside the checkout: flatter, with dark coherent
+//! Styles of lines on photographs, on free ones of the documentation and on those beside the checkout: eyes, mouths and letters
+//! are drawn, leaves and fur are not; and the cartoon style: flatter, with dark coherent
 //! lines, without speckles or halos (compare Figure 4.8).
 
 use isophote::Request;
@@ -6,6 +7,7 @@ use isophote_engine::Image;
 use isophote_tests::pictures::from_fn;
 use isophote_tests::{png, run};
 use std::collections::BTreeSet;
+use std::path::Path;
 
 /// A photograph at half its size.
 fn photo(name: &str) -> Option<Image> {
@@ -175,4 +177,73 @@ fn eyes_and_mouths_are_drawn_and_fur_and_hair_are_not() {
         [eye, fur].map(|place| [&now, &before, &uninhibited].map(|lines| line_share(lines, place)));
     println!("cat: eye {eye:?}, fur {fur:?} now, before, without inhibition");
     assert!(eye[0] > 0.9 * eye[1] && fur[0] < 0.5 * fur[2], "an eye stays, fur yields");
+}
+
+/// Part of a photograph, from its left and upper side to its right and lower one, pixels.
+type Place = [i32; 4];
+
+/// A free photograph that the documentation shows.
+fn free_photo(name: &str) -> Image {
+    let folder = Path::new(env!("CARGO_MANIFEST_DIR")).join("../xtask/docs/pictures/gallery");
+    png::read(&folder.join(format!("{name}.jpg"))).unwrap()
+}
+
+/// A photograph in a style, as a picture of 1080 lines would be.
+fn styled(photo: &Image, style: &str, params: &[(&str, &str)]) -> Image {
+    let request =
+        Request { scale: photo.height() as f32 / 1080.0, ..Request::new(photo.width(), photo.height()) };
+    run::graph(&run::single(style, params), request, photo)
+}
+
+/// Standard deviation of the luma in a place: what is nothing but paper, ink or skin has hardly any.
+fn deviation(image: &Image, [x0, y0, x1, y1]: Place) -> f32 {
+    let lumas: Vec<f32> =
+        (y0..y1).flat_map(|y| (x0..x1).map(move |x| (x, y))).map(|(x, y)| luma(image.pixel(x, y))).collect();
+    let mean = lumas.iter().sum::<f32>() / lumas.len() as f32;
+    (lumas.iter().map(|v| (v - mean) * (v - mean)).sum::<f32>() / lumas.len() as f32).sqrt()
+}
+
+/// Lines alone.
+const BARE: [(&str, &str); 3] = [("fill", "0"), ("grid", "0"), ("paper_texture", "0")];
+
+/// Eyes, then mouths and noses; on the lantern letters and a seal.
+const FEATURES: [(&str, &[Place]); 5] = [
+    ("astronaut", &[[190, 94, 214, 108], [236, 96, 260, 109], [203, 137, 249, 155]]),
+    ("hopper", &[[188, 169, 233, 195], [264, 169, 310, 195], [230, 253, 286, 280]]),
+    ("raccoon", &[[319, 164, 355, 195], [404, 176, 443, 206], [340, 240, 390, 288]]),
+    ("lantern", &[[165, 90, 195, 120], [165, 122, 195, 153], [163, 155, 195, 184], [165, 187, 194, 213]]),
+    ("cat", &[[130, 80, 210, 150], [298, 105, 345, 165]]),
+];
+
+#[test]
+fn features_are_drawn_in_all_styles_of_lines() {
+    for (style, params) in [("cartoon", &[][..]), ("ink", &[]), ("blueprint", &BARE)] {
+        let found: Vec<f32> = FEATURES
+            .iter()
+            .flat_map(|(name, places)| {
+                let drawn = styled(&free_photo(name), style, params);
+                places.iter().map(move |place| deviation(&drawn, *place)).collect::<Vec<_>>()
+            })
+            .collect();
+        let drawn = found.iter().filter(|deviation| **deviation >= 0.1).count();
+        println!("{style}: {drawn} of {} features, {found:.2?}", found.len());
+        assert!(drawn * 10 >= found.len() * 9, "{style}: {found:.2?}");
+    }
+}
+
+#[test]
+fn leaves_and_fur_have_few_lines_and_faces_in_soft_light_as_many_as_in_hard() {
+    let share = |name: &str, inhibition: &str, place: Place| {
+        let params = [&BARE[..], &[("inhibition", inhibition)]].concat();
+        line_share(&styled(&free_photo(name), "blueprint", &params), place)
+    };
+    for (name, place) in [("raccoon", [35, 35, 210, 150]), ("palace", [300, 285, 500, 390])] {
+        let [calm, busy] = ["1", "0"].map(|inhibition| share(name, inhibition, place));
+        println!("{name}: {:.1} % of lines, {:.1} % without inhibition", 100.0 * calm, 100.0 * busy);
+        assert!(calm <= 0.3 * busy, "{name}: {calm} of {busy}");
+    }
+    let soft = share("astronaut", "1", [180, 70, 275, 175]);
+    let hard = share("hopper", "1", [141, 122, 356, 319]);
+    println!("faces: {:.1} % of lines in soft light, {:.1} % in hard", 100.0 * soft, 100.0 * hard);
+    assert!(soft >= hard * 2.0 / 3.0, "{soft} of {hard}");
 }

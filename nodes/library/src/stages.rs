@@ -17,6 +17,7 @@ pub(crate) mod flow_map;
 pub(crate) mod generalized_kuwahara;
 pub(crate) mod line_context;
 pub(crate) mod line_integral_convolution;
+pub(crate) mod line_on_dark;
 pub(crate) mod line_width;
 pub(crate) mod lines;
 pub(crate) mod marks;

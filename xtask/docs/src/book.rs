@@ -7,7 +7,7 @@ use isophote::registry;
 use std::path::Path;
 
 /// Pages written for the site: part, place, title.
-const WRITTEN: [(&str, &str, &str); 31] = [
+const WRITTEN: [(&str, &str, &str); 32] = [
     ("", "index", "Isophote"),
     ("", "install", "Install"),
     ("", "windows", "Windows"),
@@ -19,6 +19,7 @@ const WRITTEN: [(&str, &str, &str); 31] = [
     ("For artists", "artists/slow", "It is slow"),
     ("For artists", "artists/looks", "Looks"),
     ("For artists", "artists/styles", "Styles"),
+    ("For artists", "artists/gallery", "Gallery"),
     ("For compositors", "compositors/install", "Install the plugin"),
     ("For compositors", "compositors/clips", "Clips, motion, masks, proxies"),
     ("For engine authors", "engines/c", "The C header by scenario"),

@@ -11,7 +11,8 @@ use std::fmt::Write as _;
 pub struct LookCard {
     /// The stem of its file.
     pub id: &'static str,
-    name: String,
+    /// Its name for people.
+    pub name: String,
     about: String,
     style: String,
 }

@@ -4,6 +4,7 @@
 
 mod book;
 mod error;
+mod gallery;
 mod glossary;
 mod links;
 mod looks;
@@ -113,7 +114,7 @@ fn run(options: &Options) -> Result<()> {
     let mut pages = pages(&sources, &root)?;
     let mut shots = shots::all(&looks)?;
     for page in &mut pages {
-        page.text = page.text.replace("<!-- looks -->", &looks::contents(&looks));
+        page.text = gallery::filled(&page.text, &looks)?;
         moving::fill(page)?;
         shots.extend(series::fill(page)?);
     }
@@ -163,8 +164,17 @@ fn photograph(options: &Options, shots: &[Shot], scratch: &Path, pictures: &Path
     command.arg("render").arg(&options.scene).arg(&scene).args(["--size", &format!("{width}x{height}")]);
     finish(&mut command)?;
     let photo = scratch.join("photo.png");
-    studio::resized(&Path::new(env!("CARGO_MANIFEST_DIR")).join("pictures/coffee.jpg"), &photo, width)?;
-    let studio = Studio { host: &options.host, scene: &scene, photo: &photo, scratch };
+    let photographs = Path::new(env!("CARGO_MANIFEST_DIR")).join("pictures");
+    studio::resized(&photographs.join("coffee.jpg"), &photo, width)?;
+    let gallery = photographs.join("gallery");
+    let studio = Studio {
+        host: &options.host,
+        scene: &scene,
+        photo: &photo,
+        gallery: &gallery,
+        widest: width,
+        scratch,
+    };
     studio.make(shots, pictures)?;
     println!("moving pictures");
     let small = studio::WIDEST_BESIDE.min(width);

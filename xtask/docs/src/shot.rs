@@ -20,6 +20,8 @@ pub enum Subject {
     Scene,
     /// A photograph.
     Photo,
+    /// A photograph of the gallery, by the stem of its file.
+    Gallery(&'static str),
 }
 
 impl Subject {
@@ -28,6 +30,7 @@ impl Subject {
         match self {
             Self::Scene => "scene",
             Self::Photo => "photo",
+            Self::Gallery(stem) => stem,
         }
     }
 }

@@ -3,7 +3,7 @@
 use crate::error::Result;
 use crate::looks::LookCard;
 use crate::shot::{Shot, Style, Subject};
-use crate::{maker, reference, styles};
+use crate::{gallery, maker, reference, styles};
 use isophote::registry;
 
 /// All pictures of the site.
@@ -34,6 +34,7 @@ pub fn all(looks: &[LookCard]) -> Result<Vec<Shot>> {
         }));
         shots.push(before(subject));
     }
+    shots.extend(gallery::shots());
     Ok(shots)
 }
 
@@ -41,7 +42,7 @@ pub fn all(looks: &[LookCard]) -> Result<Vec<Shot>> {
 fn before(subject: Subject) -> Shot {
     let name = match subject {
         Subject::Scene => "before".to_owned(),
-        Subject::Photo => format!("before-{}", subject.id()),
+        _ => format!("before-{}", subject.id()),
     };
     let set = vec![("mix", "0".to_owned())];
     Shot { name, subject, style: Style::Named("gaussian".into()), set }

@@ -29,6 +29,10 @@ pub struct Studio<'a> {
     pub scene: &'a Path,
     /// The photograph.
     pub photo: &'a Path,
+    /// Folder of the photographs of the gallery.
+    pub gallery: &'a Path,
+    /// Width at which they are shown at most.
+    pub widest: u32,
     /// A folder for what is in between.
     pub scratch: &'a Path,
 }
@@ -68,19 +72,24 @@ impl Studio<'_> {
                 file
             }
         };
-        let subject = match shot.subject {
-            Subject::Scene => self.scene,
-            Subject::Photo => self.photo,
+        let (subject, widest) = match shot.subject {
+            Subject::Scene => (self.scene.to_owned(), WIDEST_BESIDE),
+            Subject::Photo => (self.photo.to_owned(), WIDEST_BESIDE),
+            Subject::Gallery(stem) => {
+                let small = self.scratch.join(format!("{}-before.png", shot.name));
+                resized(&self.gallery.join(format!("{stem}.jpg")), &small, self.widest)?;
+                (small, WIDEST)
+            }
         };
         let mut command = Command::new(self.host);
-        command.arg("apply").arg(style).arg(subject).arg(&made);
+        command.arg("apply").arg(style).arg(&subject).arg(&made);
         // Lengths are those of so small a picture: marks as fine as on large ones would not be seen.
         command.args(["--lengths", "pixels", "--backend", "cpu", "--threads", "1"]);
         for (param, value) in &shot.set {
             command.arg("--set").arg(format!("{param}={value}"));
         }
         finish(&mut command)?;
-        small(&made, &out.join(format!("{}.jpg", shot.name)), WIDEST_BESIDE)
+        small(&made, &out.join(format!("{}.jpg", shot.name)), widest)
     }
 }
 

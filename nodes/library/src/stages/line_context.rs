@@ -58,6 +58,8 @@ pub(crate) struct LineContext {
     contrast: f32,
     /// Strength of the inhibition, 0 for none.
     inhibition: f32,
+    /// Lightness that counts at least, units of L: darker grounds are no lines by themselves.
+    least: f32,
     /// Pixels that are rendered for one of the full picture.
     scale: f32,
 }
@@ -79,19 +81,25 @@ impl LineContext {
         Self {
             contrast: scope.float(LOCAL_CONTRAST.id),
             inhibition: scope.float(INHIBITION.id) * (3.0 - 2.0 * texture),
+            least: 0.0,
             scale: scope.scale(),
         }
     }
 
+    /// Lines alone, without the masses that lightness below `least` draws.
+    pub(crate) fn without_masses(self, least: f32) -> Self {
+        Self { least, ..self }
+    }
+
     /// True where nothing around a line counts.
     pub(crate) fn is_off(&self) -> bool {
-        self.contrast <= 0.0 && self.inhibition <= 0.0
+        self.contrast <= 0.0 && self.inhibition <= 0.0 && self.least <= 0.0
     }
 
     /// The response (u alpha, alpha) of a difference of Gaussians alone, and of the lightness beneath it, in its context.
     pub(crate) fn weighed(&self, plan: &mut PlanBuilder, difference: ImageId, ground: &Ground) -> ImageId {
         // In the sharpening form lightness is tone.
-        let least = if ground.base < 0.5 { LEAST * self.contrast } else { 0.0 };
+        let least = if ground.base < 0.5 { LEAST * self.contrast } else { self.least };
         let Ground { lightness, field, base, edge } = *ground;
         let params = local_contrast::Params {
             base,
@@ -126,7 +134,7 @@ impl LineContext {
 }
 
 /// An image of sums averaged by a Gaussian of standard deviation `sigma`, at the coarsest level that shows it.
-fn surroundings(plan: &mut PlanBuilder, image: ImageId, sigma: f32) -> ImageId {
+pub(crate) fn surroundings(plan: &mut PlanBuilder, image: ImageId, sigma: f32) -> ImageId {
     /// Least standard deviation at a level, pixels of it.
     const LEAST_SIGMA: f32 = 2.0;
     const MOST_LEVELS: usize = 8;

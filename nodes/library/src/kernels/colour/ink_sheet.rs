@@ -44,6 +44,8 @@ pub struct Sheet {
     pub follow: f32,
     /// Degree to which solid ink, too, breaks on the grain, 0..=1.
     pub dryness: f32,
+    /// Lines are cut out of marks where the second channel of the lines says so.
+    pub cut: bool,
     /// Opaque also where the picture is not.
     pub cover: bool,
     /// Position of the picture in the canonical one, pixels.
@@ -53,7 +55,7 @@ pub struct Sheet {
 /// Drawing on the sheet.
 #[derive(Clone, Copy, Debug)]
 pub struct Drawing {
-    /// Black lines on white.
+    /// Black lines on white; in the second channel those that are cut out of marks.
     pub lines: ImageId,
     /// The picture, whose own colours may show.
     pub color: ImageId,
@@ -82,6 +84,8 @@ pub fn pass(plan: &mut PlanBuilder, drawing: &Drawing, sheet: &Sheet) -> ImageId
         cover: sheet.cover.into(),
         follow: sheet.follow,
         dryness: sheet.dryness,
+        cut: f32::from(sheet.cut),
+        padding: Default::default(),
         origin: sheet.origin,
     };
     let inputs = [drawing.lines, drawing.color, drawing.strokes, drawing.marks];
@@ -116,14 +120,15 @@ fn sheet<S: Simd>(simd: S, pass: &CpuPass<'_>, params: &Params, band: &mut Band<
             let [stroke, ..]: [f32x8<S>; 4] = block.read(simd, strokes);
             let height = mix(tooth, stroke.within(zero, one), zero + params.follow);
 
-            let [edge, ..]: [f32x8<S>; 4] = block.read(simd, lines);
+            let [edge, bare, ..]: [f32x8<S>; 4] = block.read(simd, lines);
             let line = one - edge.within(zero, one);
             let [mark, grained] = block.read(simd, marks);
             // A dry tool leaves out the valleys of the paper even where it presses hard; in light tones nothing breaks.
             let dry = (height - 0.55).at_least(zero) * params.dryness;
             let pressed = catches(line, height, zero + params.dryness * params.grain) * (one - dry);
             let grain = grained * params.grain;
-            let toned = catches(mark, height, grain) * (one - dry * grained);
+            let kept = one - (one - bare.within(zero, one)) * params.cut;
+            let toned = catches(mark, height, grain) * (one - dry * grained) * kept;
             let drawn = one - (one - pressed) * (one - toned);
             let ink = drawn * params.line[3] * alpha;
 

@@ -37,6 +37,8 @@ pub struct Tones {
     pub solid: f32,
     /// By how much middle tones are lighter than in proportion, 0..1.
     pub ease: f32,
+    /// Share of the paper that the darkest marks cover, 0.7..=1.
+    pub most: f32,
     /// Share of the tones that is rubbed in everywhere, 0..=1; the rest is hatched where it is not light.
     pub rubbed: f32,
     /// Share of the hatching that follows the form where that is significant, 0..=1.
@@ -101,6 +103,8 @@ pub fn pass(plan: &mut PlanBuilder, inputs: &Inputs, tones: &Tones) -> ImageId {
         softness: SOFTNESS,
         given_gain: if inputs.hatching.is_some() { 1.0 / tones.given_deviation.max(1e-3) } else { 0.0 },
         edge: edge(tones.scale),
+        open: 1.0 - tones.most,
+        padding: Default::default(),
     };
     let images = [inputs.tones, inputs.tensor, inputs.strokes, first, second];
     plan.pass(&KERNEL, &images, &params, Class::Field, Support::Pixels(0))
@@ -123,7 +127,8 @@ fn run(pass: &CpuPass<'_>, band: &mut Band<'_>) {
         let one = f32x8::splat(simd, 1.0);
         let lightness = covered.select(sum / covered.select(alpha, one), one * 100.0);
         let t = ((one * params.light - lightness) * params.slope).within(0.0, 1.0);
-        let d = t * (one - (one - t) * params.ease);
+        let eased = t * (one - (one - t) * params.ease);
+        let d = eased - eased * eased * eased * params.open;
         let grained = rise((one * params.smooth_from - lightness) * params.inverse_fade);
         let marked = grained * (1.0 - params.rubbed);
         let mut density = d;
@@ -285,6 +290,8 @@ mod tests {
         softness: SOFTNESS,
         given_gain: 0.0,
         edge: SOFTNESS,
+        open: 0.0,
+        padding: [0; 1],
     };
 
     /// The mean of hatches of density `d` over a large field.

@@ -8,11 +8,13 @@ use crate::kernels::colour::composite_lines::{self, Params as Composite};
 use crate::kernels::colour::{lab_to_rgb, lightness, rgb_to_lab};
 use crate::kernels::smoothing::line_integral_convolution::{self, Options as Lic};
 use crate::stages::abstraction::{self, Abstraction};
+use crate::stages::line_on_dark::{LINE_ON_DARK, OnDark};
 use crate::stages::steady::{Agreement, COLOUR_AGREEMENT, Steadied, steadied};
+use crate::stages::tensor_options::Guides;
 use crate::stages::{
     ADVANCED, LOOK, difference_of_gaussians as dog, flow_dog, flow_map, line_context,
-    line_integral_convolution as lic, lines, quantization as levels, quantize_luminance as quantization,
-    tone, warp_sharpen,
+    line_integral_convolution as lic, line_on_dark, lines, quantization as levels,
+    quantize_luminance as quantization, tone, warp_sharpen,
 };
 use isophote_engine::ImageId;
 
@@ -80,6 +82,7 @@ pub static NODE: NodeSpec = NodeSpec {
         line_context::LOCAL_CONTRAST.with_default(Value::Float(1.0)).group(ADVANCED),
         line_context::INHIBITION.with_default(Value::Float(1.0)).group(ADVANCED),
         line_context::COLOUR_EDGES.with_default(Value::Float(0.5)).group(ADVANCED),
+        LINE_ON_DARK.group(ADVANCED),
     ],
     build,
 };
@@ -153,22 +156,37 @@ fn build(scope: &mut Scope<'_>) -> ImageId {
     };
 
     flat = tone::curve(scope, flat);
+    // Tones before they are flattened: a step between them is no reason to turn.
+    let toned = flat;
     let bins = scope.int("posterize");
     if bins > 0 {
         flat = levels::flattened(scope, flat, bins, levels::steepness(scope, bins));
     }
-    let (saturation, line) = (scope.float("saturation"), scope.color("line_color"));
+    let saturation = scope.float("saturation");
     let mut rgb = lab_to_rgb::pass(scope.plan, flat, saturation);
     let warp = scope.float("warp");
     if warp > 0.0 {
         let sigma = warp_sharpen::SIGMA_W.default_float() * scope.scale();
         rgb = warp_sharpen::warped(scope.plan, rgb, sigma, warp);
     }
-    let drawn = composite_lines::pass(scope.plan, rgb, edges, &Composite { line, paper: [0.0; 4] });
+    let drawn = lined(scope, [rgb, edges, toned], flow.guide_weight);
     let sigma_a = scope.float("sigma_a");
     if sigma_a > 0.0 {
         let smooth = Lic { sigma: sigma_a, ..lic::unadapted() };
         return line_integral_convolution::pass_unadapted(scope.plan, drawn, tensor, &smooth);
     }
     drawn
+}
+
+/// A picture with its lines, of which those turn light that lie on dark tones; `toned` is in Lab.
+fn lined(scope: &mut Scope<'_>, [rgb, edges, toned]: [ImageId; 3], guide_weight: f32) -> ImageId {
+    let line = scope.color("line_color");
+    match scope.option(LINE_ON_DARK.id) {
+        OnDark::Off => composite_lines::pass(scope.plan, rgb, edges, &Composite { line, paper: [0.0; 4] }),
+        OnDark::Light => {
+            let guided = flow_dog::guides(scope, guide_weight) != Guides::default();
+            let lightness = lightness::pass_lab(scope.plan, toned);
+            line_on_dark::drawn(scope, [rgb, edges, lightness], line, guided)
+        }
+    }
 }

@@ -8,6 +8,7 @@ use crate::declare::spec::{HOLD, NodeSpec, Param, RENEWAL, STEADINESS, Scope, WI
 use crate::declare::value::Value;
 use crate::kernels::colour::composite_lines::{self, Params as Composite};
 use crate::kernels::colour::ink_sheet::{self, Drawing, Sheet};
+use crate::kernels::colour::light_on_dark::{self, Params as LightOnDark};
 use crate::kernels::colour::tone_marks::{self, HATCHING, Inputs, Tones};
 use crate::kernels::colour::{lab_to_rgb, lightness, rgb_to_lab};
 use crate::kernels::lines::flow_dog_two_dimensional::Stepping;
@@ -21,12 +22,13 @@ use crate::kernels::structure::tensor_display::least_significant;
 use crate::stages::abstraction::{self, Abstraction};
 use crate::stages::flow_dog::{self, FlowDog, Kernel, Seen};
 use crate::stages::line_context::LineContext;
+use crate::stages::line_on_dark::{MASSES_ON_DARK, MassesOnDark};
 use crate::stages::steady::{Agreement, COLOUR_AGREEMENT, Steadied, steadied};
 use crate::stages::structure_tensor::of_color_and_guides;
 use crate::stages::tensor_options::TensorOptions;
 use crate::stages::{
     ADVANCED, LOOK, difference_of_gaussians as dog, flow_map, line_context, line_integral_convolution as lic,
-    lines, marks, tone,
+    line_on_dark, lines, marks, tone,
 };
 use isophote_engine::{Class, ImageId, math};
 
@@ -131,6 +133,7 @@ pub static NODE: NodeSpec = NodeSpec {
         line_context::LOCAL_CONTRAST.with_default(Value::Float(0.6)).group(ADVANCED),
         line_context::INHIBITION.with_default(Value::Float(1.0)).group(ADVANCED),
         line_context::COLOUR_EDGES.with_default(Value::Float(0.5)).group(ADVANCED),
+        MASSES_ON_DARK.group(ADVANCED),
     ],
     build,
 };
@@ -142,6 +145,14 @@ const fn factor(id: &'static str, label: &'static str, hint: &'static str) -> Pa
 const fn shift(id: &'static str, label: &'static str, most: f32, hint: &'static str) -> Param {
     Param::float(id, label, 0.0, [-most, most]).group(ADVANCED).hint(hint)
 }
+
+/// Units of L above the ink's level that dark grounds count as where they draw no masses: as far from it as keeps noise out.
+const BARE: f32 = 20.0;
+/// Density of shading from which on lines are cut out of it, and that at which all are.
+const MASS: f32 = 0.8;
+const SOLID: f32 = 0.95;
+/// Density of masses that are open.
+const OPEN: f32 = 0.72;
 
 /// Factor by which guides count more than where lightness is inhibited: here it counts in full, and light grounds are
 /// far from ink.
@@ -174,16 +185,35 @@ fn gentle(scope: &mut Scope<'_>, tensor: ImageId, sigma: f32) -> ImageId {
     if sigma > 0.0 { gaussian_blur::pass(scope.plan, tensor, sigma, Class::Field) } else { tensor }
 }
 
-/// Black lines on white, smoothed along the edges.
+/// Black lines on white, smoothed along the edges; in the second channel those that are cut out of dark masses, if there is
+/// a lightness by which these are, and the range of it from bare paper to solid ones.
 fn lines_on_white(
     scope: &mut Scope<'_>,
     color: ImageId,
     edges: ImageId,
     tensor: ImageId,
     sigma: f32,
+    masses: Option<(ImageId, [f32; 2])>,
 ) -> ImageId {
-    let black_on_white = Composite { line: [0.0, 0.0, 0.0, 1.0], paper: [1.0; 4] };
-    let drawn = composite_lines::pass(scope.plan, color, edges, &black_on_white);
+    let (line, paper) = ([0.0, 0.0, 0.0, 1.0], [1.0; 4]);
+    let drawn = match masses {
+        None => composite_lines::pass(scope.plan, color, edges, &Composite { line, paper }),
+        Some((lightness, [light, solid])) => {
+            // Dark ones in the first channel, those that are cut out of masses in the second.
+            let (line, cut) = ([0.0, 1.0, 1.0, 1.0], [1.0, 0.0, 1.0, 1.0]);
+            let range = light - solid;
+            let params = LightOnDark {
+                line,
+                light: cut,
+                paper,
+                dark: light - MASS * range,
+                inverse: 1.0 / (SOLID - MASS) / range,
+                padding: Default::default(),
+            };
+            let ground = line_on_dark::ground(scope, lightness);
+            light_on_dark::pass(scope.plan, [color, edges, ground], &params)
+        }
+    };
     let options = Lic { sigma, ..lic::options() };
     line_integral_convolution::pass(scope.plan, drawn, tensor, &options)
 }
@@ -204,10 +234,19 @@ fn flow(scope: &Scope<'_>, drawing: &Preset, guide_weight: f32) -> FlowDog {
         texture: scope.float(lines::TEXTURE_LINES.id),
         guided: lines::guided(scope, sigma_e),
         fades: true,
-        context: LineContext::of(scope, scope.float(lines::TEXTURE_LINES.id)),
+        context: context(scope, drawing),
         colour: scope.float(line_context::COLOUR_EDGES.id),
     }
     .on_pixels(scope)
+}
+
+/// What is around lines. Where they are to be seen in dark masses, shading alone draws these.
+fn context(scope: &Scope<'_>, drawing: &Preset) -> LineContext {
+    let context = LineContext::of(scope, scope.float(lines::TEXTURE_LINES.id));
+    match scope.option(MASSES_ON_DARK.id) {
+        MassesOnDark::Off => context,
+        MassesOnDark::Light | MassesOnDark::Open => context.without_masses(drawing.epsilon + BARE),
+    }
 }
 
 /// The paper of a drawing, and how its lines lie on it.
@@ -221,6 +260,7 @@ fn sheet(scope: &Scope<'_>, drawing: &Preset) -> Sheet {
         grain: drawing.grain,
         grain_size: drawing.grain_size,
         dryness: drawing.dryness,
+        cut: scope.option::<MassesOnDark>(MASSES_ON_DARK.id) == MassesOnDark::Light,
         scale: scope.scale(),
         origin: scope.origin(),
         colour: drawing.colour,
@@ -260,13 +300,17 @@ fn build(scope: &mut Scope<'_>) -> ImageId {
     // Where no own colour shows, saturation has no part in the plan, so that panels can tell.
     let saturation = if drawing.colour > 0.0 { scope.float("saturation") } else { 1.0 };
     let tinted = lab_to_rgb::pass(scope.plan, smooth, saturation);
-    let lines = lines_on_white(scope, tinted, edges, tensor, drawing.sigma_a * scale);
+    let toned = lightness::pass_lab(scope.plan, smooth);
+    let on_dark = scope.option::<MassesOnDark>(MASSES_ON_DARK.id);
+    let masses = (on_dark == MassesOnDark::Light).then_some((toned, drawing.tones));
+    let lines = lines_on_white(scope, tinted, edges, tensor, drawing.sigma_a * scale, masses);
     let form = gentle(scope, tensor, own.wide * scale);
     let (strokes, deviation) = strokes(scope, form, own.stroke);
     let tones = Tones {
         light: drawing.tones[0],
         solid: drawing.tones[1],
         ease: drawing.ease,
+        most: if on_dark == MassesOnDark::Open { OPEN } else { 1.0 },
         rubbed: drawing.rubbed,
         form: drawing.form,
         spacing: drawing.spacing,
@@ -281,7 +325,6 @@ fn build(scope: &mut Scope<'_>) -> ImageId {
         true => marks::hatching(scope, HATCHING, drawing.spacing, scope.renewed(301)),
         false => None,
     };
-    let toned = lightness::pass_lab(scope.plan, smooth);
     let marks =
         tone_marks::pass(scope.plan, &Inputs { tones: toned, tensor: form, strokes, hatching }, &tones);
     let sheet = sheet(scope, &drawing);
