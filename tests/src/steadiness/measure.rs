@@ -21,7 +21,7 @@ pub struct Steadiness {
     pub energy_of_still: f64,
     /// Part of the pixels, the first frame's left out, that count.
     pub counted: f64,
-    /// Part of the pixels, the first frame's left out, that count and jump: that differ by more than [`JUMP`].
+    /// Part of the pixels, the first frame's left out, that count and jump: that differ by more than 0.25.
     pub jumps: f64,
 }
 
