@@ -84,8 +84,8 @@ def test_results_go_where_they_are_wanted(small: np.ndarray, layout: str) -> Non
 
 def test_a_picture_may_be_its_own_result(small: np.ndarray) -> None:
     image = small.copy()
-    expected = isophote.apply("oil_paint", image)
-    assert isophote.apply("oil_paint", image, out=image) is image
+    expected = isophote.apply("cartoon", image)
+    assert isophote.apply("cartoon", image, out=image) is image
     assert np.array_equal(image, expected)
 
 
@@ -132,9 +132,9 @@ def test_guides_reach_the_nodes_that_read_them(small: np.ndarray) -> None:
 def test_a_mask_says_where(small: np.ndarray) -> None:
     mask = np.zeros(small.shape[:2], bool)
     mask[:, 40:] = True
-    result = isophote.apply("oil_paint", small, mask=mask, mix=1.0)
+    result = isophote.apply("cartoon", small, mask=mask, mix=1.0)
     assert np.array_equal(result[:, :40], small[:, :40])
-    assert np.array_equal(result[:, 40:], isophote.apply("oil_paint", small)[:, 40:])
+    assert np.array_equal(result[:, 40:], isophote.apply("cartoon", small)[:, 40:])
 
 
 def test_spaces_and_alpha_are_the_requests(small: np.ndarray) -> None:
@@ -142,9 +142,9 @@ def test_spaces_and_alpha_are_the_requests(small: np.ndarray) -> None:
     for space, number in [("srgb", 0), ("linear", 1), ("acescg", 2)]:
         for alpha, relation in [("straight", 1), ("premultiplied", 0), ("emissive", 2)]:
             fields = {"space": number, "alpha": relation, "frame": 7, "origin_x": 3.5, "scale": 0.5}
-            expected = Face().apply("oil_paint", {"color": image}, fields, hold="2")
+            expected = Face().apply("ink", {"color": image}, fields, hold="2")
             result = isophote.apply(
-                "oil_paint",
+                "ink",
                 image,
                 color_space=space,
                 alpha_mode=alpha,
@@ -175,13 +175,13 @@ def test_other_spaces_are_those_of_the_host(small: np.ndarray, host: Path, tmp_p
     image = with_alpha(small)
     given, made = tmp_path / "given.png", tmp_path / "made.png"
     Image.fromarray(image).save(given)
-    command = [host, "apply", "oil_paint", given, made, "--space", space, "--backend", "cpu"]
+    command = [host, "apply", "cartoon", given, made, "--space", space, "--backend", "cpu"]
     subprocess.run(command, check=True, env={**os.environ, "NODEVICE_SELECT": "1"}, stdout=subprocess.DEVNULL)
     # Light, PQ and HLG have 16 bits there, of which Pillow shows the upper ones.
     expected = np.asarray(Image.open(made)).astype(int)
-    result = isophote.apply("oil_paint", image, color_space=space)
+    result = isophote.apply("cartoon", image, color_space=space)
     assert result.dtype == np.uint8 and np.abs(result - expected).max() <= 1
-    assert not np.array_equal(result, isophote.apply("oil_paint", image))
+    assert not np.array_equal(result, isophote.apply("cartoon", image))
 
 
 @pytest.mark.parametrize("space", SPACES)
@@ -191,13 +191,13 @@ def test_other_spaces_come_back_as_they_were(small: np.ndarray, space: str) -> N
     for dtype in FORMATS:
         image = converted(seen, dtype)
         for picture in (image, image[..., :3], image[..., 0]):
-            result = isophote.apply("oil_paint", picture, mix=0.0, color_space=space)
+            result = isophote.apply("cartoon", picture, mix=0.0, color_space=space)
             near = 1e-3 if dtype in (np.float16, np.float32) else 255 if space.startswith("rec2100") else 4
             assert result.shape == picture.shape and result.dtype == dtype
             assert np.abs(result.astype(float) - picture).max() <= (0 if dtype is np.uint8 else near), dtype
     colors = converted(seen, np.float32)
     colors[..., :3] *= colors[..., 3:]
-    back = isophote.apply("oil_paint", colors, mix=0.0, color_space=space, alpha_mode="premultiplied")
+    back = isophote.apply("cartoon", colors, mix=0.0, color_space=space, alpha_mode="premultiplied")
     assert np.abs(back - colors).max() < 1e-3
 
 

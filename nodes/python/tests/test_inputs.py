@@ -127,9 +127,9 @@ def test_tensors_are_read_where_they_lie(small: np.ndarray, dtype: type) -> None
 
 
 def test_tensors_take_results_and_are_guides(small: np.ndarray) -> None:
-    expected = isophote.apply("oil_paint", small)
+    expected = isophote.apply("cartoon", small)
     out = Tensor(np.zeros_like(small))
-    assert isophote.apply("oil_paint", Tensor(small), out=out) is out and equal(out.array, expected)
+    assert isophote.apply("cartoon", Tensor(small), out=out) is out and equal(out.array, expected)
     depth = np.linspace(1, 9, small.shape[1], dtype=np.float32) * np.ones((small.shape[0], 1), np.float32)
     given = isophote.apply("cartoon", Tensor(small), depth=Tensor(depth), lengths="pixels")
     assert equal(given, isophote.apply("cartoon", small, depth=depth, lengths="pixels"))

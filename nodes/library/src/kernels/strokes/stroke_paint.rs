@@ -1,4 +1,4 @@
-//! A layer of brush strokes ([`stroke_seeds`](crate::kernels::strokes::stroke_seeds)) on what lies below: each pixel keeps the topmost four that
+//! A layer of brush strokes (`stroke_seeds`) on what lies below: each pixel keeps the topmost four that
 //! cover it. Bristles leave marks of different height, ends are ragged, and a brush may run dry.
 //!
 //! The GPU gathers strokes pixel by pixel from the cells around. Here a small tile gathers them once, sorts them, and its

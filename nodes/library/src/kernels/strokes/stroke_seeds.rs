@@ -1,4 +1,4 @@
-//! What is painted from the point of a cell ([`stroke_points`](crate::kernels::strokes::stroke_points)): a stroke along the
+//! What is painted from the point of a cell (`stroke_points`): a stroke along the
 //! tensor field, as long and as wide as the picture keeps its colour, of a colour of its own, and only where the picture has
 //! detail of its size (after Hertzmann, Painterly rendering with curved brush strokes of multiple sizes, 1998). Points near
 //! higher ones are no seeds, so that strokes keep their distance; they shrink as a higher one comes nearer.
