@@ -318,6 +318,9 @@ impl ApplicationHandler<Event> for App {
     }
 
     fn window_event(&mut self, event_loop: &ActiveEventLoop, _: WindowId, event: WindowEvent) {
+        if keys::is_held_escape(&event) {
+            return;
+        }
         if !self.is_taken(&event) {
             self.pass_on(&event);
         }

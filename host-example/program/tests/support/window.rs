@@ -170,6 +170,16 @@ impl<'d> Window<'d> {
         });
     }
 
+    /// Presses a key and holds it for so many seconds.
+    #[allow(dead_code, reason = "not every program of tests holds keys")]
+    pub fn hold(&mut self, key: &str, seconds: &str) {
+        let id = self.id.clone();
+        self.wait_for("a key", |window| {
+            let held = ["windowfocus", "--sync", &id, "keydown", key, "sleep", seconds, "keyup", key];
+            window.display.xdotool(&held).is_some()
+        });
+    }
+
     /// Does something with the pointer at a place of the window.
     pub fn point(&mut self, [x, y]: [i32; 2], then: &[&str]) {
         let (id, [x, y]) = (self.id.clone(), [x, y].map(|v| v.to_string()));
