@@ -318,7 +318,7 @@ impl ApplicationHandler<Event> for App {
     }
 
     fn window_event(&mut self, event_loop: &ActiveEventLoop, _: WindowId, event: WindowEvent) {
-        if keys::is_held_escape(&event) {
+        if Self::is_held_escape(&event) {
             return;
         }
         if !self.is_taken(&event) {

@@ -171,7 +171,6 @@ impl<'d> Window<'d> {
     }
 
     /// Presses a key and holds it for so many seconds.
-    #[allow(dead_code, reason = "not every program of tests holds keys")]
     pub fn hold(&mut self, key: &str, seconds: &str) {
         let id = self.id.clone();
         self.wait_for("a key", |window| {

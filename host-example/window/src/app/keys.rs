@@ -12,14 +12,14 @@ use crate::state::outcome::Dialog;
 use crate::state::work::Request;
 use crate::widgets;
 
-/// True for an Escape that comes again while the key is held: it closes one thing, and the control that has the focus then
-/// keeps it.
-pub(super) fn is_held_escape(event: &WindowEvent) -> bool {
-    let WindowEvent::KeyboardInput { event, .. } = event else { return false };
-    event.repeat && event.logical_key == Key::Named(NamedKey::Escape)
-}
-
 impl App {
+    /// True for an Escape that comes again while the key is held: it closes one thing, and the control that has the focus then
+    /// keeps it.
+    pub(super) fn is_held_escape(event: &WindowEvent) -> bool {
+        let WindowEvent::KeyboardInput { event, .. } = event else { return false };
+        event.repeat && event.logical_key == Key::Named(NamedKey::Escape)
+    }
+
     /// Does what a key stands for.
     pub(super) fn key(&mut self, event: &KeyEvent) {
         let key = event.logical_key.as_ref();
