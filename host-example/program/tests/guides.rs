@@ -7,6 +7,7 @@ use std::path::Path;
 use std::process::Command;
 
 use image::{Rgba, RgbaImage};
+use isophote_finishing::stylize::preset::Lengths;
 use isophote_finishing::stylize::style::Style;
 use isophote_loader::{Control, Input, Library};
 use isophote_pictures::exr::Guide;
@@ -18,7 +19,13 @@ const SIZE: (u32, u32) = (96, 64);
 
 fn apply(folder: &Path, arguments: &[&str]) -> Command {
     let mut command = isophote();
-    command.current_dir(folder).arg("apply").args(arguments).args(["--backend", "cpu"]);
+    // Lengths of a picture with 1,080 rows would be less than a pixel here.
+    command.current_dir(folder).arg("apply").args(arguments).args([
+        "--backend",
+        "cpu",
+        "--lengths",
+        "pixels",
+    ]);
     command
 }
 
@@ -53,6 +60,7 @@ fn a_flow_map_bends_what_a_style_draws() {
     // As the library does it.
     let library = Library::from_file(support::library()).expect("the library");
     let mut style = Style::load(&library, "oil_paint", &[]).expect("the style");
+    style.lengths = Lengths::Pixels;
     let request = style.request(&library, SIZE).expect("the size is possible");
     let pixels =
         |channels, bytes| Pixels::new(SIZE.0, SIZE.1, channels, Samples::U8(bytes)).expect("as many");
