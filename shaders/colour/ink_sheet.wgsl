@@ -31,7 +31,7 @@ struct Params {
     ground: f32,
     /// How light own colours are in what is drawn, 0..=1.
     tint: f32,
-    /// How far lines are cut out of marks, 0..=1.
+    /// Share of lines that is cut out of marks, 0..=1.
     cut: f32,
 }
 

@@ -21,9 +21,9 @@ struct Params {
     across: f32,
     /// 1 / length of the marks of bristles, 1 / pixels.
     along: f32,
-    /// How much of a stroke's end is ragged, 0..1.
+    /// Share of a stroke's end that is ragged, 0..1.
     ragged: f32,
-    /// How much of a stroke the paint does not cover, 0..=1.
+    /// Share of a stroke that the paint does not cover, 0..=1.
     dryness: f32,
     /// Height of the middle of a stroke.
     body: f32,

@@ -19,7 +19,7 @@ struct Params {
     decay: f32,
     /// Another number gives other points.
     seed: u32,
-    /// What is added to it for points of a carried layer's life alone.
+    /// Number that is added to it for points of a carried layer's life alone.
     life: u32,
     /// 0 for points of the screen, 1 and 2 of the first and the second layer that are carried, 3 of rest positions.
     way: u32,

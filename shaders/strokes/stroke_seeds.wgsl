@@ -16,7 +16,7 @@ struct Params {
     half_width: f32,
     /// Half their length, pixels.
     half_length: f32,
-    /// How far strokes follow the bend of the field, 0..=1.
+    /// Share of the field's bend that strokes follow, 0..=1.
     curve: f32,
     /// Difference of colour from which on a stroke ends, Lab.
     tolerance: f32,

@@ -9,7 +9,7 @@ use isophote_tests::pictures::from_fn;
 use isophote_tests::scenery::forms;
 use isophote_tests::{device, png, run};
 
-/// What hides nothing of the lines.
+/// Controls that hide nothing of the lines.
 const SMOOTH_TONES: (&str, &str) = ("posterize", "0");
 const NO_GRAIN: (&str, &str) = ("grain", "0");
 

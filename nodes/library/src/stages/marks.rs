@@ -23,7 +23,7 @@ pub(crate) fn grains(scope: &mut Scope<'_>, sigma: f32, seed: u32) -> ImageId {
     on_things(scope, screen, &Marks::of_smoothed_noise(sigma, scale, seed))
 }
 
-/// What strokes and other marks with places of their own belong to; where motion carries them, two layers that fade into
+/// Anchor of strokes and other marks with places of their own; where motion carries them, two layers that fade into
 /// one another, and the share of the second one.
 pub(crate) fn anchors(scope: &mut Scope<'_>) -> (Anchor, Option<(Anchor, f32)>) {
     if let Some(points) = scope.input(REST_POSITION.id) {

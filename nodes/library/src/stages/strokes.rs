@@ -20,17 +20,17 @@ pub(crate) struct Brush {
     pub half_width: f32,
     /// Half their length.
     pub half_length: f32,
-    /// How far strokes follow the bend of the field, 0..=1.
+    /// Share of the field's bend that strokes follow, 0..=1.
     pub curve: f32,
-    /// How much of the picture's detail is painted, 0..=1.
+    /// Share of the picture's detail that is painted, 0..=1.
     pub detail: f32,
     /// Distance along a stroke at which colours count half.
     pub smoothing: f32,
-    /// How much the colours of strokes differ, 0..=1.
+    /// Difference between the colours of strokes, 0..=1.
     pub variation: f32,
-    /// How much of a stroke the paint does not cover, 0..=1.
+    /// Share of a stroke that the paint does not cover, 0..=1.
     pub dryness: f32,
-    /// How ragged the ends of strokes are, 1 at the middle of a control.
+    /// Raggedness of the ends of strokes, 1 at the middle of a control.
     pub raggedness: f32,
     /// Width and length of the marks of bristles.
     pub bristles: [f32; 2],
@@ -59,9 +59,9 @@ const SMOOTH: f32 = 0.6;
 /// Difference of colour, Lab, at which strokes end, and from which on finer ones are wanted at the middle of `detail`.
 const TOLERANCE: f32 = 14.0;
 const THRESHOLD: f32 = 6.0;
-/// How much lightness (L) and hue (radians) differ from stroke to stroke at most.
+/// Largest differences of lightness (L) and hue (radians) from stroke to stroke.
 const MOST_VARIATION: [f32; 2] = [10.0, 0.35];
-/// How much of a stroke's end is ragged.
+/// Share of a stroke's end that is ragged.
 const RAGGED: f32 = 0.45;
 /// Heights of the middle of strokes and of the marks of bristles.
 const HEIGHTS: [f32; 2] = [0.25, 0.65];

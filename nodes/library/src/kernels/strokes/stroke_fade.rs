@@ -40,7 +40,7 @@ pub fn pass(
 const MIDDLE: f32 = 0.55;
 /// Units of Lab that a unit of height counts.
 const HEIGHT: f32 = 20.0;
-/// How much stronger the mean of both may become, so that half of each shows as much as one alone.
+/// Largest gain of the mean of both, so that half of each shows as much as one alone.
 const MOST: f32 = 1.6;
 
 #[inline(always)]

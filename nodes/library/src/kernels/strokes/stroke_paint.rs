@@ -38,9 +38,9 @@ pub struct Paint {
     pub half_length: f32,
     /// Width and length of the marks of bristles.
     pub bristles: [f32; 2],
-    /// How much of a stroke's end is ragged, 0..1.
+    /// Share of a stroke's end that is ragged, 0..1.
     pub ragged: f32,
-    /// How much of a stroke the paint does not cover, 0..=1.
+    /// Share of a stroke that the paint does not cover, 0..=1.
     pub dryness: f32,
     /// Height of the middle of a stroke, and of its bristles' marks.
     pub heights: [f32; 2],
@@ -48,7 +48,7 @@ pub struct Paint {
     pub softness: f32,
 }
 
-/// How much longer than asked for strokes are at most.
+/// Largest length of strokes over the one that is asked for.
 const LONGER: f32 = 1.15;
 /// Coverage from which on a stroke counts, and what is left of a pixel that counts as covered.
 const LEAST: f32 = 0.02;
@@ -248,7 +248,7 @@ fn painted<S: Simd>(
     [[sum[0] + rest * l, sum[1] + rest * a, sum[2] + rest * b, alpha], [height, height, height, one]]
 }
 
-/// How much a stroke covers of pixels that lie `d` from its seed, and how high its paint is there; nothing where it lies
+/// Share that a stroke covers of pixels that lie `d` from its seed, and height of its paint there; nothing where it lies
 /// beside all of them.
 #[inline(always)]
 fn mark<S: Simd>(

@@ -43,7 +43,7 @@ pub enum Anchor {
     Rest {
         /// Points of the objects.
         points: ImageId,
-        /// What a pixel covers of them ([`rest_scale`](crate::kernels::structure::rest_scale)).
+        /// Extent of a pixel in them ([`rest_scale`](crate::kernels::structure::rest_scale)).
         scales: ImageId,
     },
 }

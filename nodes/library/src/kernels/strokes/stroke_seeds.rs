@@ -1,7 +1,7 @@
-//! What is painted from the point of a cell (`stroke_points`): a stroke along the
-//! tensor field, as long and as wide as the picture keeps its colour, of a colour of its own, and only where the picture has
-//! detail of its size (after Hertzmann, Painterly rendering with curved brush strokes of multiple sizes, 1998). Points near
-//! higher ones are no seeds, so that strokes keep their distance; they shrink as a higher one comes nearer.
+//! Strokes, one from the point of a cell (`stroke_points`): each goes along the tensor field, as long and as wide as the picture
+//! keeps its colour, in a colour of its own, and only where the picture has detail of its size (after Hertzmann, Painterly
+//! rendering with curved brush strokes of multiple sizes, 1998). Points near higher ones are no seeds, so that strokes keep their
+//! distance; they shrink as a higher one comes nearer.
 //!
 //! Cost per cell: 25 distances; where there is a stroke, about 45 loads and 500 operations.
 
@@ -36,7 +36,7 @@ pub struct Strokes {
     pub half_length: f32,
     /// Distance between seeds, at least.
     pub apart: f32,
-    /// How far strokes follow the bend of the field, 0..=1.
+    /// Share of the field's bend that strokes follow, 0..=1.
     pub curve: f32,
     /// Difference of colour from which on a stroke ends, Lab.
     pub tolerance: f32,
@@ -200,7 +200,7 @@ impl Surroundings<'_> {
         if id.is_finite() { id } else { 0.0 }
     }
 
-    /// How far the picture is from the coarse one.
+    /// Difference of the picture from the coarse one.
     #[inline(always)]
     fn missing(&self, at: [i32; 2]) -> f32 {
         difference(self.picture(at), self.pass.inputs[3].pixel4(at[0], at[1]))

@@ -240,7 +240,7 @@ fn flow(scope: &Scope<'_>, drawing: &Preset, guide_weight: f32) -> FlowDog {
     .on_pixels(scope)
 }
 
-/// What is around lines. Where they are to be seen in dark masses, shading alone draws these.
+/// Surroundings of lines. Where lines are to be seen in dark masses, shading alone draws these.
 fn context(scope: &Scope<'_>, drawing: &Preset) -> LineContext {
     let context = LineContext::of(scope, scope.float(lines::TEXTURE_LINES.id));
     match scope.option(MASSES_ON_DARK.id) {

@@ -117,12 +117,12 @@ const STROKE_WIDTH: Param = Param::length("stroke_width", "Stroke width", 4.0, [
     .hint("How wide the finest brush strokes are; coarse ones are four times as wide.")
     .doc("Width of strokes of the finest of three layers; scales `sigma_n` and `rho` by (width / 4)^1/2.");
 
-/// How much more detail is painted where `steadiness` is 1: fine strokes follow what moves, coarse ones jump with it.
+/// Detail that is painted beside the control's where `steadiness` is 1: fine strokes follow what moves, coarse ones jump with it.
 const FINER: f32 = 0.4;
 /// Units of L, on white, of the look controls at 1.
 const MOST_BRISTLE: f32 = 20.0;
 const MOST_SHINE: f32 = 60.0;
-/// How much larger strokes are than they look: their sides and ends are ragged.
+/// Size of strokes over the one that they seem to have: their sides and ends are ragged.
 const FULL: f32 = 1.25;
 /// Cells of the noise of bristles against what looks one bristle wide.
 const BRISTLE: f32 = 1.25;
