@@ -1,7 +1,8 @@
 // Lays ink, graphite, charcoal or chalk on paper (section 4.3, 4.4): lines, and the marks of tones, both of which catch
 // on the paper's grain. Cells of grain are those of the full-size picture.
-// Cost: four loads, 12 hashes and about 100 multiply-adds.
+// Cost: five loads, 12 hashes and about 100 multiply-adds.
 #import gpu/grid
+#import shared/mark_tones
 #import shared/value_noise
 
 struct Params {
@@ -33,14 +34,20 @@ struct Params {
     tint: f32,
     /// Share of lines that is cut out of marks, 0..=1.
     cut: f32,
+    /// L from which on tones are smooth.
+    smooth_from: f32,
+    /// 1 / the units of L over which grain shows.
+    inverse_fade: f32,
 }
 
 #params
 // Black lines on white; in the second channel those that are cut out of marks.
 #input lines
 #input source, strokes
-// The share of the paper that marks cover, and how far grain shows in them.
+// The share of the paper that marks cover.
 #input marks
+// Those of the picture, (L alpha, alpha).
+#input tones
 #output target_image rgba32float
 
 // Noise whose values fill 0..1.
@@ -54,7 +61,7 @@ fn catches(d: f32, h: f32, depth: f32) -> f32 {
     return clamp(d + depth * 4.0 * d * (1.0 - d) * (0.5 - h), 0.0, 1.0);
 }
 
-fn of_pixel(id: vec3u, lines: vec4f, v: vec4f, strokes: vec4f, marks: vec4f) -> vec4f {
+fn of_pixel(id: vec3u, lines: vec4f, v: vec4f, strokes: vec4f, marks: vec4f, tones: vec4f) -> vec4f {
     let q = (centre(id) + params.origin) * params.inverse_scale;
     let g = q * params.grain_frequency;
     let tooth = even(0.45 * value_noise(g, 11u) + 0.25 * value_noise(g * 2.13, 1013u)
@@ -64,17 +71,17 @@ fn of_pixel(id: vec3u, lines: vec4f, v: vec4f, strokes: vec4f, marks: vec4f) -> 
     let height = mix(tooth, stroke, params.follow);
 
     let line = 1.0 - clamp(lines.x, 0.0, 1.0);
-    let mark = marks.xy;
+    let grain = rise((params.smooth_from - tone_lightness(tones.xy)) * params.inverse_fade);
     // A dry tool leaves out the valleys of the paper even where it presses hard; in light tones nothing breaks.
     let dry = params.dryness * max(height - 0.55, 0.0);
     let pressed = catches(line, height, params.dryness * params.grain) * (1.0 - dry);
     let kept = 1.0 - (1.0 - clamp(lines.y, 0.0, 1.0)) * params.cut;
-    let toned = catches(mark.x, height, params.grain * mark.y) * (1.0 - dry * mark.y) * kept;
+    let toned = catches(marks.x, height, params.grain * grain) * (1.0 - dry * grain) * kept;
     let ink = (1.0 - (1.0 - pressed) * (1.0 - toned)) * params.line.a * alpha;
 
     // Chalk: the picture's own colours, a little lighter, where the paper catches them.
     let own = clamp(v.rgb, vec3f(0.0), vec3f(1.0));
-    let chalk = catches(params.ground, height, params.grain * mark.y) * params.colour * alpha;
+    let chalk = catches(params.ground, height, params.grain * grain) * params.colour * alpha;
     let paper = params.paper.rgb * (1.0 + params.texture_amount * (tooth - 0.5));
     let laid = mix(paper, own * 0.94 + 0.06, chalk);
     let colour = mix(params.line.rgb, own * params.tint, params.colour);

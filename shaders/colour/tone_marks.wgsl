@@ -3,6 +3,7 @@
 // Cost: five loads, 8 hashes, an eigenvector and about 100 multiply-adds.
 #import gpu/grid
 #import shared/tensor
+#import shared/mark_tones
 #import shared/value_noise
 
 struct Params {
@@ -48,15 +49,9 @@ struct Params {
 // (L alpha, alpha).
 #input tones
 #input tensor, strokes, first_hatching, second_hatching
-#output target_image rg32float
+#output target_image r32float
 
 const HALF: vec2f = vec2f(0.5);
-
-// A ramp from 0 to 1.
-fn rise(t: f32) -> f32 {
-    let c = clamp(t, 0.0, 1.0);
-    return c * c * (3.0 - 2.0 * c);
-}
 
 // How much of a pixel a band covers, `r` from whose middle it lies and whose half width is `s`, in pixels of the full-size
 // picture.
@@ -116,8 +111,7 @@ fn main(@builtin(global_invocation_id) id: vec3u) {
         return;
     }
     let p = pixel(id);
-    let v = fetch(tones, 0u, p).xy;
-    let lightness = select(100.0, v.x / v.y, v.y > 1e-4);
+    let lightness = tone_lightness(fetch(tones, 0u, p).xy);
     let t = clamp((params.light - lightness) * params.slope, 0.0, 1.0);
     let eased = t * (1.0 - params.ease * (1.0 - t));
     let d = eased - params.open * eased * eased * eased;
@@ -156,6 +150,5 @@ fn main(@builtin(global_invocation_id) id: vec3u) {
         let drawn = 1.0 - bare;
         density = d + marked * (drawn - d);
     }
-    let grained = rise((params.smooth_from - lightness) * params.inverse_fade);
-    textureStore(target_image, vec2i(id.xy), vec4f(density, grained, 0.0, 0.0));
+    textureStore(target_image, vec2i(id.xy), vec4f(density));
 }

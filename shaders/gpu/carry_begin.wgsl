@@ -1,4 +1,4 @@
-// Begin of the kernels that take a neighbouring frame into an average (`carry_colour`, `carry_pair` and `carry_tensor` of
+// Begin of the kernels that take a neighbouring frame into an average (`carry_colour`, `carry_value` and `carry_tensor` of
 // `time`): the average's own pixel, which stays where the other frame has no share.
 
     if outside(id) {

@@ -3,13 +3,9 @@
 // From the response of a difference of Gaussians to an edge image: 1 is paper, 0 is line.
 // Twin of kernels/shared/edge_threshold.rs.
 
-// A response far beyond all others, which is paper for every threshold.
-const NOT_COVERED = 1e6;
-
-// Kinds: 0 the response itself; 1 binary (4.6); 2 tanh (4.8); 3 smoothstep; 4 the response, NOT_COVERED where no
-// covered pixel contributes.
+// Kinds: 0 the response itself; 1 binary (4.6); 2 tanh (4.8); 3 smoothstep.
 fn edge_threshold(u: f32, kind: u32, epsilon: f32, phi: f32) -> f32 {
-    if kind == 0u || kind == 4u {
+    if kind == 0u {
         return u;
     }
     if u >= epsilon {
@@ -35,14 +31,11 @@ fn fainter(edge: f32, faintness: f32) -> f32 {
 // The edge image of response u, its lines as faint as they are to be.
 fn edge_of_response(u: f32, kind: u32, epsilon: f32, phi: f32, faintness: f32) -> f32 {
     let edge = edge_threshold(u, kind, epsilon, phi);
-    return select(fainter(edge, faintness), edge, kind == 0u || kind == 4u);
+    return select(fainter(edge, faintness), edge, kind == 0u);
 }
 
 // The edge image where no covered pixel contributes: paper.
 fn edge_uncovered(kind: u32) -> f32 {
-    if kind == 4u {
-        return NOT_COVERED;
-    }
     return select(1.0, 0.0, kind == 0u);
 }
 

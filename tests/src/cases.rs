@@ -224,6 +224,11 @@ pub fn carrying(spec: &NodeSpec) -> Option<Setting> {
     Some(Setting { label: "carrying marks".into(), values })
 }
 
+/// The same for marks at rest positions, which fade from frame to frame.
+pub fn fading(spec: &NodeSpec) -> Option<Setting> {
+    carrying(spec).map(|setting| Setting { label: "fading marks".into(), ..setting })
+}
+
 /// As [`request`] with all guides but rest positions, between two renewals of marks.
 pub fn request_without_rest(kind: Kind, width: u32, height: u32) -> Request {
     let request = request(kind, width, height, true);

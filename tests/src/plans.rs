@@ -80,17 +80,18 @@ fn variants(spec: &'static NodeSpec) -> Vec<Variant> {
     for kind in Kind::ALL {
         add(default, false, kind, false, 0.5);
     }
-    let carrying = cases::carrying(spec).into_iter();
-    all.extend(carrying.flat_map(|setting| {
-        Kind::ALL.map(|kind| Variant {
-            setting: setting.clone(),
-            wired: false,
-            kind,
-            guides: true,
-            rest: false,
-            scale: 1.0,
-        })
-    }));
+    for (marks, rest) in [(cases::carrying(spec), false), (cases::fading(spec), true)] {
+        all.extend(marks.into_iter().flat_map(|setting| {
+            Kind::ALL.map(|kind| Variant {
+                setting: setting.clone(),
+                wired: false,
+                kind,
+                guides: true,
+                rest,
+                scale: 1.0,
+            })
+        }));
+    }
     all
 }
 

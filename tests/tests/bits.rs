@@ -72,10 +72,10 @@ fn main() -> ExitCode {
     trials.run()
 }
 
-/// A node with its defaults, with each option of each choice, and with marks that motion carries.
+/// A node with its defaults, with each option of each choice, and with marks that motion carries or that fade.
 fn settings(spec: &'static NodeSpec) -> impl Iterator<Item = Setting> {
     let all = cases::settings(spec, 0).into_iter().filter(|s| s.values.len() <= 1);
-    all.chain(cases::carrying(spec))
+    all.chain(cases::carrying(spec)).chain(cases::fading(spec))
 }
 
 /// All numbers that are 0 by default at half of their sliders, since what they weigh may not be read before.

@@ -14,6 +14,10 @@ const STYLES: [&str; 7] =
 /// The most that the steady ones may have of the warping error of the same style without, and of its answer to noise.
 const MOST: [f64; 2] = [0.98, 0.65];
 
+/// Share of the gradient energy of the same style without that the steady ones keep at least: what fades in and out is fainter
+/// meanwhile.
+const LEAST_ENERGY: f64 = 0.94;
+
 /// Setting of presets for sequences.
 const STEADINESS: (&str, &str) = ("steadiness", "0.5");
 
@@ -92,7 +96,7 @@ fn steady_styles_exaggerate_less_along_the_path_of_the_camera() {
         let [before, after] = [still.steadiness.ratio, steady.steadiness.ratio];
         assert!(after <= MOST[0] * before, "{name}: {before:.3} -> {after:.3}");
         let kept = steady.steadiness.energy_of_still;
-        assert!(kept >= 0.95, "{name} keeps {kept:.3} of its energy");
+        assert!(kept >= LEAST_ENERGY, "{name} keeps {kept:.3} of its energy");
     }
 }
 

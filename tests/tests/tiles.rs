@@ -77,6 +77,9 @@ fn runs(spec: &'static NodeSpec, size: [u32; 2]) -> Vec<Run> {
             all.push(run);
         }
     }
+    if let Some(setting) = cases::fading(spec) {
+        all.push(one(spec, &setting, Kind::Steps, false, true, size));
+    }
     if let Some(setting) = cases::carrying(spec) {
         let request = cases::request_without_rest(Kind::Steps, size[0], size[1]);
         all.push(planned(spec, &setting, false, Kind::Steps, request));

@@ -128,22 +128,18 @@ impl Abstraction {
 
 /// The picture after `n_a` iterations, in CIELAB, and the tensors that they follow, both steady over time.
 pub(crate) fn steady_regions(scope: &mut Scope<'_>, options: &TensorOptions) -> [ImageId; 2] {
-    steady_washes(scope, options, 1.0)
+    steadied(scope, Agreement::lab(COLOUR_AGREEMENT), |scope| regions(scope, options, 1.0))
 }
 
-/// The same where `sigma_r` is `tolerance` times what the parameters say.
-pub(crate) fn steady_washes(scope: &mut Scope<'_>, options: &TensorOptions, tolerance: f32) -> [ImageId; 2] {
+/// The same of the frame by itself, where `sigma_r` is `tolerance` times what the parameters say.
+pub(crate) fn regions(scope: &mut Scope<'_>, options: &TensorOptions, tolerance: f32) -> [ImageId; 2] {
     let abstraction = Abstraction::tolerant(scope, tolerance);
     let n_a = scope.int(N_A.id);
-    let by = Agreement::lab(COLOUR_AGREEMENT);
-    let steadied = steadied(scope, by, |scope| {
-        let color = scope.required("color");
-        let tensors = structure_tensor::of_color(scope.plan, color, options);
-        let tensors = flow_map::bent(scope, tensors);
-        let lab = rgb_to_lab::pass(scope.plan, color, 1.0);
-        [abstraction.apply(scope.plan, lab, tensors, n_a), tensors]
-    });
-    steadied.stages
+    let color = scope.required("color");
+    let tensors = structure_tensor::of_color(scope.plan, color, options);
+    let tensors = flow_map::bent(scope, tensors);
+    let lab = rgb_to_lab::pass(scope.plan, color, 1.0);
+    [abstraction.apply(scope.plan, lab, tensors, n_a), tensors]
 }
 
 /// Factors on (`sigma_d`, `sigma_r`) for `detail` 0..=1, 1 at the default.

@@ -7,7 +7,7 @@ use crate::kernels::shared::stream::STRETCH;
 use crate::kernels::smoothing::line_integral_convolution::{self, Adapt, Options as Lic};
 use crate::stages::flow_map::Flow;
 use crate::stages::shock::{self, Directed};
-use crate::stages::steady::{Agreement, COLOUR_AGREEMENT, Steadied, compared, steadied, steadied_picture};
+use crate::stages::steady::{Agreement, COLOUR_AGREEMENT, compared, steadied, steadied_picture};
 use crate::stages::tensor_options::TensorOptions;
 use crate::stages::{line_integral_convolution as lic, structure_tensor};
 use isophote_engine::{ImageId, PlanBuilder};
@@ -162,16 +162,10 @@ impl Filter {
         }
     }
 
-    /// Smoothing and sharpening in turn, from a picture and the tensor of the round before; the picture and the last
-    /// tensor.
-    fn iterate(
-        &self,
-        plan: &mut PlanBuilder,
-        mut color: ImageId,
-        mut tensor: Option<ImageId>,
-        rounds: i32,
-    ) -> (ImageId, Option<ImageId>) {
-        for _ in 0..rounds {
+    /// Smoothing and sharpening in turn; the picture and the last tensor.
+    fn iterate(&self, plan: &mut PlanBuilder, mut color: ImageId) -> (ImageId, Option<ImageId>) {
+        let mut tensor = None;
+        for _ in 0..self.iterations {
             let along = self.tensor(plan, color, tensor);
             color = line_integral_convolution::pass(plan, color, along, &self.smoothing);
             let mut across = self.tensor(plan, color, Some(along));
@@ -208,24 +202,21 @@ impl Filter {
 
 /// The filtered picture and its last tensor, for filters as `filter` reads them from the parameters of a node.
 ///
-/// Pictures are steadied before the last round, which makes edges sharp again that averages have softened.
+/// What every frame comes to by itself is steadied: shocks decide for one side of an edge or the other.
 pub(crate) fn filtered(
     scope: &mut Scope<'_>,
     filter: impl Fn(&mut Scope<'_>) -> Filter,
 ) -> (ImageId, Option<ImageId>) {
-    let last = filter(scope);
-    let rounds = last.iterations - 1;
-    if rounds < 1 {
-        let color = steadied_picture(scope);
-        return last.iterate(scope.plan, color, None, last.iterations);
+    if filter(scope).iterations < 1 {
+        return (steadied_picture(scope), None);
     }
     let by = Agreement::rgb(COLOUR_AGREEMENT);
-    let Steadied { stages: [_, color, tensor], .. } = steadied(scope, by, |scope| {
+    let [_, filtered, tensor] = steadied(scope, by, |scope| {
         let filter = filter(scope);
         let color = scope.required("color");
-        let (filtered, tensor) = filter.iterate(scope.plan, color, None, rounds);
+        let (filtered, tensor) = filter.iterate(scope.plan, color);
         // Every round has its tensor.
         [compared(scope, color), filtered, tensor.unwrap_or(filtered)]
     });
-    last.iterate(scope.plan, color, Some(tensor), 1)
+    (filtered, Some(tensor))
 }

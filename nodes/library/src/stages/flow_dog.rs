@@ -2,7 +2,6 @@
 
 use crate::declare::choice::choice;
 use crate::declare::spec::{ImageKind, Param, Port, Scope};
-use crate::kernels::lines::edge_area::{self, Shares};
 use crate::kernels::lines::flow_dog_two_dimensional::{self, Stepping};
 use crate::kernels::lines::{
     colour_edges, darken_by_lines, dog_columns, flow_dog_cabral_leedom, flow_dog_gradient, flow_dog_tangent,
@@ -148,41 +147,6 @@ impl FlowDog {
                 flow_dog_two_dimensional::pass(plan, [source, field, marked], &options)
             }
         })
-    }
-
-    /// Response of the separable filter before lines are smoothed along themselves and decided: that of its
-    /// last iteration, (u alpha, alpha).
-    pub(crate) fn response(
-        &self,
-        plan: &mut PlanBuilder,
-        mut seen: Seen,
-        tensor: ImageId,
-        guides: &Guides,
-    ) -> ImageId {
-        let field = orientation_field::pass(plan, tensor);
-        if self.iterations > 1 {
-            let before = Self { iterations: self.iterations - 1, xdog: self.deciding(), ..*self };
-            let edges = before.edges(plan, seen, tensor, guides);
-            seen.lightness = darken_by_lines::pass(plan, seen.lightness, edges);
-        }
-        self.across(plan, seen, field, guides, self.xdog)
-    }
-
-    /// The edge image of a response, along the stream lines of `tensor`; over areas where it is steadied.
-    pub(crate) fn decided(
-        &self,
-        plan: &mut PlanBuilder,
-        response: ImageId,
-        tensor: ImageId,
-        shares: Option<Shares>,
-    ) -> ImageId {
-        let field = orientation_field::pass(plan, tensor);
-        if let (Some(shares), Stepping::Along(integrator)) = (shares, self.stepping) {
-            let options = flow_dog_tangent::Options { sigma: self.sigma_m, integrator, xdog: self.xdog };
-            let smooth = flow_dog_tangent::pass_undecided(plan, response, field, &options);
-            return edge_area::pass(plan, smooth, shares, &self.xdog);
-        }
-        self.along(plan, response, field, &self.xdog)
     }
 
     /// The first pass of the separable filter.

@@ -1,17 +1,18 @@
-//! Stages that are carried from neighbouring frames along motion and averaged before anything is decided by them, which
-//! keeps styles from exaggerating what flickers.
+//! Stages that are carried from neighbouring frames along motion and averaged, which keeps styles from exaggerating what
+//! flickers: lines, tones and marks that one frame draws and the next one does not fade in and out.
 //!
 //! Every stage is found on each frame by itself, so that a frame depends on a finite window of frames and stages can be
-//! kept from frame to frame. A neighbour counts by a Gaussian over time, times the agreement of its smoothed colour, of
-//! depth, of object numbers, and of forward with backward motion, where there are such.
+//! kept from frame to frame. Lines and tones are decided there too: an average of what they are decided by changes less, but
+//! is decided anew in each frame, and all at once. Paper is laid under the averages; it stays on the screen. A neighbour
+//! counts by a Gaussian over time, times the agreement of its smoothed colour, of depth, of object numbers, and of
+//! forward with backward motion, where there are such.
 
 use crate::declare::spec::{STEADINESS, Scope, WINDOW};
-use crate::kernels::lines::edge_area::Shares;
 use crate::kernels::smoothing::gaussian_blur;
 use crate::kernels::time::carried_share::{self, Neighbour};
 use crate::kernels::time::guide_agreement::{self, Guide, Way};
 use crate::kernels::time::{
-    carry_colour, carry_pair, carry_tensor, motion_chain, motion_import, return_agreement,
+    carry_colour, carry_tensor, carry_value, motion_chain, motion_import, return_agreement,
 };
 use isophote_engine::{Class, ImageId};
 
@@ -42,34 +43,25 @@ pub(crate) const COLOUR_AGREEMENT: f32 = 8.0;
 /// Standard deviation of the smoothing of pictures before they are compared, pixels: noise must not look like change.
 const SMOOTHING: f32 = 1.5;
 
-/// Result of [`steadied`].
-#[derive(Clone, Copy, Debug)]
-pub(crate) struct Steadied<const N: usize> {
-    /// The stages, in the order in which they are described.
-    pub stages: [ImageId; N],
-    /// Share of other frames in them; none where the frame is by itself.
-    pub shares: Option<Shares>,
-}
-
 /// Images that `describe` finds on the frame that is described, steadied by what it finds on its neighbours as the
 /// parameters `steadiness` and `window` say.
 ///
 /// The first image is a picture, by which frames are compared as `by` says; the others are colours of
-/// any kind, structure tensors (fields of four channels), or values times coverage and coverage (two channels).
+/// any kind, structure tensors (fields of four channels), or values of 0..=1 (one channel).
 pub(crate) fn steadied<const N: usize>(
     scope: &mut Scope<'_>,
     by: Agreement,
     describe: impl Fn(&mut Scope<'_>) -> [ImageId; N],
-) -> Steadied<N> {
+) -> [ImageId; N] {
     let own = describe(scope);
     let steadiness = scope.float(STEADINESS.id);
     let moves = scope.input("motion").is_some() || scope.input("motion_forward").is_some();
     let window = if steadiness > 0.0 && moves { scope.int(WINDOW.id) } else { 0 };
     if window == 0 {
-        return Steadied { stages: own, shares: None };
+        return own;
     }
     let stages = kept(scope, own);
-    let (mut average, mut shares, mut nearest, mut most) = (own, None, None, 0.0);
+    let (mut average, mut shares) = (own, None);
     for offset in scope.neighbours(window) {
         let Some(way) = way_to(scope, offset) else { continue };
         let theirs = if scope.is_handed(offset) {
@@ -100,22 +92,19 @@ pub(crate) fn steadied<const N: usize>(
             let (images, by) = ([*average, theirs], [way.motion, share]);
             let shape = scope.plan.desc(theirs);
             *average = match (shape.class, shape.channels) {
-                (_, 2) => carry_pair::pass(scope.plan, images, by, way.reach),
+                (_, 1) => carry_value::pass(scope.plan, images, by, way.reach),
                 (Class::Field, _) => carry_tensor::pass(scope.plan, images, by, way.reach),
                 (Class::Colour, _) => carry_colour::pass(scope.plan, images, by, way.reach),
             };
         }
         shares = Some(share);
-        nearest.get_or_insert(way.motion);
-        most += neighbour.gain;
     }
-    let shares = shares.zip(nearest).map(|(image, motion)| Shares { image, motion, most });
-    Steadied { stages: average, shares }
+    average
 }
 
 /// The node's picture, gamma-encoded, steadied before the filter sees it.
 pub(crate) fn steadied_picture(scope: &mut Scope<'_>) -> ImageId {
-    let Steadied { stages: [_, color], .. } = steadied(scope, Agreement::rgb(COLOUR_AGREEMENT), |scope| {
+    let [_, color] = steadied(scope, Agreement::rgb(COLOUR_AGREEMENT), |scope| {
         let color = scope.required("color");
         [compared(scope, color), color]
     });

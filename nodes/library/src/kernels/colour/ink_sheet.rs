@@ -4,6 +4,7 @@
 //! Cost: 12 hashes and about 120 multiply-adds per pixel.
 
 pub use crate::kernels::shaders::ink_sheet::Params;
+use crate::kernels::shared::mark_tones::{INVERSE_FADE, SMOOTH_FROM, rise, tone_lightness};
 use crate::kernels::shared::value_noise::noise;
 use crate::kernels::simd::pixels::{for_blocks, write};
 use isophote_engine::dispatch::at_most_avx2;
@@ -61,8 +62,10 @@ pub struct Drawing {
     pub color: ImageId,
     /// Noise along the form, 0..=1, in the first channel.
     pub strokes: ImageId,
-    /// The share of the paper that marks cover, and how far grain shows in them ([`tone_marks`](super::tone_marks)).
+    /// Share of the paper that marks cover ([`tone_marks`](super::tone_marks)).
     pub marks: ImageId,
+    /// Tones of the picture, (L alpha, alpha): light ones show no grain.
+    pub tones: ImageId,
 }
 
 /// Share of the paper that chalk covers, and the part of their lightness that its colours keep in lines above it.
@@ -85,10 +88,12 @@ pub fn pass(plan: &mut PlanBuilder, drawing: &Drawing, sheet: &Sheet) -> ImageId
         follow: sheet.follow,
         dryness: sheet.dryness,
         cut: f32::from(sheet.cut),
+        smooth_from: SMOOTH_FROM,
+        inverse_fade: INVERSE_FADE,
         padding: Default::default(),
         origin: sheet.origin,
     };
-    let inputs = [drawing.lines, drawing.color, drawing.strokes, drawing.marks];
+    let inputs = [drawing.lines, drawing.color, drawing.strokes, drawing.marks, drawing.tones];
     plan.pass(&KERNEL, &inputs, &params, Class::Colour, Support::Pixels(0))
 }
 
@@ -100,7 +105,7 @@ fn run(pass: &CpuPass<'_>, band: &mut Band<'_>) {
 
 #[inline(always)]
 fn sheet<S: Simd>(simd: S, pass: &CpuPass<'_>, params: &Params, band: &mut Band<'_>) {
-    let [lines, source, strokes, marks] = pass.inputs else { return };
+    let [lines, source, strokes, marks, tones] = pass.inputs else { return };
     let (zero, one) = (f32x8::splat(simd, 0.0), f32x8::splat(simd, 1.0));
     for_blocks::<4>(
         band,
@@ -122,7 +127,9 @@ fn sheet<S: Simd>(simd: S, pass: &CpuPass<'_>, params: &Params, band: &mut Band<
 
             let [edge, bare, ..]: [f32x8<S>; 4] = block.read(simd, lines);
             let line = one - edge.within(zero, one);
-            let [mark, grained] = block.read(simd, marks);
+            let [mark] = block.read(simd, marks);
+            let lightness = tone_lightness(block.read(simd, tones));
+            let grained = rise((zero + params.smooth_from - lightness) * params.inverse_fade);
             // A dry tool leaves out the valleys of the paper even where it presses hard; in light tones nothing breaks.
             let dry = (height - 0.55).at_least(zero) * params.dryness;
             let pressed = catches(line, height, zero + params.dryness * params.grain) * (one - dry);

@@ -8,6 +8,7 @@
 //! Cost: 8 hashes, an eigenvector and about 150 multiply-adds per pixel.
 
 pub use crate::kernels::shaders::tone_marks::Params;
+use crate::kernels::shared::mark_tones::{INVERSE_FADE, SMOOTH_FROM, rise, tone_lightness};
 use crate::kernels::shared::tensor;
 use crate::kernels::shared::value_noise::noise;
 use crate::kernels::simd::pixels::{Block, for_blocks, write};
@@ -62,10 +63,6 @@ pub struct Tones {
 /// Directions of hatches, of light and of deep tones, of length 1.
 pub const HATCHING: [[f32; 2]; 2] = [[0.8, -0.6], [0.96, 0.28]];
 
-/// Lightness from which on tones are smooth, and the units of L below it over which marks stand out.
-pub const SMOOTH_FROM: f32 = 69.0;
-const FADE: f32 = 9.0;
-
 /// Softness of the edges of strokes, in values of 0..=1 at which they lie.
 const SOFTNESS: f32 = 0.25;
 
@@ -82,7 +79,7 @@ pub struct Inputs {
     pub hatching: Option<[ImageId; 2]>,
 }
 
-/// Adds the pass: the share of the paper that marks cover, and how far the paper's grain shows in them, 0..=1.
+/// Adds the pass: the share of the paper that marks cover.
 pub fn pass(plan: &mut PlanBuilder, inputs: &Inputs, tones: &Tones) -> ImageId {
     let [first, second] = inputs.hatching.unwrap_or([inputs.strokes; 2]);
     let params = Params {
@@ -93,7 +90,7 @@ pub fn pass(plan: &mut PlanBuilder, inputs: &Inputs, tones: &Tones) -> ImageId {
         slope: 1.0 / (tones.light - tones.solid).max(1.0),
         ease: tones.ease.clamp(0.0, 0.99),
         smooth_from: SMOOTH_FROM,
-        inverse_fade: 1.0 / FADE,
+        inverse_fade: INVERSE_FADE,
         rubbed: tones.rubbed.clamp(0.0, 1.0),
         form: tones.form.clamp(0.0, 1.0),
         significant: tones.significant,
@@ -121,11 +118,9 @@ fn edge(scale: f32) -> f32 {
 fn run(pass: &CpuPass<'_>, band: &mut Band<'_>) {
     let params: Params = pass.params();
     // Hashes of noise: by AVX-512 they take a third longer.
-    dispatch!(at_most_avx2(pass.level), simd => for_blocks::<2>(band, #[inline(always)] |block, target| {
-        let [sum, alpha]: [f32x8<_>; 2] = block.read(simd, &pass.inputs[0]);
-        let covered = alpha.simd_gt(1e-4);
+    dispatch!(at_most_avx2(pass.level), simd => for_blocks::<1>(band, #[inline(always)] |block, target| {
         let one = f32x8::splat(simd, 1.0);
-        let lightness = covered.select(sum / covered.select(alpha, one), one * 100.0);
+        let lightness = tone_lightness(block.read(simd, &pass.inputs[0]));
         let t = ((one * params.light - lightness) * params.slope).within(0.0, 1.0);
         let eased = t * (one - (one - t) * params.ease);
         let d = eased - eased * eased * eased * params.open;
@@ -135,7 +130,7 @@ fn run(pass: &CpuPass<'_>, band: &mut Band<'_>) {
         if marked.simd_gt(0.0).any_true() {
             density = d + marked * (drawn(simd, pass, &params, &block, d) - d);
         }
-        write([density, grained], target);
+        write([density], target);
     }));
 }
 
@@ -181,14 +176,6 @@ fn drawn<S: Simd>(simd: S, pass: &CpuPass<'_>, params: &Params, block: &Block, d
     }
     one - bare
 }
-
-/// A ramp from 0 to 1.
-#[inline(always)]
-fn rise<S: Simd>(t: f32x8<S>) -> f32x8<S> {
-    let t = t.within(0.0, 1.0);
-    t * t * (t * -2.0 + 3.0)
-}
-
 /// Share of a pixel that a band covers, `r` from whose middle it lies and whose half width is `s`, in pixels of the
 /// full-size picture.
 #[inline(always)]
@@ -280,7 +267,7 @@ mod tests {
         slope: 0.02,
         ease: 0.0,
         smooth_from: SMOOTH_FROM,
-        inverse_fade: 1.0 / FADE,
+        inverse_fade: INVERSE_FADE,
         rubbed: 0.0,
         form: 1.0,
         significant: 0.5,

@@ -6,7 +6,7 @@
 
 use crate::declare::choice::Numbered;
 pub use crate::kernels::shaders::flow_dog_tangent::Params;
-use crate::kernels::shared::edge_threshold::{UNDECIDED, Xdog, edge_of_sums};
+use crate::kernels::shared::edge_threshold::{Xdog, edge_of_sums};
 use crate::kernels::shared::sampling::sample_linear2;
 use crate::kernels::shared::stream::{Field, FieldView, Integrator, Stream, half_length};
 use crate::kernels::shared::tensor::tangent;
@@ -43,35 +43,14 @@ pub struct Options {
     pub xdog: Xdog,
 }
 
-/// The response (u alpha, alpha) smoothed as by [`pass`] but not thresholded, [`NOT_COVERED`](crate::kernels::shared::edge_threshold::NOT_COVERED)
-/// where nothing is covered.
-pub fn pass_undecided(
-    plan: &mut PlanBuilder,
-    response: ImageId,
-    field: ImageId,
-    options: &Options,
-) -> ImageId {
-    planned(plan, response, field, options, UNDECIDED)
-}
-
 /// The edge image of a `response` (u alpha, alpha): smoothed along the stream lines of `field` (E - G, F) by
 /// standard deviation `sigma` pixels, thresholded as `xdog` says.
 pub fn pass(plan: &mut PlanBuilder, response: ImageId, field: ImageId, options: &Options) -> ImageId {
-    planned(plan, response, field, options, options.xdog.threshold as u32)
-}
-
-fn planned(
-    plan: &mut PlanBuilder,
-    response: ImageId,
-    field: ImageId,
-    options: &Options,
-    threshold: u32,
-) -> ImageId {
     let Options { sigma, integrator, xdog } = *options;
     let params = Params {
         sigma,
         integrator: integrator as u32,
-        threshold,
+        threshold: xdog.threshold as u32,
         epsilon: xdog.epsilon,
         phi: xdog.phi,
         faintness: xdog.faintness,

@@ -50,17 +50,11 @@ impl Xdog {
     }
 }
 
-/// In place of a threshold: the response itself, [`NOT_COVERED`] where no covered pixel contributes.
-pub const UNDECIDED: u32 = 4;
-
-/// A response far beyond all others, which is paper for every threshold.
-pub const NOT_COVERED: f32 = 1e6;
-
 /// The edge image of response `u`; see [`Threshold`].
 #[inline(always)]
 pub fn edge_threshold<S: Simd>(u: f32x8<S>, kind: u32, epsilon: f32, phi: f32) -> f32x8<S> {
     let (zero, one) = (f32x8::splat(u.simd, 0.0), f32x8::splat(u.simd, 1.0));
-    if kind == Threshold::None as u32 || kind == UNDECIDED {
+    if kind == Threshold::None as u32 {
         return u;
     }
     let paper = u.simd_ge(epsilon);
@@ -91,17 +85,13 @@ pub fn fainter<S: Simd>(edge: f32x8<S>, faintness: f32) -> f32x8<S> {
 #[inline(always)]
 pub fn edge_of_response<S: Simd>(u: f32x8<S>, kind: u32, epsilon: f32, phi: f32, faintness: f32) -> f32x8<S> {
     let edge = edge_threshold(u, kind, epsilon, phi);
-    if kind == Threshold::None as u32 || kind == UNDECIDED { edge } else { fainter(edge, faintness) }
+    if kind == Threshold::None as u32 { edge } else { fainter(edge, faintness) }
 }
 
 /// The edge image where no covered pixel contributes: paper.
 #[inline(always)]
 pub fn edge_uncovered(kind: u32) -> f32 {
-    match kind {
-        UNDECIDED => NOT_COVERED,
-        _ if kind == Threshold::None as u32 => 0.0,
-        _ => 1.0,
-    }
+    if kind == Threshold::None as u32 { 0.0 } else { 1.0 }
 }
 
 /// The edge image of weighted sums of (u alpha, alpha); paper where no covered pixel contributes.

@@ -3,10 +3,10 @@
 
 use crate::kernels::shared::coverage::premultiply;
 use crate::kernels::shared::sampling::{fetch4, load_pairs, sample_linear4};
-use crate::kernels::simd::pixels::{Block, eight, load_pixels, offsets};
+use crate::kernels::simd::pixels::{Block, eight, fetch1, load_pixels, offsets};
 use isophote_engine::View;
 use isophote_engine::fearless_simd::prelude::*;
-use isophote_engine::fearless_simd::{Simd, f32x8, i32x8, mask32x8};
+use isophote_engine::fearless_simd::{Simd, f32x4, f32x8, i32x8, mask32x8};
 use isophote_engine::math::{spread, transposed};
 
 /// Components of motions that are not known.
@@ -151,78 +151,68 @@ pub fn sample_sharp_covered4<S: Simd>(simd: S, view: &View<'_>, x: f32x8<S>, y: 
     if run.is_some() { channels_of_pairs(pixels) } else { transposed(pixels) }
 }
 
-/// Samples of a two-channel image at eight positions with a sharp interpolation; see [`sample_sharp_covered4`].
+/// Samples of a one-channel image at eight positions with a sharp interpolation; see [`sample_sharp_covered4`].
 #[inline(always)]
-pub fn sample_sharp2<S: Simd>(simd: S, view: &View<'_>, x: f32x8<S>, y: f32x8<S>) -> [f32x8<S>; 2] {
+pub fn sample_sharp1<S: Simd>(simd: S, view: &View<'_>, x: f32x8<S>, y: f32x8<S>) -> f32x8<S> {
     let ([w, h], window, data) = (view.full(), view.window(), view.data());
     let (columns, fx) = floor_and_share(x, w);
     let (rows, fy) = floor_and_share(y, h);
     let (wx, wy) = (catmull_rom(fx), catmull_rom(fy));
     if !all_between([columns, rows], [1, 1], [w - 3, h - 3]) {
-        return taps2(simd, view, [columns - 1, rows - 1], wx, wy);
+        return taps1(simd, view, [columns - 1, rows - 1], wx, wy);
     }
     let stride = view.stride() as u32 as usize;
     if let Some(run) = Run::of(simd, view, x, y, [1, 2]) {
-        let data = &data[run.at..run.at + 3 * stride + 22];
-        let mut halves = [f32x8::splat(simd, 0.0); 2];
-        for (half, sum) in [0, 8].into_iter().zip(&mut halves) {
-            for i in 0..4 {
-                let at = half + 2 * i;
-                let mut column = eight(simd, data, at) * wy[0][0];
-                for j in 1..4 {
-                    let row = eight(simd, data, j * stride + at);
-                    column = row.mul_add(f32x8::splat(simd, wy[j][0]), column);
-                }
-                *sum += column * wx[i][0];
+        let data = &data[run.at..run.at + 3 * stride + 11];
+        let mut sum = f32x8::splat(simd, 0.0);
+        for i in 0..4 {
+            let mut column = eight(simd, data, i) * wy[0][0];
+            for j in 1..4 {
+                column = eight(simd, data, j * stride + i).mul_add(f32x8::splat(simd, wy[j][0]), column);
             }
+            sum += column * wx[i][0];
         }
-        let (first, second) = halves[0].deinterleave(halves[1]);
-        return [first, second];
+        return sum;
     }
-    let at = ((rows - (window.y0 + 1)) * stride as i32 + (columns - (window.x0 + 1)) * 2).to_array();
+    let at = ((rows - (window.y0 + 1)) * stride as i32 + (columns - (window.x0 + 1))).to_array();
     let wx = [wx[0].to_array(), wx[1].to_array(), wx[2].to_array(), wx[3].to_array()];
     let wy = [wy[0].to_array(), wy[1].to_array(), wy[2].to_array(), wy[3].to_array()];
-    let (mut first, mut second) = ([0.0; 8], [0.0; 8]);
+    let mut sum = [0.0; 8];
     for lane in 0..8 {
         let at = at[lane] as u32 as usize;
-        let data = &data[at..at + 3 * stride + 8];
+        let data = &data[at..at + 3 * stride + 4];
         // The four pixels of a row are neighbours in memory: one load.
-        let mut columns = f32x8::from_slice(simd, &data[..8]) * wy[0][lane];
+        let mut columns = f32x4::from_slice(simd, &data[..4]) * wy[0][lane];
         for j in 1..4 {
-            let row = f32x8::from_slice(simd, &data[j * stride..j * stride + 8]);
-            columns = row.mul_add(f32x8::splat(simd, wy[j][lane]), columns);
+            let row = f32x4::from_slice(simd, &data[j * stride..j * stride + 4]);
+            columns = row.mul_add(f32x4::splat(simd, wy[j][lane]), columns);
         }
         let columns = columns.to_array();
         for i in 0..4 {
-            first[lane] += wx[i][lane] * columns[2 * i];
-            second[lane] += wx[i][lane] * columns[2 * i + 1];
+            sum[lane] += wx[i][lane] * columns[i];
         }
     }
-    [f32x8::simd_from(simd, first), f32x8::simd_from(simd, second)]
+    f32x8::simd_from(simd, sum)
 }
 
-/// The weighted sum of 4 x 4 pixels of a two-channel image from those at `first` on, in the order of [`sample_sharp2`]'s
+/// The weighted sum of 4 x 4 pixels of a one-channel image from those at `first` on, in the order of [`sample_sharp1`]'s
 /// other ways: a pixel must not depend on which others it is computed with.
 #[inline(always)]
-fn taps2<S: Simd>(
+fn taps1<S: Simd>(
     simd: S,
     view: &View<'_>,
     [columns, rows]: [i32x8<S>; 2],
     wx: [f32x8<S>; 4],
     wy: [f32x8<S>; 4],
-) -> [f32x8<S>; 2] {
-    let mut sum = [f32x8::splat(simd, 0.0); 2];
+) -> f32x8<S> {
+    let mut sum = f32x8::splat(simd, 0.0);
     for i in 0..4 {
-        let mut column = [f32x8::splat(simd, 0.0); 2];
-        for j in 0..4 {
-            let pixel = fetch2(simd, view, columns + i as i32, rows + j as i32);
-            for c in 0..2 {
-                column[c] = if j == 0 { pixel[c] * wy[0] } else { pixel[c].mul_add(wy[j], column[c]) };
-            }
+        let mut column = fetch1(simd, view, offsets(view, columns + i as i32, rows)) * wy[0];
+        for j in 1..4 {
+            let pixel = fetch1(simd, view, offsets(view, columns + i as i32, rows + j as i32));
+            column = pixel.mul_add(wy[j], column);
         }
-        for c in 0..2 {
-            sum[c] += wx[i] * column[c];
-        }
+        sum += wx[i] * column;
     }
     sum
 }

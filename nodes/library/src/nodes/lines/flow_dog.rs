@@ -11,7 +11,7 @@ use crate::stages::flow_dog::{
     DEPTH, FlowDog, Guided, Kernel, NORMAL, OBJECT_ID, SIGMA_M, Seen, guides, tensor,
 };
 use crate::stages::line_context::{COLOUR_EDGES, INHIBITION, LOCAL_CONTRAST, LineContext};
-use crate::stages::steady::{Agreement, COLOUR_AGREEMENT, Steadied, compared, steadied};
+use crate::stages::steady::{Agreement, COLOUR_AGREEMENT, compared, steadied};
 use crate::stages::{ADVANCED, difference_of_gaussians as dog};
 use isophote_engine::ImageId;
 
@@ -107,7 +107,7 @@ fn build(scope: &mut Scope<'_>) -> ImageId {
     let guides_of = |scope: &Scope<'_>| guides(scope, lines.guide_weight);
     let guides = guides_of(scope);
     let by = Agreement::rgb(COLOUR_AGREEMENT);
-    let Steadied { stages: [_, color, tensor], .. } = steadied(scope, by, |scope| {
+    let [_, color, tensor] = steadied(scope, by, |scope| {
         let color = scope.required("color");
         let guides = guides_of(scope);
         let found = scope.input("tensor").unwrap_or_else(|| tensor(scope, color, &guides));

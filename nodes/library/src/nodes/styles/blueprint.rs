@@ -6,7 +6,7 @@ use crate::declare::value::Value;
 use crate::kernels::colour::blueprint_paper::{self, Sheet};
 use crate::kernels::colour::{lightness, rgb_to_lab};
 use crate::stages::abstraction::{self, Abstraction};
-use crate::stages::steady::{Agreement, COLOUR_AGREEMENT, Steadied, steadied};
+use crate::stages::steady::{Agreement, COLOUR_AGREEMENT, steadied};
 use crate::stages::{
     ADVANCED, LOOK, difference_of_gaussians as dog, flow_dog, flow_map, line_context, lines,
 };
@@ -77,20 +77,18 @@ fn build(scope: &mut Scope<'_>) -> ImageId {
     let abstraction = Abstraction::of(scope);
     let n_e = scope.int("n_e");
     let flow = lines::flow_dog(scope, guide_weight);
-    let Steadied { stages: [smooth, tensor, response], shares } =
-        steadied(scope, Agreement::lab(COLOUR_AGREEMENT), |scope| {
-            let color = scope.required("color");
-            let guides = flow_dog::guides(scope, guide_weight);
-            let tensor = flow_dog::tensor(scope, color, &guides);
-            let tensor = flow_map::bent(scope, tensor);
-            let lab = rgb_to_lab::pass(scope.plan, color, 1.0);
-            let smooth = abstraction.apply(scope.plan, lab, tensor, n_e);
-            let lightness = lightness::pass_lab(scope.plan, smooth);
-            let seen = flow_dog::Seen { lightness, lab: Some(smooth) };
-            [smooth, tensor, flow.response(scope.plan, seen, tensor, &guides)]
-        });
+    let [smooth, edges] = steadied(scope, Agreement::lab(COLOUR_AGREEMENT), |scope| {
+        let color = scope.required("color");
+        let guides = flow_dog::guides(scope, guide_weight);
+        let tensor = flow_dog::tensor(scope, color, &guides);
+        let tensor = flow_map::bent(scope, tensor);
+        let lab = rgb_to_lab::pass(scope.plan, color, 1.0);
+        let smooth = abstraction.apply(scope.plan, lab, tensor, n_e);
+        let lightness = lightness::pass_lab(scope.plan, smooth);
+        let seen = flow_dog::Seen { lightness, lab: Some(smooth) };
+        [smooth, flow.edges(scope.plan, seen, tensor, &guides)]
+    });
     let lightness = lightness::pass_lab(scope.plan, smooth);
-    let edges = flow.decided(scope.plan, response, tensor, shares);
     let sheet = Sheet {
         line: scope.color("line_color"),
         paper: scope.color("paper_color"),

@@ -9,7 +9,7 @@ use crate::kernels::colour::{lab_to_rgb, lightness, rgb_to_lab};
 use crate::kernels::smoothing::line_integral_convolution::{self, Options as Lic};
 use crate::stages::abstraction::{self, Abstraction};
 use crate::stages::line_on_dark::{LINE_ON_DARK, OnDark};
-use crate::stages::steady::{Agreement, COLOUR_AGREEMENT, Steadied, steadied};
+use crate::stages::steady::{Agreement, COLOUR_AGREEMENT, steadied};
 use crate::stages::tensor_options::Guides;
 use crate::stages::{
     ADVANCED, LOOK, difference_of_gaussians as dog, flow_dog, flow_map, line_context,
@@ -131,37 +131,26 @@ fn build(scope: &mut Scope<'_>) -> ImageId {
         LineFilter::Isotropic => lines::flow_dog(scope, 0.0),
     };
     let by = Agreement::lab(COLOUR_AGREEMENT);
-    let Steadied { stages: [mut flat, tensor, undecided], shares } = steadied(scope, by, |scope| {
+    let [smooth, tensor, edges, flat] = steadied(scope, by, |scope| {
         let color = scope.required("color");
         let guides = flow_dog::guides(scope, guide_weight);
         let tensor = flow_dog::tensor(scope, color, &guides);
         let tensor = flow_map::bent(scope, tensor);
         let lab = rgb_to_lab::pass(scope.plan, color, 1.0);
         // The first iterations are those behind the lines: the plan records them once.
-        let flat = abstraction.apply(scope.plan, lab, tensor, n_a);
+        let smooth = abstraction.apply(scope.plan, lab, tensor, n_a);
         let for_lines = abstraction.apply(scope.plan, lab, tensor, n_e);
         let lightness = lightness::pass_lab(scope.plan, for_lines);
-        let undecided = match line_filter {
+        let edges = match line_filter {
             LineFilter::Flow => {
                 let seen = flow_dog::Seen { lightness, lab: Some(for_lines) };
-                flow.response(scope.plan, seen, tensor, &guides)
+                flow.edges(scope.plan, seen, tensor, &guides)
             }
-            LineFilter::Isotropic => lightness,
+            LineFilter::Isotropic => flow.isotropic(scope.plan, lightness),
         };
-        [flat, tensor, undecided]
+        [smooth, tensor, edges, flattened(scope, smooth)]
     });
-    let edges = match line_filter {
-        LineFilter::Flow => flow.decided(scope.plan, undecided, tensor, shares),
-        LineFilter::Isotropic => flow.isotropic(scope.plan, undecided),
-    };
 
-    flat = tone::curve(scope, flat);
-    // Tones before they are flattened: a step between them is no reason to turn.
-    let toned = flat;
-    let bins = scope.int("posterize");
-    if bins > 0 {
-        flat = levels::flattened(scope, flat, bins, levels::steepness(scope, bins));
-    }
     let saturation = scope.float("saturation");
     let mut rgb = lab_to_rgb::pass(scope.plan, flat, saturation);
     let warp = scope.float("warp");
@@ -169,7 +158,7 @@ fn build(scope: &mut Scope<'_>) -> ImageId {
         let sigma = warp_sharpen::SIGMA_W.default_float() * scope.scale();
         rgb = warp_sharpen::warped(scope.plan, rgb, sigma, warp);
     }
-    let drawn = lined(scope, [rgb, edges, toned], flow.guide_weight);
+    let drawn = lined(scope, [rgb, edges, smooth], flow.guide_weight);
     let sigma_a = scope.float("sigma_a");
     if sigma_a > 0.0 {
         let smooth = Lic { sigma: sigma_a, ..lic::unadapted() };
@@ -178,13 +167,24 @@ fn build(scope: &mut Scope<'_>) -> ImageId {
     drawn
 }
 
-/// A picture with its lines, of which those turn light that lie on dark tones; `toned` is in Lab.
-fn lined(scope: &mut Scope<'_>, [rgb, edges, toned]: [ImageId; 3], guide_weight: f32) -> ImageId {
+/// A smoothed picture in few flat tones, in Lab.
+fn flattened(scope: &mut Scope<'_>, smooth: ImageId) -> ImageId {
+    let toned = tone::curve(scope, smooth);
+    match scope.int("posterize") {
+        0 => toned,
+        bins => levels::flattened(scope, toned, bins, levels::steepness(scope, bins)),
+    }
+}
+
+/// A picture with its lines, of which those turn light that lie on dark tones, as `smooth` in Lab has them before they are
+/// flattened: a step between them is no reason to turn.
+fn lined(scope: &mut Scope<'_>, [rgb, edges, smooth]: [ImageId; 3], guide_weight: f32) -> ImageId {
     let line = scope.color("line_color");
     match scope.option(LINE_ON_DARK.id) {
         OnDark::Off => composite_lines::pass(scope.plan, rgb, edges, &Composite { line, paper: [0.0; 4] }),
         OnDark::Light => {
             let guided = flow_dog::guides(scope, guide_weight) != Guides::default();
+            let toned = tone::curve(scope, smooth);
             let lightness = lightness::pass_lab(scope.plan, toned);
             line_on_dark::drawn(scope, [rgb, edges, lightness], line, guided)
         }

@@ -23,7 +23,7 @@ use crate::stages::abstraction::{self, Abstraction};
 use crate::stages::flow_dog::{self, FlowDog, Kernel, Seen};
 use crate::stages::line_context::LineContext;
 use crate::stages::line_on_dark::{MASSES_ON_DARK, MassesOnDark};
-use crate::stages::steady::{Agreement, COLOUR_AGREEMENT, Steadied, steadied};
+use crate::stages::steady::{Agreement, COLOUR_AGREEMENT, steadied};
 use crate::stages::structure_tensor::of_color_and_guides;
 use crate::stages::tensor_options::TensorOptions;
 use crate::stages::{
@@ -270,41 +270,11 @@ fn sheet(scope: &Scope<'_>, drawing: &Preset) -> Sheet {
     }
 }
 
-fn build(scope: &mut Scope<'_>) -> ImageId {
+/// Marks of the tones of a smoothed picture.
+fn marked(scope: &mut Scope<'_>, own: &Preset, drawing: &Preset, [smooth, form]: [ImageId; 2]) -> ImageId {
     let scale = scope.scale();
-    let own = scope.option::<Style>("style").preset();
-    let drawing = own.trimmed(scope).with_controls(Controls {
-        width: scope.float("line_width") / scale,
-        amount: scope.float("line_amount"),
-        suppress: scope.float("suppress_small"),
-        tone: scope.float("tone"),
-        grain: scope.float("grain"),
-    });
-    let guide_weight = scope.float("guide_weight");
-    let options = TensorOptions { rho: drawing.rho * scale, ..TensorOptions::at_scale(scale) };
-    let (abstraction, n_e) = (Abstraction::of(scope), scope.int("n_e"));
-    let flow = flow(scope, &drawing, guide_weight);
-    let Steadied { stages: [smooth, tensor, response], shares } =
-        steadied(scope, Agreement::lab(COLOUR_AGREEMENT), |scope| {
-            let color = scope.required("color");
-            let guides = flow_dog::guides(scope, guide_weight);
-            let tensor = of_color_and_guides(scope.plan, color, &guides, &options);
-            let tensor = flow_map::bent(scope, tensor);
-            let lab = rgb_to_lab::pass(scope.plan, color, 1.0);
-            let smooth = abstraction.apply(scope.plan, lab, tensor, n_e + own.flattening);
-            let lightness = lightness::pass_lab(scope.plan, smooth);
-            let seen = Seen { lightness, lab: Some(smooth) };
-            [smooth, tensor, flow.response(scope.plan, seen, tensor, &guides)]
-        });
-    let edges = flow.decided(scope.plan, response, tensor, shares);
-    // Where no own colour shows, saturation has no part in the plan, so that panels can tell.
-    let saturation = if drawing.colour > 0.0 { scope.float("saturation") } else { 1.0 };
-    let tinted = lab_to_rgb::pass(scope.plan, smooth, saturation);
     let toned = lightness::pass_lab(scope.plan, smooth);
     let on_dark = scope.option::<MassesOnDark>(MASSES_ON_DARK.id);
-    let masses = (on_dark == MassesOnDark::Light).then_some((toned, drawing.tones));
-    let lines = lines_on_white(scope, tinted, edges, tensor, drawing.sigma_a * scale, masses);
-    let form = gentle(scope, tensor, own.wide * scale);
     let (strokes, deviation) = strokes(scope, form, own.stroke);
     let tones = Tones {
         light: drawing.tones[0],
@@ -325,8 +295,66 @@ fn build(scope: &mut Scope<'_>) -> ImageId {
         true => marks::hatching(scope, HATCHING, drawing.spacing, scope.renewed(301)),
         false => None,
     };
-    let marks =
-        tone_marks::pass(scope.plan, &Inputs { tones: toned, tensor: form, strokes, hatching }, &tones);
+    let inputs = Inputs { tones: toned, tensor: form, strokes, hatching };
+    tone_marks::pass(scope.plan, &inputs, &tones)
+}
+
+/// What a frame shows by itself: the smoothed picture in Lab, its tensor, and its lines.
+fn found(scope: &mut Scope<'_>, own: &Preset, drawing: &Preset, flow: &FlowDog) -> [ImageId; 3] {
+    let color = scope.required("color");
+    let guides = flow_dog::guides(scope, scope.float("guide_weight"));
+    let scale = scope.scale();
+    let options = TensorOptions { rho: drawing.rho * scale, ..TensorOptions::at_scale(scale) };
+    let tensor = of_color_and_guides(scope.plan, color, &guides, &options);
+    let tensor = flow_map::bent(scope, tensor);
+    let lab = rgb_to_lab::pass(scope.plan, color, 1.0);
+    let iterations = scope.int("n_e") + own.flattening;
+    let smooth = Abstraction::of(scope).apply(scope.plan, lab, tensor, iterations);
+    let lightness = lightness::pass_lab(scope.plan, smooth);
+    let seen = Seen { lightness, lab: Some(smooth) };
+    [smooth, tensor, flow.edges(scope.plan, seen, tensor, &guides)]
+}
+
+/// The same, steady over time, the form that marks follow, and the marks.
+///
+/// Marks fade from frame to frame where they belong to things and are not drawn anew. Those that motion carries alone are
+/// made of layers that fade into one another already.
+fn steady(scope: &mut Scope<'_>, own: &Preset, drawing: &Preset, flow: &FlowDog) -> [ImageId; 5] {
+    let by = Agreement::lab(COLOUR_AGREEMENT);
+    let wide = own.wide * scope.scale();
+    if scope.input(ports::REST_POSITION.id).is_some() && scope.int(HOLD.id) == 0 {
+        let [smooth, tensor, edges, marks] = steadied(scope, by, |scope| {
+            let [smooth, tensor, edges] = found(scope, own, drawing, flow);
+            let form = gentle(scope, tensor, wide);
+            [smooth, tensor, edges, marked(scope, own, drawing, [smooth, form])]
+        });
+        return [smooth, tensor, edges, gentle(scope, tensor, wide), marks];
+    }
+    let [smooth, tensor, edges] = steadied(scope, by, |scope| found(scope, own, drawing, flow));
+    let form = gentle(scope, tensor, wide);
+    [smooth, tensor, edges, form, marked(scope, own, drawing, [smooth, form])]
+}
+
+fn build(scope: &mut Scope<'_>) -> ImageId {
+    let scale = scope.scale();
+    let own = scope.option::<Style>("style").preset();
+    let drawing = own.trimmed(scope).with_controls(Controls {
+        width: scope.float("line_width") / scale,
+        amount: scope.float("line_amount"),
+        suppress: scope.float("suppress_small"),
+        tone: scope.float("tone"),
+        grain: scope.float("grain"),
+    });
+    let flow = flow(scope, &drawing, scope.float("guide_weight"));
+    let [smooth, tensor, edges, form, marks] = steady(scope, &own, &drawing, &flow);
+    // Where no own colour shows, saturation has no part in the plan, so that panels can tell.
+    let saturation = if drawing.colour > 0.0 { scope.float("saturation") } else { 1.0 };
+    let tinted = lab_to_rgb::pass(scope.plan, smooth, saturation);
+    let toned = lightness::pass_lab(scope.plan, smooth);
+    let on_dark = scope.option::<MassesOnDark>(MASSES_ON_DARK.id);
+    let masses = (on_dark == MassesOnDark::Light).then_some((toned, drawing.tones));
+    let lines = lines_on_white(scope, tinted, edges, tensor, drawing.sigma_a * scale, masses);
+    let (strokes, _) = strokes(scope, form, own.stroke);
     let sheet = sheet(scope, &drawing);
-    ink_sheet::pass(scope.plan, &Drawing { lines, color: tinted, strokes, marks }, &sheet)
+    ink_sheet::pass(scope.plan, &Drawing { lines, color: tinted, strokes, marks, tones: toned }, &sheet)
 }

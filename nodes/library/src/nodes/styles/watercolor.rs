@@ -9,6 +9,7 @@ use crate::kernels::colour::{keep_detail, lab_to_rgb};
 use crate::kernels::smoothing::gaussian_blur;
 use crate::kernels::smoothing::line_integral_convolution::{self, Options as Lic};
 use crate::kernels::smoothing::wobble::{self, Options as Wobble};
+use crate::stages::steady::{Agreement, COLOUR_AGREEMENT, steadied};
 use crate::stages::tensor_options::TensorOptions;
 use crate::stages::{
     ADVANCED, LOOK, abstraction, line_integral_convolution as lic, marks, morphology, quantize_luminance,
@@ -147,7 +148,7 @@ const FARTHEST: f32 = 30.0;
 const SHORTEST_WAVE: f32 = 8.0;
 
 fn build(scope: &mut Scope<'_>) -> ImageId {
-    let patches = patches(scope);
+    let [_, patches] = steadied(scope, Agreement::lab(COLOUR_AGREEMENT), patches);
     let (amount, scale, origin) = (scope.float("wobble"), scope.scale(), scope.origin());
     let wavelength = scope.float("wavelength") * scope.float("mark_size");
     let wavelength = wavelength.max(SHORTEST_WAVE * amount / scale);
@@ -183,11 +184,12 @@ fn within_reach(scope: &Scope<'_>, length: &str) -> f32 {
     (scope.float(length) * scope.float("mark_size")).min(FARTHEST * scope.scale())
 }
 
-/// Washes in a few tones, without what is small and faint.
-fn patches(scope: &mut Scope<'_>) -> ImageId {
+/// The picture without small differences, by which frames are compared, and its washes in a few tones, without what is
+/// small and faint.
+fn patches(scope: &mut Scope<'_>) -> [ImageId; 2] {
     let options = TensorOptions::at_scale(scope.scale());
-    let [mut flat, tensors] = abstraction::steady_washes(scope, &options, TOLERANCE);
-    flat = tone::curve(scope, flat);
+    let [smoothed, tensors] = abstraction::regions(scope, &options, TOLERANCE);
+    let mut flat = tone::curve(scope, smoothed);
     let glazes = scope.int("glazes");
     if glazes > 0 {
         let steepness = Steepness::Fixed(CRISP * glazes as f32);
@@ -203,5 +205,5 @@ fn patches(scope: &mut Scope<'_>) -> ImageId {
     let [_, factor] = abstraction::detail_factors(scope.float("detail"));
     let painted = keep_detail::pass(scope.plan, simple, rgb, PAINTED.map(|difference| difference * factor));
     let smooth = Lic { sigma: scope.float("sigma_a"), ..lic::options() };
-    line_integral_convolution::pass(scope.plan, painted, tensors, &smooth)
+    [smoothed, line_integral_convolution::pass(scope.plan, painted, tensors, &smooth)]
 }

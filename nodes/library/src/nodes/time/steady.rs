@@ -3,7 +3,7 @@
 use crate::declare::ports;
 use crate::declare::spec::{NodeSpec, Param, STEADINESS, Scope, WINDOW};
 use crate::declare::value::Value;
-use crate::stages::steady::{Agreement, COLOUR_AGREEMENT, Steadied, compared, steadied};
+use crate::stages::steady::{Agreement, COLOUR_AGREEMENT, compared, steadied};
 use isophote_engine::ImageId;
 
 /// The node.
@@ -14,7 +14,7 @@ pub static NODE: NodeSpec = NodeSpec {
     hint: "Averages flicker and noise of moving pictures away before they reach a style.",
     doc: "Flicker and noise, averaged away before they reach a filter: neighbouring frames are carried here along the \
           motion of things and count where they agree. For pictures that are not stylized; the styles have a steadiness \
-          of their own, which averages what is not decided yet.",
+          of their own, which averages lines, tones and marks before they lie on paper.",
     section: "",
     inputs: &[ports::COLOR],
     output: ports::color_output("The steady picture."),
@@ -32,7 +32,7 @@ const COLOR_AGREEMENT: Param =
 
 fn build(scope: &mut Scope<'_>) -> ImageId {
     let by = Agreement::rgb(scope.float(COLOR_AGREEMENT.id));
-    let Steadied { stages: [_, color], .. } = steadied(scope, by, |scope| {
+    let [_, color] = steadied(scope, by, |scope| {
         let color = scope.required("color");
         [compared(scope, color), color]
     });
