@@ -127,7 +127,8 @@ pub static NODE: NodeSpec = NodeSpec {
         lines::GUIDE_WEIGHT,
         STEADINESS,
         WINDOW,
-        HOLD,
+        // Marks that are drawn anew do not fade.
+        HOLD.structural(),
         RENEWAL,
         // Less than other styles have: shading draws masses of its own.
         line_context::LOCAL_CONTRAST.with_default(Value::Float(0.6)).group(ADVANCED),
