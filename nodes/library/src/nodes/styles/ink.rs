@@ -10,6 +10,7 @@ use crate::kernels::colour::composite_lines::{self, Params as Composite};
 use crate::kernels::colour::ink_sheet::{self, Drawing, Sheet};
 use crate::kernels::colour::light_on_dark::{self, Params as LightOnDark};
 use crate::kernels::colour::tone_marks::{self, HATCHING, Inputs, Tones};
+use crate::kernels::colour::tone_relief;
 use crate::kernels::colour::{lab_to_rgb, lightness, rgb_to_lab};
 use crate::kernels::lines::flow_dog_two_dimensional::Stepping;
 use crate::kernels::shared::edge_threshold::{Threshold, Xdog};
@@ -18,6 +19,7 @@ use crate::kernels::smoothing::gaussian_blur;
 use crate::kernels::smoothing::line_integral_convolution::{self, Options as Lic};
 use crate::kernels::structure::contrast;
 use crate::kernels::structure::solid_noise::Marks;
+use crate::kernels::structure::tensor_across;
 use crate::kernels::structure::tensor_display::least_significant;
 use crate::stages::abstraction::{self, Abstraction};
 use crate::stages::flow_dog::{self, FlowDog, Kernel, Seen};
@@ -111,6 +113,12 @@ pub static NODE: NodeSpec = NodeSpec {
             "Hatch spacing",
             "Distance between the lines of the hatching: 1 is the medium's own.",
         ),
+        factor(
+            "hatch_bend",
+            "Hatch bending",
+            "How far regular hatching bends over the form: 1 is the medium's own, 0 is straight.",
+        )
+        .doc("Factor on the distance that hatches move aside per unit of L."),
         factor("grain_size", "Grain size", "Size of the grain of the paper: 1 is the medium's own."),
         shift(
             "own_color",
@@ -154,6 +162,11 @@ const SOLID: f32 = 0.95;
 /// Density of masses that are open.
 const OPEN: f32 = 0.72;
 
+/// Standard deviation of the further smoothing of the form that strokes lead across, and that of the relief over which
+/// hatches bend, pixels of the full-size picture.
+const WIDER: f32 = 8.0;
+const RELIEF: f32 = 12.0;
+
 /// Factor by which guides count more than where lightness is inhibited: here it counts in full, and light grounds are
 /// far from ink.
 const GUIDES: f32 = 1.7;
@@ -167,8 +180,8 @@ fn significant(rho: f32) -> f32 {
 
 /// Strokes along the flow, 0..=1 about middle grey, and the standard deviation of their values: noise, `width` pixels
 /// wide and smoothed along the stream lines by `length`, lengths in pixels of the full-size picture.
-fn strokes(scope: &mut Scope<'_>, tensor: ImageId, [width, length]: [f32; 2]) -> (ImageId, f32) {
-    let (scale, seed) = (scope.scale(), scope.renewed(19));
+fn strokes(scope: &mut Scope<'_>, tensor: ImageId, [width, length]: [f32; 2], seed: u32) -> (ImageId, f32) {
+    let (scale, seed) = (scope.scale(), scope.renewed(seed));
     let soft = marks::grains(scope, width * scale, seed);
     let Marks { deviation, .. } = Marks::of_smoothed_noise(width * scale, scale, seed);
     // Noise is about as fine as pixels: none may be left out.
@@ -183,6 +196,15 @@ fn strokes(scope: &mut Scope<'_>, tensor: ImageId, [width, length]: [f32; 2]) ->
 /// The form that marks follow, whose directions turn gently: not each wrinkle of it.
 fn gentle(scope: &mut Scope<'_>, tensor: ImageId, sigma: f32) -> ImageId {
     if sigma > 0.0 { gaussian_blur::pass(scope.plan, tensor, sigma, Class::Field) } else { tensor }
+}
+
+/// A Lab image, whose tones a hand has dragged along the form.
+fn dragged(scope: &mut Scope<'_>, lab: ImageId, form: ImageId, sigma: f32) -> ImageId {
+    if sigma <= 0.0 {
+        return lab;
+    }
+    let options = Lic { sigma, ..lic::options() };
+    line_integral_convolution::pass_unadapted(scope.plan, lab, form, &options)
 }
 
 /// Black lines on white, smoothed along the edges; in the second channel those that are cut out of dark masses, if there is
@@ -270,6 +292,53 @@ fn sheet(scope: &Scope<'_>, drawing: &Preset) -> Sheet {
     }
 }
 
+/// Strokes along the form, and the marks that say the tones of a Lab image.
+fn marked(scope: &mut Scope<'_>, drawing: &Preset, [lab, tensor]: [ImageId; 2]) -> (ImageId, ImageId) {
+    let scale = scope.scale();
+    let form = gentle(scope, tensor, drawing.wide * scale);
+    let (along, deviation) = strokes(scope, form, drawing.stroke, 19);
+    let rules = rules(scope, drawing, deviation);
+    if drawing.rubbed >= 1.0 {
+        // Nothing is hatched, and what is rubbed in everywhere is not lifted out.
+        let tones = tone_relief::pass(scope.plan, lab, lab);
+        let inputs = Inputs { tones, tensor: form, strokes: along, crossing: along, hatching: None };
+        return (along, tone_marks::pass(scope.plan, &inputs, &rules));
+    }
+    let wider = gentle(scope, form, WIDER * scale);
+    let across = tensor_across::pass(scope.plan, wider);
+    let (crossing, _) = strokes(scope, across, drawing.stroke, 23);
+    let smeared = dragged(scope, lab, form, drawing.smear * scale);
+    let relief = gaussian_blur::pass_colour(scope.plan, lab, RELIEF * scale);
+    let tones = tone_relief::pass(scope.plan, smeared, relief);
+    let hatching = marks::hatching(scope, HATCHING, drawing.spacing, scope.renewed(301));
+    let inputs = Inputs { tones, tensor: form, strokes: along, crossing, hatching };
+    (along, tone_marks::pass(scope.plan, &inputs, &rules))
+}
+
+/// Rules by which tones become marks, with strokes of a standard deviation.
+fn rules(scope: &Scope<'_>, drawing: &Preset, deviation: f32) -> Tones {
+    let scale = scope.scale();
+    let on_dark = scope.option::<MassesOnDark>(MASSES_ON_DARK.id);
+    Tones {
+        light: drawing.tones[0],
+        solid: drawing.tones[1],
+        ease: drawing.ease,
+        most: if on_dark == MassesOnDark::Open { OPEN } else { 1.0 },
+        smooth_from: drawing.smooth_from,
+        rubbed: drawing.rubbed,
+        form: drawing.form,
+        spacing: drawing.spacing,
+        bend: drawing.bend,
+        lift: drawing.lift,
+        significant: significant(math::hypot(drawing.rho, drawing.wide)),
+        stroke: drawing.stroke.map(|length| length * scale),
+        deviation,
+        given_deviation: marks::HATCHING_DEVIATION,
+        scale,
+        origin: scope.origin(),
+    }
+}
+
 fn build(scope: &mut Scope<'_>) -> ImageId {
     let scale = scope.scale();
     let own = scope.option::<Style>("style").preset();
@@ -300,33 +369,11 @@ fn build(scope: &mut Scope<'_>) -> ImageId {
     // Where no own colour shows, saturation has no part in the plan, so that panels can tell.
     let saturation = if drawing.colour > 0.0 { scope.float("saturation") } else { 1.0 };
     let tinted = lab_to_rgb::pass(scope.plan, smooth, saturation);
-    let toned = lightness::pass_lab(scope.plan, smooth);
     let on_dark = scope.option::<MassesOnDark>(MASSES_ON_DARK.id);
-    let masses = (on_dark == MassesOnDark::Light).then_some((toned, drawing.tones));
+    let masses =
+        (on_dark == MassesOnDark::Light).then(|| (lightness::pass_lab(scope.plan, smooth), drawing.tones));
     let lines = lines_on_white(scope, tinted, edges, tensor, drawing.sigma_a * scale, masses);
-    let form = gentle(scope, tensor, own.wide * scale);
-    let (strokes, deviation) = strokes(scope, form, own.stroke);
-    let tones = Tones {
-        light: drawing.tones[0],
-        solid: drawing.tones[1],
-        ease: drawing.ease,
-        most: if on_dark == MassesOnDark::Open { OPEN } else { 1.0 },
-        rubbed: drawing.rubbed,
-        form: drawing.form,
-        spacing: drawing.spacing,
-        significant: significant(math::hypot(drawing.rho, own.wide)),
-        stroke: own.stroke.map(|length| length * scale),
-        deviation,
-        given_deviation: marks::HATCHING_DEVIATION,
-        scale,
-        origin: scope.origin(),
-    };
-    let hatching = match own.rubbed < 1.0 {
-        true => marks::hatching(scope, HATCHING, drawing.spacing, scope.renewed(301)),
-        false => None,
-    };
-    let marks =
-        tone_marks::pass(scope.plan, &Inputs { tones: toned, tensor: form, strokes, hatching }, &tones);
+    let (strokes, marks) = marked(scope, &drawing, [smooth, tensor]);
     let sheet = sheet(scope, &drawing);
     ink_sheet::pass(scope.plan, &Drawing { lines, color: tinted, strokes, marks }, &sheet)
 }
