@@ -55,6 +55,8 @@ struct Params {
 #output target_image rg32float
 
 const HALF: vec2f = vec2f(0.5);
+// Length of strokes across the form, in lengths of those along it.
+const CROSSING: f32 = 0.6;
 // Densities up to which the first of two directions has all strokes, and all hatches.
 const FULL_STROKES: f32 = 0.5;
 const FULL_HATCHES: f32 = 0.7;
@@ -126,10 +128,10 @@ fn stroke_mean(d: f32) -> f32 {
 
 // By how much fewer grains a stroke averages beside the picture's border, where its line is cut: the root of the
 // variance that it gains.
-fn border_gain(p: vec2f, t: vec2f) -> f32 {
+fn border_gain(p: vec2f, t: vec2f, inverse_length: f32) -> f32 {
     let size = vec2f(grid.full);
     let near = min(p, size - p);
-    let cut = near * params.inverse_length / max(abs(t), vec2f(1e-3));
+    let cut = near * inverse_length / max(abs(t), vec2f(1e-3));
     let along = exp(-cut * (0.92 + 0.28 * cut));
     let d = near / params.stroke_width;
     let beside = exp(-d * (0.92 + 0.28 * d));
@@ -157,7 +159,10 @@ fn main(@builtin(global_invocation_id) id: vec3u) {
         let gradient = sqrt(max(structure.x + structure.z, 0.0)) / params.inverse_scale;
         let form = params.form * rise((tensor_anisotropy(structure) - params.significant) * 4.0)
             * rise((gradient - 0.003) * 180.0);
-        let gain = vec2f(border_gain(vec2f(p) + HALF, tangent), border_gain(vec2f(p) + HALF, tangent.yx));
+        let gain = vec2f(
+            border_gain(vec2f(p) + HALF, tangent, params.inverse_length),
+            border_gain(vec2f(p) + HALF, tangent.yx, params.inverse_length / CROSSING),
+        );
         let z = (vec2f(fetch(strokes, 2u, p).x, fetch(crossing, 3u, p).x) - HALF) * params.stroke_gain * gain;
         // What strokes along the form leave over of darks goes across it, and what both leave over is hatched.
         let followed = d * form;

@@ -73,6 +73,9 @@ pub const HATCHING: [[f32; 2]; 2] = [[0.8, -0.6], [0.96, 0.28]];
 pub const SMOOTH_FROM: f32 = 69.0;
 const FADE: f32 = 9.0;
 
+/// Length of strokes across the form, in lengths of those along it.
+pub const CROSSING: f32 = 0.6;
+
 /// Softness of the edges of strokes, in values of 0..=1 at which they lie.
 const SOFTNESS: f32 = 0.25;
 
@@ -92,7 +95,7 @@ pub struct Inputs {
     pub tensor: ImageId,
     /// Noise, averaged along the stream lines of the tensor, in the first channel.
     pub strokes: ImageId,
-    /// The same across them.
+    /// The same across them, shorter by [`CROSSING`].
     pub crossing: ImageId,
     /// Noise along [`HATCHING`], where hatches are not to stay on the screen.
     pub hatching: Option<[ImageId; 2]>,
@@ -199,10 +202,12 @@ fn drawn<S: Simd>(
         * params.form;
     let [noise, ..]: [f32x8<S>; 4] = block.read(simd, &pass.inputs[2]);
     let place = block.centres(simd);
-    let gain = border_gain(place, pass.inputs[1].full(), tangent, params);
+    let full = pass.inputs[1].full();
+    let gain = border_gain(place, full, (tangent, params.inverse_length), params);
     let z = (noise - 0.5) * params.stroke_gain * gain;
     let [noise, ..]: [f32x8<S>; 4] = block.read(simd, &pass.inputs[3]);
-    let gain = border_gain(place, pass.inputs[1].full(), [tangent[1], tangent[0]], params);
+    let crosswise = ([tangent[1], tangent[0]], params.inverse_length / CROSSING);
+    let gain = border_gain(place, full, crosswise, params);
     let z_across = (noise - 0.5) * params.stroke_gain * gain;
     // What strokes along the form leave over of darks goes across it, and what both leave over is hatched.
     let followed = d * form;
@@ -309,14 +314,14 @@ fn stroke_mean<S: Simd>(d: f32x8<S>, params: &Params) -> f32x8<S> {
 fn border_gain<S: Simd>(
     place: [f32x8<S>; 2],
     full: [i32; 2],
-    tangent: [f32x8<S>; 2],
+    (tangent, inverse_length): ([f32x8<S>; 2], f32),
     params: &Params,
 ) -> f32x8<S> {
     let one = f32x8::splat(place[0].simd, 1.0);
     let mut variance = one;
     for i in 0..2 {
         let near = place[i].at_most(one * full[i] as f32 - place[i]);
-        let cut = near * params.inverse_length / tangent[i].abs().at_least(1e-3);
+        let cut = near * inverse_length / tangent[i].abs().at_least(1e-3);
         let beside = near / params.stroke_width;
         for d in [cut, beside] {
             variance *= one + (d * (d * -0.28 - 0.92)).at_least(-80.0).exp();

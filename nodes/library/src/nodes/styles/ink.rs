@@ -9,12 +9,11 @@ use crate::declare::value::Value;
 use crate::kernels::colour::composite_lines::{self, Params as Composite};
 use crate::kernels::colour::ink_sheet::{self, Drawing, Sheet};
 use crate::kernels::colour::light_on_dark::{self, Params as LightOnDark};
-use crate::kernels::colour::tone_marks::{self, HATCHING, Inputs, Tones};
-use crate::kernels::colour::tone_relief;
-use crate::kernels::colour::{lab_to_rgb, lightness, rgb_to_lab};
+use crate::kernels::colour::tone_marks::{self, CROSSING, HATCHING, Inputs, Tones};
+use crate::kernels::colour::{lab_to_rgb, lightness, rgb_to_lab, tone_relief};
 use crate::kernels::lines::flow_dog_two_dimensional::Stepping;
 use crate::kernels::shared::edge_threshold::{Threshold, Xdog};
-use crate::kernels::shared::stream::Integrator;
+use crate::kernels::shared::stream::{Integrator, STRETCH};
 use crate::kernels::smoothing::gaussian_blur;
 use crate::kernels::smoothing::line_integral_convolution::{self, Options as Lic};
 use crate::kernels::structure::contrast;
@@ -164,7 +163,7 @@ const OPEN: f32 = 0.72;
 
 /// Standard deviation of the further smoothing of the form that strokes lead across, and that of the relief over which
 /// hatches bend, pixels of the full-size picture.
-const WIDER: f32 = 8.0;
+const WIDER: f32 = 5.0;
 const RELIEF: f32 = 12.0;
 
 /// Factor by which guides count more than where lightness is inhibited: here it counts in full, and light grounds are
@@ -179,13 +178,19 @@ fn significant(rho: f32) -> f32 {
 }
 
 /// Strokes along the flow, 0..=1 about middle grey, and the standard deviation of their values: noise, `width` pixels
-/// wide and smoothed along the stream lines by `length`, lengths in pixels of the full-size picture.
-fn strokes(scope: &mut Scope<'_>, tensor: ImageId, [width, length]: [f32; 2], seed: u32) -> (ImageId, f32) {
-    let (scale, seed) = (scope.scale(), scope.renewed(seed));
+/// wide and smoothed along the stream lines by `length`, lengths in pixels of the full-size picture; in steps stretched by
+/// up to `stretch`.
+fn strokes(
+    scope: &mut Scope<'_>,
+    tensor: ImageId,
+    [width, length]: [f32; 2],
+    stretch: f32,
+) -> (ImageId, f32) {
+    let (scale, seed) = (scope.scale(), scope.renewed(19));
     let soft = marks::grains(scope, width * scale, seed);
     let Marks { deviation, .. } = Marks::of_smoothed_noise(width * scale, scale, seed);
-    // Noise is about as fine as pixels: none may be left out.
-    let options = Lic { sigma: length * scale, ..lic::options() };
+    // Noise is about as fine as pixels: steps are stretched where strokes are few enough not to show it.
+    let options = Lic { sigma: length * scale, stretch, ..lic::options() };
     let long = line_integral_convolution::pass_unadapted(scope.plan, soft, tensor, &options);
     // A Gaussian along lines leaves this share of the deviation.
     let left = (width / math::hypot(length, width)).sqrt();
@@ -203,7 +208,7 @@ fn dragged(scope: &mut Scope<'_>, lab: ImageId, form: ImageId, sigma: f32) -> Im
     if sigma <= 0.0 {
         return lab;
     }
-    let options = Lic { sigma, ..lic::options() };
+    let options = Lic { sigma, stretch: STRETCH, ..lic::options() };
     line_integral_convolution::pass_unadapted(scope.plan, lab, form, &options)
 }
 
@@ -296,7 +301,7 @@ fn sheet(scope: &Scope<'_>, drawing: &Preset) -> Sheet {
 fn marked(scope: &mut Scope<'_>, drawing: &Preset, [lab, tensor]: [ImageId; 2]) -> (ImageId, ImageId) {
     let scale = scope.scale();
     let form = gentle(scope, tensor, drawing.wide * scale);
-    let (along, deviation) = strokes(scope, form, drawing.stroke, 19);
+    let (along, deviation) = strokes(scope, form, drawing.stroke, 1.0);
     let rules = rules(scope, drawing, deviation);
     if drawing.rubbed >= 1.0 {
         // Nothing is hatched, and what is rubbed in everywhere is not lifted out.
@@ -306,7 +311,8 @@ fn marked(scope: &mut Scope<'_>, drawing: &Preset, [lab, tensor]: [ImageId; 2]) 
     }
     let wider = gentle(scope, form, WIDER * scale);
     let across = tensor_across::pass(scope.plan, wider);
-    let (crossing, _) = strokes(scope, across, drawing.stroke, 23);
+    let [width, length] = drawing.stroke;
+    let (crossing, _) = strokes(scope, across, [width, length * CROSSING], STRETCH);
     let smeared = dragged(scope, lab, form, drawing.smear * scale);
     let relief = gaussian_blur::pass_colour(scope.plan, lab, RELIEF * scale);
     let tones = tone_relief::pass(scope.plan, smeared, relief);

@@ -165,7 +165,7 @@ const CHARCOAL: Preset = Preset {
     rubbed: 0.55,
     form: 0.8,
     spacing: 10.0,
-    smear: 9.0,
+    smear: 5.0,
     lift: 0.75,
     stroke: [2.2, 12.0],
     wide: 6.0,
