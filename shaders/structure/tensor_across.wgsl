@@ -6,5 +6,5 @@
 #output target_image rgba32float
 
 fn of_pixel(id: vec3u, v: vec4f) -> vec4f {
-    return vec4f(v.z, -v.y, v.x, v.w);
+    return vec4f(v.z, -1.0 * v.y, v.x, v.w);
 }

@@ -40,8 +40,6 @@ pub struct Tones {
     pub ease: f32,
     /// Share of the paper that the darkest marks cover, 0.7..=1.
     pub most: f32,
-    /// Lightness from which on the paper's grain does not show, units of L.
-    pub smooth_from: f32,
     /// Share of the tones that is rubbed in everywhere, 0..=1; the rest is hatched where it is not light.
     pub rubbed: f32,
     /// Share of the hatching that follows the form where that is significant, 0..=1.
@@ -69,7 +67,7 @@ pub struct Tones {
 /// Directions of hatches, of light and of deep tones, of length 1.
 pub const HATCHING: [[f32; 2]; 2] = [[0.8, -0.6], [0.96, 0.28]];
 
-/// Lightness from which on tones are smooth where marks make them, and the units of L below it over which marks stand out.
+/// Lightness from which on tones are smooth, and the units of L below it over which marks stand out.
 pub const SMOOTH_FROM: f32 = 69.0;
 const FADE: f32 = 9.0;
 
@@ -111,7 +109,7 @@ pub fn pass(plan: &mut PlanBuilder, inputs: &Inputs, tones: &Tones) -> ImageId {
         light: tones.light,
         slope: 1.0 / (tones.light - tones.solid).max(1.0),
         ease: tones.ease.clamp(0.0, 0.99),
-        smooth_from: tones.smooth_from,
+        smooth_from: SMOOTH_FROM,
         inverse_fade: 1.0 / FADE,
         rubbed: tones.rubbed.clamp(0.0, 1.0),
         form: tones.form.clamp(0.0, 1.0),

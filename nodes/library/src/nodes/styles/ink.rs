@@ -112,12 +112,6 @@ pub static NODE: NodeSpec = NodeSpec {
             "Hatch spacing",
             "Distance between the lines of the hatching: 1 is the medium's own.",
         ),
-        factor(
-            "hatch_bend",
-            "Hatch bending",
-            "How far regular hatching bends over the form: 1 is the medium's own, 0 is straight.",
-        )
-        .doc("Factor on the distance that hatches move aside per unit of L."),
         factor("grain_size", "Grain size", "Size of the grain of the paper: 1 is the medium's own."),
         shift(
             "own_color",
@@ -141,6 +135,12 @@ pub static NODE: NodeSpec = NodeSpec {
         line_context::INHIBITION.with_default(Value::Float(1.0)).group(ADVANCED),
         line_context::COLOUR_EDGES.with_default(Value::Float(0.5)).group(ADVANCED),
         MASSES_ON_DARK.group(ADVANCED),
+        factor(
+            "hatch_bend",
+            "Hatch bending",
+            "How far regular hatching bends over the form: 1 is the medium's own, 0 is straight.",
+        )
+        .doc("Factor on the distance that hatches move aside per unit of L."),
     ],
     build,
 };
@@ -330,7 +330,6 @@ fn rules(scope: &Scope<'_>, drawing: &Preset, deviation: f32) -> Tones {
         solid: drawing.tones[1],
         ease: drawing.ease,
         most: if on_dark == MassesOnDark::Open { OPEN } else { 1.0 },
-        smooth_from: drawing.smooth_from,
         rubbed: drawing.rubbed,
         form: drawing.form,
         spacing: drawing.spacing,

@@ -2,7 +2,6 @@
 
 use crate::declare::choice::choice;
 use crate::declare::spec::{Param, Scope};
-use crate::kernels::colour::tone_marks::SMOOTH_FROM;
 use crate::stages::LOOK;
 use crate::stages::lines::{self, length_factor, width_factor};
 
@@ -61,8 +60,6 @@ pub struct Preset {
     pub phi: f32,
     /// Lightness from which on the paper is bare and that from which down all is dark, units of L.
     pub tones: [f32; 2],
-    /// Lightness from which on the paper's grain does not show, units of L.
-    pub smooth_from: f32,
     /// By how much middle tones are lighter than in proportion.
     pub ease: f32,
     /// Share of the tones that is rubbed in.
@@ -109,7 +106,6 @@ const INK: Preset = Preset {
     epsilon: 26.0,
     phi: 0.12,
     tones: [67.0, 14.0],
-    smooth_from: SMOOTH_FROM,
     ease: 0.0,
     rubbed: 0.0,
     form: 0.85,
@@ -203,8 +199,6 @@ const PASTEL: Preset = Preset {
     epsilon: 10.0,
     phi: 0.025,
     tones: [30.0, -25.0],
-    // Chalk breaks in all tones that are not the paper's own.
-    smooth_from: 97.0,
     rubbed: 1.0,
     form: 0.0,
     stroke: [2.2, 12.0],
