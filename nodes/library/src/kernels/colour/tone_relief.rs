@@ -1,5 +1,5 @@
 //! Lightness of two Lab images beside each other: that of tones, and that of the relief that they rise from, the same smoothed
-//! wide. Both as (L alpha, alpha), as [`lightness`](super::lightness) has it.
+//! wide. Both as (L alpha, alpha), as `lightness` has it.
 //!
 //! Cost: two products a pixel.
 
