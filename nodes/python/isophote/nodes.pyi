@@ -775,6 +775,7 @@ def ink(
     inhibition: float = 1.0,
     colour_edges: float = 0.5,
     line_on_dark: Literal['off', 'light', 'open'] = 'off',
+    hatch_bend: float = 1.0,
     mix: float = 1.0,
     out: Any = None,
     frame: int = 0,
@@ -890,6 +891,8 @@ def ink(
         line_on_dark: Lets lines be seen in dark masses: cut out of them, or drawn over hatching
             that lets paper through. Masses are then those of the shading alone. What is drawn in
             the picture's own colours has no solid masses.
+        hatch_bend: How far regular hatching bends over the form: 1 is the medium's own, 0 is
+            straight. Factor on the distance that hatches move aside per unit of L. 0 to 4.
         mix: Blends the result with the picture: 0 leaves the picture as it was, 1 shows the result
             alone. 0 to 1.
 

@@ -1,11 +1,12 @@
-//! Tones as an artist's marks (§ 4.3): regular hatching, crossed where it is dark, and strokes along the form where the
-//! structure is significant (2.154). Marks of mean density d cover the share d of the paper, so that tones stay in
-//! order. What is lighter than marks can say is rubbed in smoothly, and where nothing is dark the paper stays bare.
+//! Tones as an artist's marks (§ 4.3): hatching that bends over the form, crossed where it is dark, and strokes along and
+//! across the form where the structure is significant (2.154). Marks of mean density d cover the share d of the paper, so
+//! that tones stay in order. What is lighter than marks can say is rubbed in smoothly, and where nothing is dark the paper
+//! stays bare. Lights of what is smeared are lifted out, as with a kneaded eraser.
 //!
 //! Strokes are averages of noise along stream lines. Beside the picture's border lines are cut and average less, which
 //! raises their contrast; by how much is known for Gaussians, and taken back.
 //!
-//! Cost: 8 hashes, an eigenvector and about 150 multiply-adds per pixel.
+//! Cost: 8 hashes, an eigenvector and about 190 multiply-adds per pixel.
 
 pub use crate::kernels::shaders::tone_marks::Params;
 use crate::kernels::shared::mark_tones::{INVERSE_FADE, SMOOTH_FROM, rise, tone_lightness};
@@ -19,7 +20,7 @@ use isophote_engine::{Band, Class, CpuPass, ImageId, PlanBuilder, Support, Toler
 
 crate::kernel!(tone_marks {
     cpu: run,
-    cost: |_| 450.0,
+    cost: |_| 490.0,
     tolerance: Tolerance {
         absolute: 3e-3,
         relative: 1e-3,
@@ -46,6 +47,10 @@ pub struct Tones {
     pub form: f32,
     /// Distance of hatches, pixels of the full-size picture.
     pub spacing: f32,
+    /// Distance that they bend per unit of L of the relief, pixels of the full-size picture.
+    pub bend: f32,
+    /// Share of the tone that is lifted out where a place is lighter than the relief, 0..=1.
+    pub lift: f32,
     /// Anisotropy from which on structure is significant.
     pub significant: f32,
     /// Width and length of strokes, standard deviations in pixels of the picture that is rendered.
@@ -63,19 +68,31 @@ pub struct Tones {
 /// Directions of hatches, of light and of deep tones, of length 1.
 pub const HATCHING: [[f32; 2]; 2] = [[0.8, -0.6], [0.96, 0.28]];
 
+/// Length of strokes across the form, in lengths of those along it.
+pub const CROSSING: f32 = 0.6;
+
 /// Softness of the edges of strokes, in values of 0..=1 at which they lie.
 const SOFTNESS: f32 = 0.25;
+
+/// Densities up to which the first of two directions has all strokes, and all hatches.
+const FULL_STROKES: f32 = 0.5;
+const FULL_HATCHES: f32 = 0.7;
+/// Units of L above the relief from which on tone is lifted out, and the share of it per further unit.
+const LIFT_FROM: f32 = 2.0;
+const LIFT_SLOPE: f32 = 0.12;
 
 /// Images that tones are drawn after and with.
 #[derive(Clone, Copy, Debug)]
 pub struct Inputs {
-    /// (L alpha, alpha).
+    /// (L alpha, alpha), and the same of the relief ([`tone_relief`](super::tone_relief)).
     pub tones: ImageId,
     /// Tensor that strokes follow.
     pub tensor: ImageId,
     /// Noise, averaged along the stream lines of the tensor, in the first channel.
     pub strokes: ImageId,
-    /// The same along [`HATCHING`], where hatches are not to stay on the screen.
+    /// The same across them, shorter by [`CROSSING`].
+    pub crossing: ImageId,
+    /// Noise along [`HATCHING`], where hatches are not to stay on the screen.
     pub hatching: Option<[ImageId; 2]>,
 }
 
@@ -101,9 +118,11 @@ pub fn pass(plan: &mut PlanBuilder, inputs: &Inputs, tones: &Tones) -> ImageId {
         given_gain: if inputs.hatching.is_some() { 1.0 / tones.given_deviation.max(1e-3) } else { 0.0 },
         edge: edge(tones.scale),
         open: 1.0 - tones.most,
+        bend: tones.bend,
+        lift: tones.lift,
         padding: Default::default(),
     };
-    let images = [inputs.tones, inputs.tensor, inputs.strokes, first, second];
+    let images = [inputs.tones, inputs.tensor, inputs.strokes, inputs.crossing, first, second];
     plan.pass(&KERNEL, &images, &params, Class::Field, Support::Pixels(0))
 }
 
@@ -120,23 +139,45 @@ fn run(pass: &CpuPass<'_>, band: &mut Band<'_>) {
     // Hashes of noise: by AVX-512 they take a third longer.
     dispatch!(at_most_avx2(pass.level), simd => for_blocks::<1>(band, #[inline(always)] |block, target| {
         let one = f32x8::splat(simd, 1.0);
-        let lightness = tone_lightness(block.read(simd, &pass.inputs[0]));
+        let [sum, alpha, around, cover]: [f32x8<_>; 4] = block.read(simd, &pass.inputs[0]);
+        let lightness = tone_lightness([sum, alpha]);
+        let ground = tone_lightness([around, cover]);
         let t = ((one * params.light - lightness) * params.slope).within(0.0, 1.0);
         let eased = t * (one - (one - t) * params.ease);
-        let d = eased - eased * eased * eased * params.open;
+        let lifted = rise((lightness - ground - LIFT_FROM) * LIFT_SLOPE) * params.lift;
+        let d = (eased - eased * eased * eased * params.open) * (one - lifted);
         let grained = rise((one * params.smooth_from - lightness) * params.inverse_fade);
         let marked = grained * (1.0 - params.rubbed);
         let mut density = d;
         if marked.simd_gt(0.0).any_true() {
-            density = d + marked * (drawn(simd, pass, &params, &block, d) - d);
+            density = d + marked * (drawn(simd, pass, &params, &block, [d, ground]) - d);
         }
         write([density], target);
     }));
 }
 
+/// Density of the first of two directions that are to cover `d` together.
+#[inline(always)]
+fn shared_out<S: Simd>(d: f32x8<S>, full: f32) -> f32x8<S> {
+    d - (d - full).at_least(0.0) * 0.5
+}
+
+/// Density that covers `d` together with `first`.
+#[inline(always)]
+fn remaining<S: Simd>(d: f32x8<S>, first: f32x8<S>) -> f32x8<S> {
+    let one = f32x8::splat(d.simd, 1.0);
+    one - (one - d) / (one - first).at_least(one * 1e-6)
+}
+
 /// Mask of the ink on the paper, for marks that cover the share `d` of it.
 #[inline(always)]
-fn drawn<S: Simd>(simd: S, pass: &CpuPass<'_>, params: &Params, block: &Block, d: f32x8<S>) -> f32x8<S> {
+fn drawn<S: Simd>(
+    simd: S,
+    pass: &CpuPass<'_>,
+    params: &Params,
+    block: &Block,
+    [d, ground]: [f32x8<S>; 2],
+) -> f32x8<S> {
     let one = f32x8::splat(simd, 1.0);
     let least = one * 1e-6;
     let [e, f, g, _]: [f32x8<S>; 4] = block.read(simd, &pass.inputs[1]);
@@ -144,34 +185,48 @@ fn drawn<S: Simd>(simd: S, pass: &CpuPass<'_>, params: &Params, block: &Block, d
     // By the change from pixel to pixel of the full-size picture, so that proxies show the same marks.
     let gradient = (e + g).at_least(0.0).sqrt() / params.inverse_scale;
     let form = rise((tensor::anisotropy(e, f, g) - params.significant) * 4.0)
-        * rise((gradient - 0.001) * 250.0)
+        * rise((gradient - 0.003) * 180.0)
         * params.form;
     let [noise, ..]: [f32x8<S>; 4] = block.read(simd, &pass.inputs[2]);
     let place = block.centres(simd);
-    let gain = border_gain(place, pass.inputs[1].full(), tangent, params);
+    let full = pass.inputs[1].full();
+    let gain = border_gain(place, full, (tangent, params.inverse_length), params);
     let z = (noise - 0.5) * params.stroke_gain * gain;
-    // What strokes along the form leave over is hatched.
+    let [noise, ..]: [f32x8<S>; 4] = block.read(simd, &pass.inputs[3]);
+    let crosswise = ([tangent[1], tangent[0]], params.inverse_length / CROSSING);
+    let gain = border_gain(place, full, crosswise, params);
+    let z_across = (noise - 0.5) * params.stroke_gain * gain;
+    // What strokes along the form leave over of darks goes across it, and what both leave over is hatched.
     let followed = d * form;
-    let rest = one - (one - d) / (one - followed).at_least(least);
-    let first = rest - (rest - 0.45).at_least(0.0) * 0.5;
-    let second = one - (one - rest) / (one - first).at_least(least);
+    let long = shared_out(followed, FULL_STROKES);
+    let crossed = remaining(followed, long);
+    let rest = remaining(d, followed);
+    let first = shared_out(rest, FULL_HATCHES);
+    let second = remaining(rest, first);
     let mut means = [first, second];
     let hatches = if params.given_gain > 0.0 {
         means = [stroke_mean(first, params), stroke_mean(second, params)];
-        let [a, ..]: [f32x8<S>; 4] = block.read(simd, &pass.inputs[3]);
-        let [b, ..]: [f32x8<S>; 4] = block.read(simd, &pass.inputs[4]);
+        let [a, ..]: [f32x8<S>; 4] = block.read(simd, &pass.inputs[4]);
+        let [b, ..]: [f32x8<S>; 4] = block.read(simd, &pass.inputs[5]);
         [(a, first), (b, second)].map(|(v, d)| stroke((v - 0.5) * params.given_gain, d, params))
     } else {
         let q = [0, 1].map(|i| (place[i] + params.origin[i]) * params.inverse_scale);
+        let shift = (ground - 50.0) * params.bend;
         [
-            hatch(simd, q, HATCHING[0], (first, 301), params),
-            hatch(simd, q, HATCHING[1], (second, 701), params),
+            hatch(simd, q, (HATCHING[0], shift), (first, 301), params),
+            hatch(simd, q, (HATCHING[1], -shift), (second, 701), params),
         ]
     };
-    let mut bare = (one - stroke(z, followed, params)) * (one - hatches[0]) * (one - hatches[1]);
+    let mut bare = (one - stroke(z, long, params))
+        * (one - stroke(z_across, crossed, params))
+        * (one - hatches[0])
+        * (one - hatches[1]);
     if params.rubbed > 0.0 {
         // What strokes leave bare of light tones is rubbed in, or paper would glow where smooth tones end.
-        let left = (one - stroke_mean(followed, params)) * (one - means[0]) * (one - means[1]);
+        let left = (one - stroke_mean(long, params))
+            * (one - stroke_mean(crossed, params))
+            * (one - means[0])
+            * (one - means[1]);
         bare *= ((one - d) / left.at_least(least)).at_most(one);
     }
     one - bare
@@ -184,19 +239,19 @@ fn covered<S: Simd>(r: f32x8<S>, s: f32x8<S>, params: &Params) -> f32x8<S> {
     ((s - r) * size + 0.5).within(0.0, 1.0) - ((-s - r) * size + 0.5).within(0.0, 1.0)
 }
 
-/// Hatches of mean density `d` along `along`, as if drawn by hand.
+/// Hatches of mean density `d` along `along`, `shift` aside, as if drawn by hand.
 #[inline(always)]
 fn hatch<S: Simd>(
     simd: S,
     [x, y]: [f32x8<S>; 2],
-    along: [f32; 2],
+    (along, shift): ([f32; 2], f32x8<S>),
     (d, seed): (f32x8<S>, u32),
     params: &Params,
 ) -> f32x8<S> {
     let one = f32x8::splat(simd, 1.0);
     let spacing = params.spacing;
     let p = x * along[0] + y * along[1];
-    let across = y * along[0] - x * along[1];
+    let across = y * along[0] - x * along[1] + shift;
     let slow = 0.06 / spacing;
     let across = across + (noise(simd, p * slow, across * slow, seed) - 0.5) * (spacing * 0.45);
     let phase = across / spacing;
@@ -238,14 +293,14 @@ fn stroke_mean<S: Simd>(d: f32x8<S>, params: &Params) -> f32x8<S> {
 fn border_gain<S: Simd>(
     place: [f32x8<S>; 2],
     full: [i32; 2],
-    tangent: [f32x8<S>; 2],
+    (tangent, inverse_length): ([f32x8<S>; 2], f32),
     params: &Params,
 ) -> f32x8<S> {
     let one = f32x8::splat(place[0].simd, 1.0);
     let mut variance = one;
     for i in 0..2 {
         let near = place[i].at_most(one * full[i] as f32 - place[i]);
-        let cut = near * params.inverse_length / tangent[i].abs().at_least(1e-3);
+        let cut = near * inverse_length / tangent[i].abs().at_least(1e-3);
         let beside = near / params.stroke_width;
         for d in [cut, beside] {
             variance *= one + (d * (d * -0.28 - 0.92)).at_least(-80.0).exp();
@@ -278,6 +333,8 @@ mod tests {
         given_gain: 0.0,
         edge: SOFTNESS,
         open: 0.0,
+        bend: 0.0,
+        lift: 0.0,
         padding: [0; 1],
     };
 
@@ -289,7 +346,7 @@ mod tests {
             for y in 0..400 {
                 for x in 0..50 {
                     let q = [columns + (x * 8) as f32 + 0.5, f32x8::splat(simd, y as f32 + 0.5)];
-                    let ink = hatch(simd, q, HATCHING[0], (f32x8::splat(simd, d), 301), &PARAMS);
+                    let ink = hatch(simd, q, (HATCHING[0], f32x8::splat(simd, 0.0)), (f32x8::splat(simd, d), 301), &PARAMS);
                     sum += <[f32; 8]>::from(ink).iter().sum::<f32>();
                 }
             }

@@ -9,15 +9,16 @@ use crate::declare::value::Value;
 use crate::kernels::colour::composite_lines::{self, Params as Composite};
 use crate::kernels::colour::ink_sheet::{self, Drawing, Sheet};
 use crate::kernels::colour::light_on_dark::{self, Params as LightOnDark};
-use crate::kernels::colour::tone_marks::{self, HATCHING, Inputs, Tones};
-use crate::kernels::colour::{lab_to_rgb, lightness, rgb_to_lab};
+use crate::kernels::colour::tone_marks::{self, CROSSING, HATCHING, Inputs, Tones};
+use crate::kernels::colour::{lab_to_rgb, lightness, rgb_to_lab, tone_relief};
 use crate::kernels::lines::flow_dog_two_dimensional::Stepping;
 use crate::kernels::shared::edge_threshold::{Threshold, Xdog};
-use crate::kernels::shared::stream::Integrator;
+use crate::kernels::shared::stream::{Integrator, STRETCH};
 use crate::kernels::smoothing::gaussian_blur;
 use crate::kernels::smoothing::line_integral_convolution::{self, Options as Lic};
 use crate::kernels::structure::contrast;
 use crate::kernels::structure::solid_noise::Marks;
+use crate::kernels::structure::tensor_across;
 use crate::kernels::structure::tensor_display::least_significant;
 use crate::stages::abstraction::{self, Abstraction};
 use crate::stages::flow_dog::{self, FlowDog, Kernel, Seen};
@@ -135,6 +136,12 @@ pub static NODE: NodeSpec = NodeSpec {
         line_context::INHIBITION.with_default(Value::Float(1.0)).group(ADVANCED),
         line_context::COLOUR_EDGES.with_default(Value::Float(0.5)).group(ADVANCED),
         MASSES_ON_DARK.group(ADVANCED),
+        factor(
+            "hatch_bend",
+            "Hatch bending",
+            "How far regular hatching bends over the form: 1 is the medium's own, 0 is straight.",
+        )
+        .doc("Factor on the distance that hatches move aside per unit of L."),
     ],
     build,
 };
@@ -155,6 +162,11 @@ const SOLID: f32 = 0.95;
 /// Density of masses that are open.
 const OPEN: f32 = 0.72;
 
+/// Standard deviation of the further smoothing of the form that strokes lead across, and that of the relief over which
+/// hatches bend, pixels of the full-size picture.
+const WIDER: f32 = 5.0;
+const RELIEF: f32 = 12.0;
+
 /// Factor by which guides count more than where lightness is inhibited: here it counts in full, and light grounds are
 /// far from ink.
 const GUIDES: f32 = 1.7;
@@ -167,13 +179,19 @@ fn significant(rho: f32) -> f32 {
 }
 
 /// Strokes along the flow, 0..=1 about middle grey, and the standard deviation of their values: noise, `width` pixels
-/// wide and smoothed along the stream lines by `length`, lengths in pixels of the full-size picture.
-fn strokes(scope: &mut Scope<'_>, tensor: ImageId, [width, length]: [f32; 2]) -> (ImageId, f32) {
+/// wide and smoothed along the stream lines by `length`, lengths in pixels of the full-size picture; in steps stretched by
+/// up to `stretch`.
+fn strokes(
+    scope: &mut Scope<'_>,
+    tensor: ImageId,
+    [width, length]: [f32; 2],
+    stretch: f32,
+) -> (ImageId, f32) {
     let (scale, seed) = (scope.scale(), scope.renewed(19));
     let soft = marks::grains(scope, width * scale, seed);
     let Marks { deviation, .. } = Marks::of_smoothed_noise(width * scale, scale, seed);
-    // Noise is about as fine as pixels: none may be left out.
-    let options = Lic { sigma: length * scale, ..lic::options() };
+    // Noise is about as fine as pixels: steps are stretched where strokes are few enough not to show it.
+    let options = Lic { sigma: length * scale, stretch, ..lic::options() };
     let long = line_integral_convolution::pass_unadapted(scope.plan, soft, tensor, &options);
     // A Gaussian along lines leaves this share of the deviation.
     let left = (width / math::hypot(length, width)).sqrt();
@@ -184,6 +202,15 @@ fn strokes(scope: &mut Scope<'_>, tensor: ImageId, [width, length]: [f32; 2]) ->
 /// The form that marks follow, whose directions turn gently: not each wrinkle of it.
 fn gentle(scope: &mut Scope<'_>, tensor: ImageId, sigma: f32) -> ImageId {
     if sigma > 0.0 { gaussian_blur::pass(scope.plan, tensor, sigma, Class::Field) } else { tensor }
+}
+
+/// A Lab image, whose tones a hand has dragged along the form.
+fn dragged(scope: &mut Scope<'_>, lab: ImageId, form: ImageId, sigma: f32) -> ImageId {
+    if sigma <= 0.0 {
+        return lab;
+    }
+    let options = Lic { sigma, stretch: STRETCH, ..lic::options() };
+    line_integral_convolution::pass_unadapted(scope.plan, lab, form, &options)
 }
 
 /// Black lines on white, smoothed along the edges; in the second channel those that are cut out of dark masses, if there is
@@ -271,13 +298,34 @@ fn sheet(scope: &Scope<'_>, drawing: &Preset) -> Sheet {
     }
 }
 
-/// Marks of the tones of a smoothed picture.
-fn marked(scope: &mut Scope<'_>, own: &Preset, drawing: &Preset, [smooth, form]: [ImageId; 2]) -> ImageId {
+/// Marks that say the tones of a Lab image, along a form.
+fn marked(scope: &mut Scope<'_>, drawing: &Preset, [lab, form]: [ImageId; 2]) -> ImageId {
     let scale = scope.scale();
-    let toned = lightness::pass_lab(scope.plan, smooth);
+    let (along, deviation) = strokes(scope, form, drawing.stroke, 1.0);
+    let rules = rules(scope, drawing, deviation);
+    if drawing.rubbed >= 1.0 {
+        // Nothing is hatched, and what is rubbed in everywhere is not lifted out.
+        let tones = tone_relief::pass(scope.plan, lab, lab);
+        let inputs = Inputs { tones, tensor: form, strokes: along, crossing: along, hatching: None };
+        return tone_marks::pass(scope.plan, &inputs, &rules);
+    }
+    let wider = gentle(scope, form, WIDER * scale);
+    let across = tensor_across::pass(scope.plan, wider);
+    let [width, length] = drawing.stroke;
+    let (crossing, _) = strokes(scope, across, [width, length * CROSSING], STRETCH);
+    let smeared = dragged(scope, lab, form, drawing.smear * scale);
+    let relief = gaussian_blur::pass_colour(scope.plan, lab, RELIEF * scale);
+    let tones = tone_relief::pass(scope.plan, smeared, relief);
+    let hatching = marks::hatching(scope, HATCHING, drawing.spacing, scope.renewed(301));
+    let inputs = Inputs { tones, tensor: form, strokes: along, crossing, hatching };
+    tone_marks::pass(scope.plan, &inputs, &rules)
+}
+
+/// Rules by which tones become marks, with strokes of a standard deviation.
+fn rules(scope: &Scope<'_>, drawing: &Preset, deviation: f32) -> Tones {
+    let scale = scope.scale();
     let on_dark = scope.option::<MassesOnDark>(MASSES_ON_DARK.id);
-    let (strokes, deviation) = strokes(scope, form, own.stroke);
-    let tones = Tones {
+    Tones {
         light: drawing.tones[0],
         solid: drawing.tones[1],
         ease: drawing.ease,
@@ -285,23 +333,19 @@ fn marked(scope: &mut Scope<'_>, own: &Preset, drawing: &Preset, [smooth, form]:
         rubbed: drawing.rubbed,
         form: drawing.form,
         spacing: drawing.spacing,
-        significant: significant(math::hypot(drawing.rho, own.wide)),
-        stroke: own.stroke.map(|length| length * scale),
+        bend: drawing.bend,
+        lift: drawing.lift,
+        significant: significant(math::hypot(drawing.rho, drawing.wide)),
+        stroke: drawing.stroke.map(|length| length * scale),
         deviation,
         given_deviation: marks::HATCHING_DEVIATION,
         scale,
         origin: scope.origin(),
-    };
-    let hatching = match own.rubbed < 1.0 {
-        true => marks::hatching(scope, HATCHING, drawing.spacing, scope.renewed(301)),
-        false => None,
-    };
-    let inputs = Inputs { tones: toned, tensor: form, strokes, hatching };
-    tone_marks::pass(scope.plan, &inputs, &tones)
+    }
 }
 
 /// What a frame shows by itself: the smoothed picture in Lab, its tensor, and its lines.
-fn found(scope: &mut Scope<'_>, own: &Preset, drawing: &Preset, flow: &FlowDog) -> [ImageId; 3] {
+fn found(scope: &mut Scope<'_>, drawing: &Preset, flow: &FlowDog) -> [ImageId; 3] {
     let color = scope.required("color");
     let guides = flow_dog::guides(scope, scope.float("guide_weight"));
     let scale = scope.scale();
@@ -309,7 +353,7 @@ fn found(scope: &mut Scope<'_>, own: &Preset, drawing: &Preset, flow: &FlowDog) 
     let tensor = of_color_and_guides(scope.plan, color, &guides, &options);
     let tensor = flow_map::bent(scope, tensor);
     let lab = rgb_to_lab::pass(scope.plan, color, 1.0);
-    let iterations = scope.int("n_e") + own.flattening;
+    let iterations = scope.int("n_e") + drawing.flattening;
     let smooth = Abstraction::of(scope).apply(scope.plan, lab, tensor, iterations);
     let lightness = lightness::pass_lab(scope.plan, smooth);
     let seen = Seen { lightness, lab: Some(smooth) };
@@ -320,20 +364,20 @@ fn found(scope: &mut Scope<'_>, own: &Preset, drawing: &Preset, flow: &FlowDog) 
 ///
 /// Marks fade from frame to frame where they belong to things and are not drawn anew. Those that motion carries alone are
 /// made of layers that fade into one another already.
-fn steady(scope: &mut Scope<'_>, own: &Preset, drawing: &Preset, flow: &FlowDog) -> [ImageId; 5] {
+fn steady(scope: &mut Scope<'_>, drawing: &Preset, flow: &FlowDog) -> [ImageId; 5] {
     let by = Agreement::lab(COLOUR_AGREEMENT);
-    let wide = own.wide * scope.scale();
+    let wide = drawing.wide * scope.scale();
     if scope.input(ports::REST_POSITION.id).is_some() && scope.int(HOLD.id) == 0 {
         let [smooth, tensor, edges, marks] = steadied(scope, by, |scope| {
-            let [smooth, tensor, edges] = found(scope, own, drawing, flow);
+            let [smooth, tensor, edges] = found(scope, drawing, flow);
             let form = gentle(scope, tensor, wide);
-            [smooth, tensor, edges, marked(scope, own, drawing, [smooth, form])]
+            [smooth, tensor, edges, marked(scope, drawing, [smooth, form])]
         });
         return [smooth, tensor, edges, gentle(scope, tensor, wide), marks];
     }
-    let [smooth, tensor, edges] = steadied(scope, by, |scope| found(scope, own, drawing, flow));
+    let [smooth, tensor, edges] = steadied(scope, by, |scope| found(scope, drawing, flow));
     let form = gentle(scope, tensor, wide);
-    [smooth, tensor, edges, form, marked(scope, own, drawing, [smooth, form])]
+    [smooth, tensor, edges, form, marked(scope, drawing, [smooth, form])]
 }
 
 fn build(scope: &mut Scope<'_>) -> ImageId {
@@ -347,7 +391,7 @@ fn build(scope: &mut Scope<'_>) -> ImageId {
         grain: scope.float("grain"),
     });
     let flow = flow(scope, &drawing, scope.float("guide_weight"));
-    let [smooth, tensor, edges, form, marks] = steady(scope, &own, &drawing, &flow);
+    let [smooth, tensor, edges, form, marks] = steady(scope, &drawing, &flow);
     // Where no own colour shows, saturation has no part in the plan, so that panels can tell.
     let saturation = if drawing.colour > 0.0 { scope.float("saturation") } else { 1.0 };
     let tinted = lab_to_rgb::pass(scope.plan, smooth, saturation);
@@ -355,7 +399,7 @@ fn build(scope: &mut Scope<'_>) -> ImageId {
     let on_dark = scope.option::<MassesOnDark>(MASSES_ON_DARK.id);
     let masses = (on_dark == MassesOnDark::Light).then_some((toned, drawing.tones));
     let lines = lines_on_white(scope, tinted, edges, tensor, drawing.sigma_a * scale, masses);
-    let (strokes, _) = strokes(scope, form, own.stroke);
+    let (strokes, _) = strokes(scope, form, drawing.stroke, 1.0);
     let sheet = sheet(scope, &drawing);
     ink_sheet::pass(scope.plan, &Drawing { lines, color: tinted, strokes, marks, tones: toned }, &sheet)
 }

@@ -68,6 +68,12 @@ pub struct Preset {
     pub form: f32,
     /// Distance of hatches.
     pub spacing: f32,
+    /// Distance that they bend per unit of L over which the form rises.
+    pub bend: f32,
+    /// Standard deviation by which tones are dragged along the form.
+    pub smear: f32,
+    /// Share of the tone that is lifted out of lights.
+    pub lift: f32,
     /// Width and length of strokes along the form.
     pub stroke: [f32; 2],
     /// Standard deviation of the further smoothing of the form that they follow.
@@ -104,6 +110,9 @@ const INK: Preset = Preset {
     rubbed: 0.0,
     form: 0.85,
     spacing: 7.5,
+    bend: 0.2,
+    smear: 0.0,
+    lift: 0.0,
     stroke: [1.9, 12.0],
     wide: 5.0,
     follow: 0.0,
@@ -152,6 +161,8 @@ const CHARCOAL: Preset = Preset {
     rubbed: 0.55,
     form: 0.8,
     spacing: 10.0,
+    smear: 5.0,
+    lift: 0.75,
     stroke: [2.2, 12.0],
     wide: 6.0,
     follow: 0.6,
@@ -190,11 +201,11 @@ const PASTEL: Preset = Preset {
     tones: [30.0, -25.0],
     rubbed: 1.0,
     form: 0.0,
-    stroke: [1.8, 9.0],
-    wide: 0.0,
+    stroke: [2.2, 12.0],
+    wide: 14.0,
     follow: 0.5,
-    flattening: 2,
-    grain: 0.6,
+    flattening: 3,
+    grain: 0.85,
     grain_size: 3.0,
     dryness: 0.4,
     colour: 0.96,
@@ -251,6 +262,7 @@ impl Preset {
             form: (self.form * scope.float("carving")).min(1.0),
             tones: shaded(self.tones, scope.float("shading")),
             spacing: self.spacing * scope.float("hatch_spacing"),
+            bend: self.bend * scope.float("hatch_bend"),
             grain_size: self.grain_size * scope.float("grain_size"),
             colour: self.colour + scope.float("own_color"),
             sigma_a: self.sigma_a * scope.float("edge_smoothing"),
