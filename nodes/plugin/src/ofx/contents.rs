@@ -3,7 +3,7 @@
 
 use super::content;
 
-/// Numbers of what rows of an image hold.
+/// Numbers of the contents of an image's rows.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Rows {
     /// Number of how they are read.
@@ -39,7 +39,7 @@ impl Rows {
 pub struct Content {
     /// Number of how it is made from the host's images.
     pub form: u128,
-    /// What is read of those.
+    /// The rows that are read of those.
     pub images: Vec<Rows>,
 }
 

@@ -263,7 +263,7 @@ impl<'h> Fetched<'h> {
         Ok(image)
     }
 
-    /// What [`Fetched::read`] reads of `window` for the rows of `part`, a window within it.
+    /// Content of all that [`Fetched::read`] reads of `window` for the rows of `part`, a window within it.
     ///
     /// # Errors
     /// As [`Fetched::read`].

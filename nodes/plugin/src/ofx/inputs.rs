@@ -221,8 +221,8 @@ impl<'h> Inputs<'h> {
         Ok(Read { name, pixels, input, window, is_ready: false })
     }
 
-    /// What would be read of an image that was taken, for the rows of `part`, which lies in its window. None where the host
-    /// gave too little of it: less than `is_part` of the picture would need.
+    /// Content of all that would be read of an image that was taken, for the rows of `part`, which lies in its window. None where
+    /// the host gave too little of it: less than `is_part` of the picture would need.
     pub fn content(
         &self,
         prepared: &Prepared,

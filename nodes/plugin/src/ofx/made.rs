@@ -14,7 +14,7 @@ pub struct Made {
     pub plan: u128,
     /// Number of its image.
     pub name: u128,
-    /// What its plan read, by its names for it.
+    /// Contents of the images that its plan read, by its names for them.
     pub contents: Vec<(String, Content)>,
     /// The plan that says which rows of it a part is made from: that of its longest vector. None where motion may be as long
     /// as it ever is.

@@ -31,7 +31,7 @@ struct Wanted {
     name: String,
     /// The plan's image; one of them, where there are vectors of both ways.
     port: Port,
-    /// What a segment needs of it.
+    /// The part of it that a segment needs.
     window: Rect,
     /// Rows of that which count.
     part: Rect,

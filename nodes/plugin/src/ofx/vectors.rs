@@ -70,8 +70,8 @@ impl<'h> Inputs<'h> {
         Ok(Some(unknown))
     }
 
-    /// What vectors of either way in a frame are read from, for the rows of `part`, a part of `window` of the plan; none
-    /// where there is nothing, or the host gave too little of it for a part of the picture.
+    /// Content of all that vectors of either way in a frame are read from, for the rows of `part`, a part of `window` of the plan;
+    /// none where there is nothing, or the host gave too little of it for a part of the picture.
     pub fn content_of_vectors(
         &self,
         prepared: &Prepared,
