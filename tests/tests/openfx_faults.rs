@@ -42,7 +42,7 @@ macro_rules! named {
     ($($test:ident)*) => { [$((stringify!($test), $test)),*] };
 }
 
-const TESTS: [(&str, fn()); 14] = named! {
+const TESTS: [(&str, fn()); 15] = named! {
     a_panic_becomes_a_status_and_the_host_goes_on
     failures_are_shown_once_through_whatever_messages_there_are
     bad_calls_are_answered
@@ -55,6 +55,7 @@ const TESTS: [(&str, fn()); 14] = named! {
     a_copy_of_the_process_computes_on_the_cpu
     what_frames_have_in_common_is_computed_once
     strips_share_what_frames_have_in_common
+    strips_are_made_anew_where_what_they_are_made_from_changes
     memory_is_given_back_when_caches_are_purged
     times_of_warm_renders
 };

@@ -24,6 +24,19 @@ fn frame([width, height]: [i32; 2], number: i32) -> Picture {
     Picture::packed_in(Layout::default(), width, height, &bytes)
 }
 
+/// A frame of the film, of which a row from the bottom is dark.
+fn frame_with(size: [i32; 2], number: i32, dark: Option<i32>) -> Picture {
+    let whole = frame(size, number);
+    let Some(dark) = dark else { return whole };
+    let mut bytes = whole.packed();
+    let row = size[0] as usize * 16;
+    // Packed rows begin at the top.
+    let at = (size[1] - 1 - dark) as usize * row;
+    bytes[at..at + row]
+        .copy_from_slice(&[0.1_f32; 4].map(f32::to_ne_bytes).concat().repeat(size[0] as usize));
+    Picture::packed_in(Layout::default(), size[0], size[1], &bytes)
+}
+
 /// Frames of a film.
 const FRAMES: i32 = 8;
 
@@ -176,6 +189,59 @@ pub fn strips_share_what_frames_have_in_common() {
         }
     }
     drop((whole, strips));
+    host.no_faults();
+}
+
+pub fn strips_are_made_anew_where_what_they_are_made_from_changes() {
+    if !cfg!(debug_assertions) {
+        return;
+    }
+    let size = [64, 1100];
+    let counter = Computed::new();
+    let binary = Binary::open(library::path());
+    let host = Host::new(Behaviour::default());
+    let plugin = binary.plugin("org.isophote.cartoon");
+    let described = Described::new(&host, plugin);
+    let film = || {
+        let instance = steadied(&described, size);
+        instance.set("window", 1);
+        instance.set("inhibition", 0.0);
+        instance.set("steps", 0);
+        instance
+    };
+    let strip = |film: &Instance<'_>, y: i32| {
+        let window = [0, y, size[0], y + 20];
+        let wanted = Wanted { time: 3.0, ..Wanted::new(window) };
+        let (status, picture) = film.try_render(Layout::default(), size, &wanted);
+        assert_eq!(status, kOfxStatOK);
+        picture.crop(window).packed()
+    };
+    // The film, in which a row of one frame is another.
+    let pictures = |changed: Option<(i32, i32)>| -> Vec<Picture> {
+        let row_of = |number: i32| changed.filter(|(of, _)| *of == number).map(|(_, row)| row);
+        (0..FRAMES).map(|n| frame_with(size, n, row_of(n))).collect()
+    };
+    let strips = film();
+    let row = 300;
+    let first = strip(&strips, row);
+    assert!(counter.now() > 0);
+    assert!(strip(&strips, row) == first && strip(&strips, row + 20) != first);
+    assert_eq!(counter.now(), 0, "strips of a segment are copies");
+    for (number, changed, counts) in [(4, 60, false), (3, 60, false), (4, row + 30, true), (2, row + 5, true)]
+    {
+        strips.connect_film("Source", 0, pictures(Some((number, changed))));
+        let now = strip(&strips, row);
+        assert_eq!(counter.now() > 0, counts, "row {changed} of frame {number}");
+        let whole = film();
+        whole.connect_film("Source", 0, pictures(Some((number, changed))));
+        purge(plugin);
+        assert!(strip(&whole, row) == now, "row {changed} of frame {number}");
+        purge(plugin);
+        strips.connect_film("Source", 0, pictures(None));
+        assert!(strip(&strips, row) == first);
+        counter.now();
+    }
+    drop(strips);
     host.no_faults();
 }
 

@@ -18,7 +18,7 @@ pub struct Shared {
 
 impl Plan {
     /// The images at which a plan over several frames can be cut: each is computed in the same way of inputs of other
-    /// frames, too, and read by passes that are not.
+    /// frames, too, and read by passes that are not, or by such that read more frames.
     pub fn shared(&self) -> Vec<Shared> {
         let (shapes, frames) = self.shapes();
         let mut firsts: HashMap<u128, HashSet<i32>> = HashMap::new();
@@ -29,8 +29,10 @@ impl Plan {
         }
         let is_repeated = |id: &ImageId| firsts.get(&shapes[id.index()]).is_some_and(|all| all.len() > 1);
         let mut found: HashSet<ImageId> = self.outputs.iter().map(|port| port.image).collect();
-        for pass in self.passes.iter().filter(|pass| !pass.outputs.iter().all(is_repeated)) {
-            found.extend(&pass.inputs);
+        for pass in &self.passes {
+            let is_own = !pass.outputs.iter().all(is_repeated);
+            let all = pass.outputs.first().map(|id| frames[id.index()]);
+            found.extend(pass.inputs.iter().filter(|id| is_own || all != Some(frames[id.index()])));
         }
         let names = self.names(|port| hash(&(port.base(), port.frame)));
         let written = self.passes.iter().flat_map(|pass| &pass.outputs);

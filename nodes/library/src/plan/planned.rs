@@ -70,6 +70,11 @@ impl Planned {
         &self.plan
     }
 
+    /// The plan alone.
+    pub fn into_plan(self) -> Plan {
+        self.plan
+    }
+
     /// Request that it was made for.
     pub fn request(&self) -> &Request {
         &self.request

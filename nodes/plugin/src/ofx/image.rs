@@ -1,6 +1,7 @@
 //! Images of the host's, fetched, read into the engine's and written back, and released on every path.
 
 use super::content;
+use super::contents::Rows;
 use super::frame::{Bounds, Frame};
 use super::host::{Host, Outcome, Properties};
 use crate::abi::guard::lock;
@@ -262,23 +263,24 @@ impl<'h> Fetched<'h> {
         Ok(image)
     }
 
-    /// Number of all that [`Fetched::read`] reads of `window`.
+    /// Content of all that [`Fetched::read`] reads of `window` for the rows of `part`, a window within it.
     ///
     /// # Errors
     /// As [`Fetched::read`].
-    pub fn content(&self, frame: &Frame, window: Rect, threads: &dyn Threads) -> Outcome<u128> {
+    pub fn rows(&self, frame: &Frame, window: Rect, part: Rect, threads: &dyn Threads) -> Outcome<Rows> {
         let checked = self.checked(frame)?;
         let inside = window.intersection(&checked.window);
         let inside = if inside.is_empty() { nearest(&window, &checked.window) } else { inside };
         let form =
             format!("{inside:?} {} {} {:?} {}", self.sample, self.channels, self.alpha, self.blue_first);
-        let rows: Vec<Mutex<u128>> = (inside.y0..inside.y1).map(|_| Mutex::default()).collect();
-        let look = |y: i32, bytes: &[u8]| *lock(&rows[(y - inside.y0) as usize]) = content::of_bytes(bytes);
+        // Rows beyond are those of the edge.
+        let y0 = part.y0.clamp(inside.y0, inside.y1 - 1);
+        let part = Rect { y0, y1: part.y1.clamp(y0 + 1, inside.y1), ..inside };
+        let rows: Vec<Mutex<u128>> = (part.y0..part.y1).map(|_| Mutex::default()).collect();
+        let look = |y: i32, bytes: &[u8]| *lock(&rows[(y - part.y0) as usize]) = content::of_bytes(bytes);
         // SAFETY: the host gave the image, so that its memory may be read, and is not written, until it is released.
-        unsafe { checked.each_row(inside, threads, &look) };
-        let mut all = vec![content::of_text(&form)];
-        all.extend(rows.iter().map(|row| *lock(row)));
-        Ok(content::of_all(&all))
+        unsafe { checked.each_row(part, threads, &look) };
+        Ok(Rows::new(&form, part.y0, rows.iter().map(|row| *lock(row)).collect()))
     }
 
     /// Two channels of the pixels of `window`, as `change` makes those that are stored; NaN for what the image does not
@@ -307,7 +309,7 @@ impl<'h> Fetched<'h> {
             return Ok(image);
         }
         let channels = if self.blue_first { channels.map(|c| [2, 1, 0, 3][c]) } else { channels };
-        // SAFETY: as in `content`.
+        // SAFETY: as in `rows`.
         let read = unsafe { checked.read_pairs(inside, channels, &mut image, threads, change) };
         read.map_err(|_| kOfxStatErrImageFormat)?;
         Ok(image)

@@ -6,6 +6,7 @@
 use super::clips::{SOURCE, guide_clip};
 use super::colours::Colours;
 use super::content;
+use super::contents::Content;
 use super::effects::Effect;
 use super::frame::Frame;
 use super::host::{Host, Outcome, Properties};
@@ -70,7 +71,7 @@ pub struct Taken<'h> {
     /// Its frame, counted from the one that is rendered.
     offset: i32,
     /// The part of the plan's image.
-    window: Rect,
+    pub window: Rect,
     pixels: Pixels<'h>,
 }
 
@@ -220,26 +221,29 @@ impl<'h> Inputs<'h> {
         Ok(Read { name, pixels, input, window, is_ready: false })
     }
 
-    /// Number of what would be read of an image that was taken. None where the host gave too little of it: less than
-    /// `is_part` of the picture would need.
+    /// Content of all that would be read of an image that was taken, for the rows of `part`, which lies in its window. None where
+    /// the host gave too little of it: less than `is_part` of the picture would need.
     pub fn content(
         &self,
         prepared: &Prepared,
         taken: &Taken<'h>,
+        part: Rect,
         is_part: bool,
         threads: &dyn Threads,
-    ) -> Outcome<Option<u128>> {
-        let window = self.grown(prepared.host_window(taken.window));
+    ) -> Outcome<Option<Content>> {
+        let [window, part] = [taken.window, part].map(|window| self.grown(prepared.host_window(window)));
         let (image, beyond) = match &taken.pixels {
-            Pixels::Vectors(pixels) => return Ok(Some(content::of_image(pixels, threads))),
+            Pixels::Vectors(pixels) => {
+                return Ok(Some(Content { form: content::of_image(pixels, threads), images: Vec::new() }));
+            }
             Pixels::OfNeighbour(image, beyond) => (Some(image), *beyond),
             Pixels::OfFrame => (self.image(taken.input), Beyond::Edge),
         };
         let name = if taken.input == GraphInput::Color { Some(SOURCE) } else { guide_clip(taken.input) };
-        let is_held = |image: &&Fetched<'_>| !is_part || self.is_held(name, taken.offset, image, window);
+        let is_held = |image: &&Fetched<'_>| !is_part || self.is_held(name, taken.offset, image, part);
         let Some(image) = image.filter(is_held) else { return Ok(None) };
-        let read = content::of_text(&format!("{window:?} {beyond:?} {:?}", self.field));
-        Ok(Some(content::of_all(&[read, image.content(&self.frame, window, threads)?])))
+        let form = content::of_text(&format!("{window:?} {beyond:?} {:?}", self.field));
+        Ok(Some(Content { form, images: vec![image.rows(&self.frame, window, part, threads)?] }))
     }
 
     /// True where the host gave all of a window that its clip has in a frame.

@@ -168,6 +168,17 @@ pub fn obtain(
     }
 }
 
+/// The image of this number, if it is kept.
+pub fn find(name: u128) -> Option<Arc<Image>> {
+    match lock().0.get_mut(&name)? {
+        Place::Kept { image, used } => {
+            *used = Instant::now();
+            Some(Arc::clone(image))
+        }
+        Place::Claimed => None,
+    }
+}
+
 /// Gives back all that is kept.
 pub fn forget() {
     let mut store = lock();

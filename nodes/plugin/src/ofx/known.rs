@@ -90,6 +90,12 @@ impl Known {
         Ok(true)
     }
 
+    /// True where motion is estimated somewhere.
+    pub fn is_estimated(&self) -> bool {
+        let spec = |index| self.graph.node(index).and_then(|node| self.graph.spec(node));
+        (0..self.graph.len()).any(|index| spec(index).is_ok_and(|spec| spec.id == "optical_flow"))
+    }
+
     /// Forgets the frames that the source says it has not around a time.
     pub fn limit_to_source(&mut self, host: &Host, instance: Handle, time: f64) {
         if let Some(source) = Clip::of(host, instance, SOURCE) {

@@ -152,6 +152,16 @@ fn lasting(plan: &Plan) -> Vec<Shared> {
     all
 }
 
+/// Content of an image of a plan that was looked at.
+pub struct Looked {
+    /// The plan's name for the image.
+    pub name: String,
+    /// The part of it.
+    pub window: Rect,
+    /// Number of what it holds.
+    pub number: u128,
+}
+
 /// A search for the stages of one frame.
 pub struct Search<'s, 'h> {
     pub inputs: &'s Inputs<'h>,
@@ -160,6 +170,8 @@ pub struct Search<'s, 'h> {
     pub segment: Rect,
     /// True where the host need not have given all of the picture.
     pub is_part: bool,
+    /// Contents that were looked at before.
+    pub known: &'s [Looked],
     /// What is done to pixels between their reading and the plan, beside what `prepared` does.
     pub treatment: String,
     pub threads: &'s dyn Threads,
@@ -177,7 +189,12 @@ impl Search<'_, '_> {
             return Ok(Found::All(Stages::default()));
         };
         let (part, windows) = lasting.part(plan);
-        let content = |taken: Taken<'_>| Ok((self.content(&taken)?, taken.name));
+        let content = |taken: Taken<'_>| {
+            let known =
+                self.known.iter().find(|known| known.name == taken.name && known.window == taken.window);
+            let number = known.map_or_else(|| self.content(&taken), |known| Ok(Some(known.number)))?;
+            Ok((number, taken.name))
+        };
         let contents =
             match self.inputs.each(self.prepared, part.inputs(), &windows, self.threads, content)? {
                 Gathered::All(contents) => contents,
@@ -186,15 +203,20 @@ impl Search<'_, '_> {
         if contents.iter().any(|(content, _)| content.is_none()) {
             return Ok(Found::All(Stages::default()));
         }
+        // What is made of fewer frames comes first, since the others may be made of it.
         let mut groups: BTreeMap<[i32; 2], Vec<Shared>> = BTreeMap::new();
         for shared in lasting.shared {
-            groups.entry(shared.frames).or_default().push(shared);
+            let [first, last] = shared.frames;
+            groups.entry([last - first, first]).or_default().push(shared);
         }
         let mut pixels = Pixels { contents, windows, read: Vec::new(), changed: false };
-        let mut stages = Vec::new();
-        for ([first, _], group) in groups {
-            match self.of_group(&group, lasting.region, first, &mut pixels, executor) {
-                Ok(found) => stages.extend(group.iter().map(|shared| shared.name).zip(found)),
+        let (mut stages, mut made) = (Vec::new(), Vec::new());
+        for ([_, first], group) in groups {
+            match self.of_group(&group, (lasting.region, first), &made, &mut pixels, executor) {
+                Ok(found) => {
+                    stages.extend(group.iter().map(|shared| shared.name).zip(found.iter().cloned()));
+                    made.extend(group.iter().map(|shared| shared.image).zip(found));
+                }
                 Err(_) if pixels.changed => return Ok(Found::All(Stages::default())),
                 Err(stop) => return Err(stop),
             }
@@ -205,15 +227,16 @@ impl Search<'_, '_> {
 
     /// Number of what an image holds; none where the host gave too little of it.
     fn content(&self, taken: &Taken<'_>) -> Result<Option<u128>, Stop> {
-        Ok(self.inputs.content(self.prepared, taken, self.is_part, self.threads)?)
+        let content = self.inputs.content(self.prepared, taken, taken.window, self.is_part, self.threads)?;
+        Ok(content.map(|content| content.number()))
     }
 
-    /// The stages that are made of the same frames, from `first` on.
+    /// The stages that are made of the same frames, from `first` on, over `region`, where those of `made` are at hand.
     fn of_group(
         &self,
         group: &[Shared],
-        region: Rect,
-        first: i32,
+        (region, first): (Rect, i32),
+        made: &[(ImageId, Arc<Image>)],
         pixels: &mut Pixels,
         executor: &mut CpuExecutor,
     ) -> Result<Vec<Arc<Image>>, Stop> {
@@ -229,9 +252,20 @@ impl Search<'_, '_> {
         let stops = || self.control.cancelled.is_some_and(|cancelled| cancelled());
         kept::obtain(&names, PATIENCE, &stops, |missing| {
             let ids: Vec<ImageId> = missing.iter().map(|index| group[*index].image).collect();
-            let part = plan.part(&ids);
+            let whole = plan.part(&ids);
+            let windows = whole.windows(region);
+            // Those that hold what is read of them.
+            let is_fit = |(id, image): &&(ImageId, Arc<Image>)| {
+                let window = windows[id.index()];
+                !window.is_empty() && image.window().contains(&window)
+            };
+            let at_hand: Vec<&(ImageId, Arc<Image>)> = made.iter().filter(is_fit).collect();
+            let part = whole.with_handed(&at_hand.iter().map(|(id, _)| *id).collect::<Vec<_>>());
             pixels.read(self, &part)?;
-            let named: Vec<(&str, &Image)> = pixels.read.iter().map(|r| (&r.name[..], &r.pixels)).collect();
+            let names: Vec<String> = at_hand.iter().map(|(id, _)| Plan::port_name(*id)).collect();
+            let handed = names.iter().zip(&at_hand).map(|(name, (_, image))| (&name[..], &**image));
+            let read = pixels.read.iter().map(|read| (&read.name[..], &read.pixels));
+            let named: Vec<(&str, &Image)> = read.chain(handed).collect();
             let images = executor.run(&part, &named, region, self.threads, self.control);
             faults::computed(ids.len());
             Ok(images.map_err(Error::from)?)
@@ -310,6 +344,18 @@ mod tests {
                 assert!(of([0, 0]) > 0, "{:?}", effect.identifier);
                 assert!((-2..=2).all(|n| of([n, n]) == of([0, 0])), "{:?}: {shared:?}", effect.identifier);
                 assert_eq!(of([-1, 0]) > 0, !has.motion, "{:?}: {shared:?}", effect.identifier);
+                // Motion is estimated from what is kept of each of the two frames.
+                let are_pairs = |are: bool| {
+                    let pairs =
+                        shared.iter().filter(move |shared| (shared.frames[0] != shared.frames[1]) == are);
+                    pairs.map(|shared| shared.image).collect::<Vec<_>>()
+                };
+                let estimates = plan.part(&are_pairs(true)).with_handed(&are_pairs(false));
+                assert!(
+                    estimates.inputs().iter().all(|port| port.base() != "color"),
+                    "{:?}",
+                    effect.identifier
+                );
                 let image = Arc::new(Image::new(1, 1, 1).unwrap());
                 let stages = Stages(shared.iter().map(|shared| (shared.name, Arc::clone(&image))).collect());
                 let cut = stages.cut(plan);

@@ -1,29 +1,19 @@
 //! The plans of a frame, and what is computed by them.
 
 use super::colours::working;
-use super::content;
 use super::executors::{Executors, Work};
-use super::faults;
-use super::inputs::{Gathered, Inputs, Read, Taken};
-use super::kept;
+use super::inputs::{Gathered, Inputs, Read};
 use super::known::Known;
-use super::neighbours::{Cut, Found, Lasting, Search, Stages};
+use super::neighbours::{Cut, Found, Lasting, Looked, Search, Stages};
 use super::prepared::{Prepared, Quality};
 use super::segments::Part;
 use super::settings::Settings;
 use super::stop::Stop;
 use isophote::engine::cpu::{Control, CpuExecutor, Threads};
-use isophote::engine::plan::Port;
 use isophote::engine::{Image, Rect};
 use isophote::graph::GraphInput;
 use isophote::kernels::shared::host_colour::has_light;
 use isophote_abi::openfx::*;
-use std::collections::BTreeMap;
-use std::sync::Arc;
-use std::time::Duration;
-
-/// After so long a thread computes a part by itself of which another was to compute the segment.
-const PATIENCE: Duration = Duration::from_secs(60);
 
 /// Pixels of a frame that are computed at once, and the means for it.
 #[derive(Clone, Copy)]
@@ -35,10 +25,10 @@ pub struct Bands<'b> {
 
 /// The plans of a frame.
 pub struct Plans<'a, 'h> {
-    inputs: &'a Inputs<'h>,
+    pub(super) inputs: &'a Inputs<'h>,
     settings: &'a Settings,
     quality: Quality,
-    known: Known,
+    pub(super) known: Known,
     /// The plan for all of it.
     pub prepared: Prepared,
     /// What other frames have in common with this one, where it was looked for.
@@ -47,6 +37,8 @@ pub struct Plans<'a, 'h> {
     pub cut: Cut,
     /// The one for light beyond coverage, once a band has any.
     emissive: Option<Cut>,
+    /// Contents of images that were looked at.
+    pub(super) looked: Vec<Looked>,
 }
 
 impl<'a, 'h> Plans<'a, 'h> {
@@ -61,12 +53,23 @@ impl<'a, 'h> Plans<'a, 'h> {
         let prepared = prepared(inputs, settings, quality, &known)?;
         let stages = Stages::default();
         let cut = stages.cut(prepared.planned.plan());
-        Ok(Self { inputs, settings, quality, known, prepared, stages, cut, emissive: None })
+        Ok(Self {
+            inputs,
+            settings,
+            quality,
+            known,
+            prepared,
+            stages,
+            cut,
+            emissive: None,
+            looked: Vec::new(),
+        })
     }
 
     /// Goes on without a frame that lacks an image, and those behind it.
-    fn forget_from(&mut self, missing: i32) -> Result<(), Stop> {
+    pub(super) fn forget_from(&mut self, missing: i32) -> Result<(), Stop> {
         self.known.forget_from(missing);
+        self.looked.clear();
         self.prepared = prepared(self.inputs, self.settings, self.quality, &self.known)?;
         self.cut = self.stages.cut(self.prepared.planned.plan());
         self.emissive = None;
@@ -79,7 +82,7 @@ impl<'a, 'h> Plans<'a, 'h> {
     }
 
     /// What is done to pixels between their reading and the plan, beside what is prepared.
-    fn treatment(&self) -> String {
+    pub(super) fn treatment(&self) -> String {
         format!("{:?} {}", self.settings.space, self.inputs.is_straight())
     }
 
@@ -101,8 +104,8 @@ impl<'a, 'h> Plans<'a, 'h> {
         let is_part = part.is_strip(self.inputs.frame.size());
         loop {
             let (inputs, treatment) = (self.inputs, self.treatment());
-            let search =
-                Search { inputs, prepared: &self.prepared, segment, is_part, treatment, threads, control };
+            let (prepared, known) = (&self.prepared, &self.looked[..]);
+            let search = Search { inputs, prepared, segment, is_part, known, treatment, threads, control };
             match search.run(executor)? {
                 Found::All(stages) => {
                     self.take(stages);
@@ -119,80 +122,8 @@ impl<'a, 'h> Plans<'a, 'h> {
         self.stages = stages;
     }
 
-    /// The plan's result over the segment of a part, which is kept for the other parts of it; none where the part is all of
-    /// it, or the host gave too little.
-    ///
-    /// # Errors
-    /// As reading and running.
-    pub fn find_result(
-        &mut self,
-        part: Part,
-        executors: &mut Executors<'_>,
-        work: &Bands<'_>,
-    ) -> Result<Option<Arc<Image>>, Stop> {
-        let Some(segment) = part.segment.filter(|segment| *segment != part.inside) else { return Ok(None) };
-        let Some(name) = self.result_name(segment, work)? else { return Ok(None) };
-        let stops = || work.control.cancelled.is_some_and(|cancelled| cancelled());
-        let mut is_other = false;
-        let found = kept::obtain(&[name], PATIENCE, &stops, |_| {
-            if let Some(cpu) = executors.cpu() {
-                self.find_stages(part, cpu, work)?;
-            }
-            let image = self.over(executors, &Bands { inside: segment, ..*work })?;
-            // The host may have given something else meanwhile.
-            is_other = self.result_name(segment, work)? != Some(name);
-            if is_other {
-                return Err(kOfxStatFailed.into());
-            }
-            faults::computed(1);
-            Ok(vec![image])
-        });
-        if is_other { Ok(None) } else { Ok(found?.pop()) }
-    }
-
-    /// Number of the plan's result over a segment: of all that it is made from. None where the host gave too little of it.
-    fn result_name(&mut self, segment: Rect, work: &Bands<'_>) -> Result<Option<u128>, Stop> {
-        let (inputs, threads) = (self.inputs, work.threads);
-        let is_vectors = |port: &Port| GraphInput::from_id(port.base()).is_some_and(|i| i.is_motion());
-        let (contents, vectors) = loop {
-            let (prepared, plan) = (&self.prepared, self.prepared.planned.plan());
-            let windows = prepared.windows(segment);
-            let mut vectors: BTreeMap<i32, (Rect, u128)> = BTreeMap::new();
-            for port in plan.inputs().iter().filter(|port| is_vectors(port)) {
-                let (window, _) = vectors.entry(port.frame).or_default();
-                *window = window.union(&windows[port.image.index()]);
-            }
-            for (frame, (window, number)) in &mut vectors {
-                match inputs.content_of_vectors(prepared, *frame, *window, true, threads)? {
-                    Some(content) => *number = content,
-                    None => return Ok(None),
-                }
-            }
-            let others = plan.inputs().iter().filter(|port| !is_vectors(port));
-            let content =
-                |taken: Taken<'_>| Ok((inputs.content(prepared, &taken, true, threads)?, taken.name));
-            match inputs.each(prepared, others, &windows, threads, content)? {
-                Gathered::All(contents) => break (contents, vectors),
-                Gathered::Without(missing) => self.forget_from(missing)?,
-            }
-        };
-        if contents.iter().any(|(content, _)| content.is_none()) {
-            return Ok(None);
-        }
-        let plan = self.prepared.planned.plan();
-        let names = plan.names(|port| {
-            let held = contents.iter().find(|(_, name)| *name == port.name).and_then(|(content, _)| *content);
-            let held =
-                if is_vectors(port) { vectors.get(&port.frame).map(|(_, number)| *number) } else { held };
-            content::of_all(&[content::of_text(&port.name), held.unwrap_or_default()])
-        });
-        let treatment = format!("result {} {segment:?} {:?}", self.treatment(), self.prepared.square);
-        let result = plan.outputs().first().map(|port| names[port.image.index()]);
-        Ok(result.map(|name| content::of_all(&[content::of_text(&treatment), name])))
-    }
-
     /// The plan's result over the pixels that are wanted, in one.
-    fn over(&mut self, executors: &mut Executors<'_>, work: &Bands<'_>) -> Result<Image, Stop> {
+    pub(super) fn over(&mut self, executors: &mut Executors<'_>, work: &Bands<'_>) -> Result<Image, Stop> {
         let rows = executors.band_rows(&self.prepared, &self.cut.plan, work.inside);
         let window = self.prepared.plan_window(work.inside);
         let mut all: Option<Image> = None;

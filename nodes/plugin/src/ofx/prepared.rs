@@ -91,6 +91,17 @@ impl Prepared {
         Planned::new(&known.graph, Request { emission: true, ..*self.planned.request() })
     }
 
+    /// The same for motion that is nowhere longer than `longest` pixels along x and along y, which reads less around.
+    ///
+    /// # Errors
+    /// As [`Prepared::new`].
+    pub fn for_motion(&self, known: &Known, longest: f32) -> isophote::Result<Planned> {
+        let request = *self.planned.request();
+        // What is interpolated between vectors is rounded.
+        let max_motion = ((longest + 1.0) / request.scale).min(request.max_motion);
+        Planned::new(&known.graph, Request { max_motion, ..request })
+    }
+
     /// Rendered pixels per canonical unit, in x and y.
     pub fn ratio(&self, frame: &Frame) -> [f64; 2] {
         self.square.map_or(frame.ratio, |square| [f64::from(square.scale); 2])

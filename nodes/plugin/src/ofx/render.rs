@@ -12,6 +12,7 @@ use super::image::{Alpha, Clip, Fetched};
 use super::inputs::{Field, Inputs, Read, fetch, fetch_guides};
 use super::instance::{self, Moment};
 use super::kept;
+use super::made;
 use super::mask::MaskRule;
 use super::plans::{Bands, Plans, bands};
 use super::prepared::{Prepared, Quality};
@@ -106,6 +107,7 @@ fn attempt(effect: &Effect, host: &Host, instance: Handle, args: Properties<'_>)
 
 /// Gives back what is kept from one render to the next.
 pub fn forget_caches() {
+    made::forget();
     kept::forget();
     pool::forget();
 }

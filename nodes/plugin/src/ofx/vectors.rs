@@ -2,6 +2,7 @@
 
 use super::clips::{MOTION, MOTION_FORWARD};
 use super::content;
+use super::contents::Content;
 use super::frame::is_endless;
 use super::host::Outcome;
 use super::image::{Clip, Fetched};
@@ -69,38 +70,36 @@ impl<'h> Inputs<'h> {
         Ok(Some(unknown))
     }
 
-    /// Number of all that vectors of either way in a frame are read from, for `window` of the plan; none where there is
-    /// nothing, or the host gave too little of it.
+    /// Content of all that vectors of either way in a frame are read from, for the rows of `part`, a part of `window` of the plan;
+    /// none where there is nothing, or the host gave too little of it for a part of the picture.
     pub fn content_of_vectors(
         &self,
         prepared: &Prepared,
         offset: i32,
-        window: Rect,
-        is_part: bool,
+        [window, part]: [Rect; 2],
         threads: &dyn Threads,
-    ) -> Result<Option<u128>, Stop> {
-        let window = self.grown(prepared.host_window(window));
+    ) -> Result<Option<Content>, Stop> {
+        let [window, part] = [window, part].map(|window| self.grown(prepared.host_window(window)));
         let ratio = prepared.ratio(&self.frame);
         let rule = format!("{:?} {:?} {ratio:?} {window:?}", self.convention, self.vector_channels());
-        let (mut all, mut count) = (vec![content::of_text(&rule)], 0);
+        let (mut form, mut images) = (vec![content::of_text(&rule)], Vec::new());
         for (name, guide) in CLIPS {
             let mut fetched = None;
             let Some(image) = self.of_vectors(name, guide, offset, &mut fetched)? else {
-                all.push(0);
+                form.push(0);
                 continue;
             };
-            if is_part && !self.is_held(Some(name), offset, image, window) {
+            if !self.is_held(Some(name), offset, image, part) {
                 return Ok(None);
             }
             let clip = Clip::of(self.host, self.instance, name);
             let defined = clip.and_then(|clip| clip.defined(self.time + f64::from(offset)));
             let [width, height] = self.full_size(defined, 1.0);
             let aspects = [image.aspect, clip.map(|clip| clip.aspect())];
-            all.push(content::of_text(&format!("{aspects:?} {width} {height} {:?}", self.field)));
-            all.push(image.content(&self.frame, window, threads)?);
-            count += 1;
+            form.push(content::of_text(&format!("{aspects:?} {width} {height} {:?}", self.field)));
+            images.push(image.rows(&self.frame, window, part, threads)?);
         }
-        Ok((count > 0).then(|| content::of_all(&all)))
+        Ok((!images.is_empty()).then(|| Content { form: content::of_all(&form), images }))
     }
 
     /// The image of a clip of vectors in a frame; `fetched` holds that of another frame.

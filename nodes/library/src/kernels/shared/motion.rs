@@ -338,7 +338,7 @@ pub fn motion_at<S: Simd>(simd: S, view: &View<'_>, x: f32x8<S>, y: f32x8<S>, li
 
 /// The motions at eight places, beside, below, and beside those, clamped to the picture.
 #[inline(always)]
-fn corners2<S: Simd>(simd: S, view: &View<'_>, left: i32x8<S>, top: i32x8<S>) -> [[f32x8<S>; 2]; 4] {
+pub fn corners2<S: Simd>(simd: S, view: &View<'_>, left: i32x8<S>, top: i32x8<S>) -> [[f32x8<S>; 2]; 4] {
     let ([w, h], x, y) = (view.full(), left[0], top[0]);
     if are_neighbours(simd, left, top) && x >= 0 && x + 8 < w && y >= 0 && y + 1 < h {
         let (above, below) = (Block { x, y, len: 8 }, Block { x, y: y + 1, len: 8 });

@@ -5,7 +5,7 @@
 //! Cost: four taps of two channels and about 50 operations.
 
 pub use crate::kernels::shaders::return_agreement::Params;
-use crate::kernels::shared::motion::{bounded, fetch2, is_known};
+use crate::kernels::shared::motion::{bounded, corners2, is_known};
 use crate::kernels::simd::pixels::Block;
 use crate::kernels::time::guide_agreement::Way;
 use isophote_engine::fearless_simd::{Simd, f32x8, i32x8, prelude::*};
@@ -45,8 +45,9 @@ fn agreement<S: Simd>(simd: S, pass: &CpuPass<'_>, params: &Params, block: Block
     let y: i32x8<S> = place(cy + known.select(step[1], zero), h).to_int();
     let far = f32x8::splat(simd, 1e18);
     let mut least = far;
-    for (dx, dy) in [(0, 0), (1, 0), (0, 1), (1, 1)] {
-        let home = bounded(fetch2(simd, back, x + dx, y + dy), params.limit);
+    let corners = corners2(simd, back, x, y);
+    for i in 0..corners.len() {
+        let home = bounded(corners[i], params.limit);
         let (mx, my) = (step[0] + home[0], step[1] + home[1]);
         least = least.at_most(is_known(home).select(mx * mx + my * my, far));
     }
