@@ -1889,7 +1889,7 @@ def steady(
     """Steady. Averages flicker and noise of moving pictures away before they reach a style. Flicker
     and noise, averaged away before they reach a filter: neighbouring frames are carried here along
     the motion of things and count where they agree. For pictures that are not stylized; the styles
-    have a steadiness of their own, which averages what is not decided yet.
+    have a steadiness of their own, which averages lines, tones and marks before they lie on paper.
 
     Inputs:
         image: The picture.
