@@ -359,19 +359,19 @@ def coherent(
     saturation: float = 1.0,
     lights: float = 0.0,
     darks: float = 0.0,
-    stepping: Literal['even', 'stretched'] = 'even',
-    rho: float = 1.0,
+    stepping: Literal['even', 'stretched'] = 'stretched',
+    rho: float = 2.5,
     relax_threshold: float = 0.0447,
-    sigma_t: float = 6.0,
+    sigma_t: float = 10.0,
     max_angle: float = 22.5,
     adapt: Literal['anisotropy', 'angle'] = 'anisotropy',
     shock: Literal['gradient_directed', 'coherence_enhancing'] = 'gradient_directed',
-    sigma_g: float = 1.5,
+    sigma_g: float = 2.0,
     sigma_i: float = 0.0,
-    radius: float = 2.0,
+    radius: float = 3.0,
     threshold: float = 0.005,
     phi_q: float = 3.4,
-    sigma_a: float = 1.5,
+    sigma_a: float = 3.0,
     steadiness: float = 0.0,
     window: int = 2,
     mix: float = 1.0,
@@ -382,8 +382,9 @@ def coherent(
     """Coherent. The picture as if drawn with one confident hand: hair, branches and folds flow
     together, and outlines become clear. The picture as if drawn with one confident hand: hair,
     branches and folds flow together, outlines become clear, and small round features keep their
-    shape. Smoothing along the local structure and sharpening across it, in turn; defaults are the
-    thesis'. (thesis § 6)
+    shape. Smoothing along the local structure and sharpening across it, in turn; lengths are up to
+    two and a half times the thesis', so that strokes are seen when the picture is fitted to a
+    screen. `coherence_enhancing` has the thesis' own. (thesis § 6)
 
     Inputs:
         image: The picture.

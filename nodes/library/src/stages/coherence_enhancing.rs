@@ -60,7 +60,7 @@ pub(crate) const SIGMA_A: Param = Param::length("sigma_a", "Edge smoothing", 1.5
 
 choice! {
     /// Method by which stream lines are stepped.
-    enum Stepping {
+    pub(crate) enum Stepping {
         /// In steps of one pixel.
         Even ("even", "Even"),
         /// In fewer and longer ones where lines are long.

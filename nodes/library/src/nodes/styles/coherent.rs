@@ -5,7 +5,7 @@ use crate::declare::spec::{NodeSpec, Param, STEADINESS, Scope, WINDOW};
 use crate::declare::value::Value;
 use crate::kernels::colour::quantize_luminance::{self, Steepness};
 use crate::kernels::colour::{lab_to_rgb, rgb_to_lab};
-use crate::stages::coherence_enhancing::{self as filter, Filter, filtered};
+use crate::stages::coherence_enhancing::{self as filter, Filter, Stepping, filtered};
 use crate::stages::{
     ADVANCED, LOOK, abstraction, quantization as levels, quantize_luminance as quantization, shock, tone,
     tones_by_area,
@@ -20,7 +20,8 @@ pub static NODE: NodeSpec = NodeSpec {
     hint: "The picture as if drawn with one confident hand: hair, branches and folds flow together, and outlines become clear.",
     doc: "The picture as if drawn with one confident hand: hair, branches and folds flow together, outlines \
           become clear, and small round features keep their shape. Smoothing along the local structure and \
-          sharpening across it, in turn; defaults are the thesis'.",
+          sharpening across it, in turn; lengths are up to two and a half times the thesis', so that strokes are seen when the \
+          picture is fitted to a screen. `coherence_enhancing` has the thesis' own.",
     section: "6",
     inputs: &[ports::COLOR, ports::TENSOR],
     output: ports::color_output("The stylized picture."),
@@ -35,19 +36,19 @@ pub static NODE: NodeSpec = NodeSpec {
         tone::SATURATION.structural(),
         tone::LIGHTS,
         tone::DARKS,
-        filter::STEPPING.group(ADVANCED),
-        filter::RHO.group(ADVANCED),
+        filter::STEPPING.with_default(Value::Choice(Stepping::Stretched.selected().index)).group(ADVANCED),
+        filter::RHO.with_default(Value::Float(2.5)).group(ADVANCED),
         filter::RELAX_THRESHOLD.group(ADVANCED),
-        filter::SIGMA_T.group(ADVANCED),
+        filter::SIGMA_T.with_default(Value::Float(10.0)).slider(0.0, 30.0).group(ADVANCED),
         filter::MAX_ANGLE.group(ADVANCED),
         filter::ADAPT.group(ADVANCED),
         filter::SHOCK.group(ADVANCED),
-        shock::SIGMA_G.group(ADVANCED),
+        shock::SIGMA_G.with_default(Value::Float(2.0)).group(ADVANCED),
         shock::SIGMA_I.group(ADVANCED),
-        shock::RADIUS.group(ADVANCED),
+        shock::RADIUS.with_default(Value::Float(3.0)).slider(0.0, 12.0).group(ADVANCED),
         shock::THRESHOLD.group(ADVANCED),
         quantization::PHI_Q.group(ADVANCED),
-        filter::SIGMA_A.group(ADVANCED),
+        filter::SIGMA_A.with_default(Value::Float(3.0)).group(ADVANCED),
         STEADINESS,
         WINDOW,
     ],
