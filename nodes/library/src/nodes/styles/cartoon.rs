@@ -131,11 +131,10 @@ fn build(scope: &mut Scope<'_>) -> ImageId {
         LineFilter::Isotropic => lines::flow_dog(scope, 0.0),
     };
     let by = Agreement::lab(COLOUR_AGREEMENT);
-    let [smooth, tensor, edges, flat] = steadied(scope, by, |scope| {
+    let [smooth, edges, flat] = steadied(scope, by, |scope| {
         let color = scope.required("color");
         let guides = flow_dog::guides(scope, guide_weight);
-        let tensor = flow_dog::tensor(scope, color, &guides);
-        let tensor = flow_map::bent(scope, tensor);
+        let tensor = oriented(scope, guide_weight);
         let lab = rgb_to_lab::pass(scope.plan, color, 1.0);
         // The first iterations are those behind the lines: the plan records them once.
         let smooth = abstraction.apply(scope.plan, lab, tensor, n_a);
@@ -148,7 +147,7 @@ fn build(scope: &mut Scope<'_>) -> ImageId {
             }
             LineFilter::Isotropic => flow.isotropic(scope.plan, lightness),
         };
-        [smooth, tensor, edges, flattened(scope, smooth)]
+        [smooth, edges, flattened(scope, smooth)]
     });
 
     let saturation = scope.float("saturation");
@@ -162,9 +161,19 @@ fn build(scope: &mut Scope<'_>) -> ImageId {
     let sigma_a = scope.float("sigma_a");
     if sigma_a > 0.0 {
         let smooth = Lic { sigma: sigma_a, ..lic::unadapted() };
+        // That of the frame itself, which is there: averages of neighbours would lead the smoothing hardly elsewhere.
+        let tensor = oriented(scope, guide_weight);
         return line_integral_convolution::pass_unadapted(scope.plan, drawn, tensor, &smooth);
     }
     drawn
+}
+
+/// The tensor of the picture that is described, and of its guides.
+fn oriented(scope: &mut Scope<'_>, guide_weight: f32) -> ImageId {
+    let color = scope.required("color");
+    let guides = flow_dog::guides(scope, guide_weight);
+    let tensor = flow_dog::tensor(scope, color, &guides);
+    flow_map::bent(scope, tensor)
 }
 
 /// A smoothed picture in few flat tones, in Lab.
