@@ -79,7 +79,12 @@ fn list(library: &Library, catalogue: &Catalogue) -> String {
 
 fn describe(node: &Node) -> String {
     let mut text = format!("{} ({}, {})\n\n", node.label, node.id, node.group);
-    text += &wrapped(node.doc, 0);
+    // What it is for in a sentence of its own, and how it does it below.
+    if let Some(more) = node.doc.strip_prefix(node.hint) {
+        text += &(wrapped(node.hint, 0) + "\n" + &wrapped(more, 0));
+    } else {
+        text += &wrapped(node.doc, 0);
+    }
     if !node.section.is_empty() {
         text += &format!("Thesis: section {}\n", node.section);
     }
