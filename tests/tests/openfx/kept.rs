@@ -51,6 +51,16 @@ fn steadied<'h>(described: &Described<'h>, size: [i32; 2]) -> Instance<'h> {
     instance
 }
 
+/// An instance of which no segment reads much of another.
+fn segmented<'h>(described: &Described<'h>, size: [i32; 2]) -> Instance<'h> {
+    let instance = steadied(described, size);
+    instance.set("window", 1);
+    // What is around lines, and areas, reach from one segment into the other.
+    instance.set("inhibition", 0.0);
+    instance.set("steps", 0);
+    instance
+}
+
 /// The motion of the film.
 fn vectors(size: [i32; 2]) -> Picture {
     let vectors: Vec<u8> =
@@ -149,14 +159,7 @@ pub fn strips_share_what_frames_have_in_common() {
     let host = Host::new(Behaviour::default());
     let plugin = binary.plugin("org.isophote.cartoon");
     let described = Described::new(&host, plugin);
-    let film = || {
-        let instance = steadied(&described, size);
-        instance.set("window", 1);
-        // What is around lines, and areas, reach from one segment into the other.
-        instance.set("inhibition", 0.0);
-        instance.set("steps", 0);
-        instance
-    };
+    let film = || segmented(&described, size);
     let (whole, strips) = (film(), film());
     let pictures =
         [(0..FRAMES).map(|n| frame(size, n)).collect::<Vec<_>>(), vec![vectors(size); FRAMES as usize]];
@@ -202,13 +205,7 @@ pub fn strips_are_made_anew_where_what_they_are_made_from_changes() {
     let host = Host::new(Behaviour::default());
     let plugin = binary.plugin("org.isophote.cartoon");
     let described = Described::new(&host, plugin);
-    let film = || {
-        let instance = steadied(&described, size);
-        instance.set("window", 1);
-        instance.set("inhibition", 0.0);
-        instance.set("steps", 0);
-        instance
-    };
+    let film = || segmented(&described, size);
     let strip = |film: &Instance<'_>, y: i32| {
         let window = [0, y, size[0], y + 20];
         let wanted = Wanted { time: 3.0, ..Wanted::new(window) };

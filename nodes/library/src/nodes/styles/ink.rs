@@ -399,7 +399,8 @@ fn build(scope: &mut Scope<'_>) -> ImageId {
     let on_dark = scope.option::<MassesOnDark>(MASSES_ON_DARK.id);
     let masses = (on_dark == MassesOnDark::Light).then_some((toned, drawing.tones));
     let lines = lines_on_white(scope, tinted, edges, tensor, drawing.sigma_a * scale, masses);
-    let (strokes, _) = strokes(scope, form, drawing.stroke, 1.0);
+    // Where all grain is the paper's, none of it is read.
+    let strokes = if drawing.follow > 0.0 { strokes(scope, form, drawing.stroke, 1.0).0 } else { tinted };
     let sheet = sheet(scope, &drawing);
     ink_sheet::pass(scope.plan, &Drawing { lines, color: tinted, strokes, marks, tones: toned }, &sheet)
 }
