@@ -2,6 +2,7 @@
 // on the paper's grain. Cells of grain are those of the full-size picture.
 // Cost: five loads, 12 hashes and about 100 multiply-adds.
 #import gpu/grid
+#import shared/coverage
 #import shared/mark_tones
 #import shared/value_noise
 
@@ -38,6 +39,8 @@ struct Params {
     smooth_from: f32,
     /// 1 / the units of L over which grain shows.
     inverse_fade: f32,
+    /// Nonzero: what is drawn alone, without the paper.
+    bare: u32,
 }
 
 #params
@@ -85,5 +88,9 @@ fn of_pixel(id: vec3u, lines: vec4f, v: vec4f, strokes: vec4f, marks: vec4f, ton
     let paper = params.paper.rgb * (1.0 + params.texture_amount * (tooth - 0.5));
     let laid = mix(paper, own * 0.94 + 0.06, chalk);
     let colour = mix(params.line.rgb, own * params.tint, params.colour);
+    if params.bare != 0u {
+        let covered = 1.0 - (1.0 - ink) * (1.0 - chalk);
+        return vec4f(mix(own * 0.94 + 0.06, colour, ink / max(covered, LEAST_COVERAGE)), covered);
+    }
     return vec4f(mix(laid, colour, ink), select(v.a, 1.0, params.cover != 0u));
 }

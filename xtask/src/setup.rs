@@ -134,9 +134,12 @@ pub const BLENDER: Need = Need {
     ],
 };
 
-/// Program that reads and writes videos.
-pub const FFMPEG: Need =
-    Need { what: "ffmpeg", present: || program("ffmpeg") && program("ffprobe"), packages: &["ffmpeg"] };
+/// Programs that read and write videos, and that draw curves.
+pub const FFMPEG: Need = Need {
+    what: "ffmpeg and rsvg-convert",
+    present: || ["ffmpeg", "ffprobe", "rsvg-convert"].into_iter().all(program),
+    packages: &["ffmpeg", "librsvg2-bin"],
+};
 
 /// A display without a screen, what winit loads to open a window on it, and what windows are read aloud by.
 pub const XVFB: Need = Need {

@@ -1,7 +1,6 @@
 //! A style on frames in main memory, computed by the library on the CPU: the faster way where a graphics driver computes
 //! there itself.
 
-use crate::apply::filter::usable_guides;
 use crate::apply::stages::stages;
 use crate::stylize::style::Style;
 use isophote_files::error::{AtPlace, Result};
@@ -38,7 +37,7 @@ impl Processor {
     /// # Errors
     /// [`isophote_files::error::Error::Failure`] when the library fails.
     pub fn new(library: &Library, style: Style) -> Result<Self> {
-        let guides = usable_guides(library, &style)?;
+        let guides = style.usable_guides(library)?;
         Ok(Self { library: library.clone(), style, guides, sequence: None })
     }
 

@@ -38,6 +38,7 @@ pub mod read;
 pub mod resize;
 mod said;
 pub mod space;
+mod svg;
 mod tiff;
 mod tiff_write;
 pub mod webp;

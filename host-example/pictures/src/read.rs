@@ -16,7 +16,7 @@ use crate::meaning::{ImageState, Meaning};
 use crate::pixels::{MOST_PIXELS, Pixels, Samples};
 use crate::primaries::{Change, REC709};
 use crate::tiff::Wide;
-use crate::{colours, hdr, jpeg, png, said};
+use crate::{colours, hdr, jpeg, png, said, svg};
 use isophote_files::error::{Error, Result};
 use isophote_files::frames;
 use isophote_files::input;
@@ -267,6 +267,9 @@ pub fn is_whole(path: &Path) -> bool {
     let Ok(bytes) = Unread::open(path).and_then(|file| file.bytes(path)) else { return false };
     if bytes.starts_with(&EXR) {
         return exr::is_whole(bytes);
+    }
+    if bytes.starts_with(b"<svg") {
+        return svg::is_whole(&bytes);
     }
     decode(path, &bytes).is_ok()
 }

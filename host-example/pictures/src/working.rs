@@ -2,7 +2,7 @@
 
 use crate::convert::Conversion;
 use crate::exr::Picture;
-use crate::meaning::{ImageState, Meaning};
+use crate::meaning::{Alpha, ImageState, Meaning};
 use crate::primaries::REC709;
 use crate::space::Space;
 
@@ -34,6 +34,18 @@ impl WorkingSpace {
         Self { space, there: Conversion::between(&source, &working), source, working }
     }
 
+    /// The same for results that have alpha, where they do, whether or not the picture has.
+    #[must_use]
+    pub fn with_alpha(mut self, has_alpha: bool) -> Self {
+        for meaning in [&mut self.source, &mut self.working].into_iter().filter(|_| has_alpha) {
+            if meaning.alpha == Alpha::None {
+                meaning.alpha =
+                    if meaning.is_premultiplied() { Alpha::Premultiplied } else { Alpha::Straight };
+            }
+        }
+        self
+    }
+
     /// Meaning of results in files of a state, in the space that somebody names for them.
     pub fn of_results(&self, state: ImageState, space: Option<Space>) -> Meaning {
         self.source.of_results(state).named(space)
@@ -48,7 +60,6 @@ impl WorkingSpace {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::meaning::Alpha;
     use crate::pixels::{Pixels, Precision, Samples};
     use crate::primaries::P3;
 

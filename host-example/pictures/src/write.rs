@@ -16,7 +16,7 @@ use crate::read::Source;
 use crate::resize::{self, Resize};
 use crate::space::Space;
 use crate::transfer::Transfer;
-use crate::{display, icc, png, tiff_write};
+use crate::{display, icc, png, svg, tiff_write};
 use isophote_files::error::{Error, Result};
 use isophote_files::files::{self, Existing};
 use isophote_files::output;
@@ -46,6 +46,8 @@ pub enum Format {
     Tiff,
     /// Half or float.
     Exr,
+    /// Areas of one colour as curves.
+    Svg,
 }
 
 impl Format {
@@ -60,10 +62,11 @@ impl Format {
             "jpg" | "jpeg" => Ok(Self::Jpeg),
             "tif" | "tiff" => Ok(Self::Tiff),
             "exr" => Ok(Self::Exr),
+            "svg" => Ok(Self::Svg),
             _ => Err(Error::file(
                 path,
                 "is not a kind of picture that is written",
-                "name a .png, .jpg, .tif or .exr file",
+                "name a .png, .jpg, .tif, .exr or .svg file",
             )),
         }
     }
@@ -72,7 +75,7 @@ impl Format {
     pub const fn depths(self) -> &'static [Precision] {
         match self {
             Self::Png => &[Precision::U8, Precision::U16],
-            Self::Jpeg => &[Precision::U8],
+            Self::Jpeg | Self::Svg => &[Precision::U8],
             Self::Tiff => &[Precision::U8, Precision::U16, Precision::F32],
             Self::Exr => &[Precision::F16, Precision::F32],
         }
@@ -81,8 +84,12 @@ impl Format {
     /// Makes sure that results can be in a space that somebody names for them.
     ///
     /// # Errors
-    /// [`Error::Input`] for encoded ones in EXR files, which are of light.
+    /// [`Error::Input`] for encoded ones in EXR files, which are of light, and for others than sRGB in SVG files.
     pub fn check_space(self, space: Option<Space>) -> Result<()> {
+        if let Some(space) = space.filter(|space| self == Self::Svg && *space != Space::Srgb) {
+            let problem = format!("{} is not what colours of SVG files are in", space.id());
+            return Err(Error::input("--output-space", problem, "leave it out, or write a .png file"));
+        }
         match space.filter(|space| self == Self::Exr && !space.is_linear()) {
             Some(space) => Err(Error::input(
                 "--output-space",
@@ -96,7 +103,7 @@ impl Format {
     /// State of its numbers when they come from a picture of another state.
     pub fn state(self, source: ImageState) -> ImageState {
         match self {
-            Self::Png | Self::Jpeg => ImageState::DisplayReferred,
+            Self::Png | Self::Jpeg | Self::Svg => ImageState::DisplayReferred,
             Self::Tiff => source,
             Self::Exr => ImageState::SceneReferred,
         }
@@ -105,7 +112,7 @@ impl Format {
     /// Meaning of results that it can keep: PNG has alpha apart from colour, EXR colour that is multiplied by it.
     pub fn kept(self, meaning: Meaning) -> Meaning {
         let alpha = match (self, meaning.alpha) {
-            (Self::Png | Self::Jpeg, Alpha::Premultiplied) => Alpha::Straight,
+            (Self::Png | Self::Jpeg | Self::Svg, Alpha::Premultiplied) => Alpha::Straight,
             (Self::Exr, Alpha::Straight) => Alpha::Premultiplied,
             (_, alpha) => alpha,
         };
@@ -170,11 +177,19 @@ pub fn write(
             let profile = profile(meaning, pixels.channels());
             files::write(path, existing, |file| tiff_write::write(file, &pixels, meaning, profile.as_deref()))
         }
+        Format::Svg => write_svg(path, existing, pixels, meaning),
         Format::Jpeg => {
             let quality = options.quality.unwrap_or(JPEG_QUALITY);
             write_jpeg(path, existing, opaque(path, pixels.converted(Precision::U8)), (quality, meaning))
         }
     }
+}
+
+fn write_svg(path: &Path, existing: Existing, pixels: Pixels, meaning: &Meaning) -> Result<()> {
+    let srgb = Meaning { alpha: meaning.alpha, ..Meaning::display() };
+    let converted = Conversion::between(meaning, &srgb).map(|there| there.apply(&pixels).0);
+    let pixels = converted.unwrap_or(pixels).converted(Precision::U8);
+    files::write(path, existing, |file| svg::write(file, &pixels, meaning.pixel_aspect))
 }
 
 fn write_jpeg(

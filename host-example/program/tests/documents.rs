@@ -11,7 +11,7 @@ use image::{DynamicImage, Rgb32FImage, Rgba32FImage};
 use isophote_example::kernels::Kernels;
 use isophote_example::plan_runner::{ALL, PlanRunner};
 use isophote_finishing::apply::backend::Backend;
-use isophote_finishing::apply::filter::{self, Filter, MaskedStyle};
+use isophote_finishing::apply::filter::{Filter, MaskedStyle};
 use isophote_finishing::apply::frame_cache::{CachedFrame, Window};
 use isophote_finishing::apply::memory::Budget;
 use isophote_finishing::apply::square;
@@ -49,7 +49,7 @@ fn floats(width: u32, height: u32, channels: u32, data: Vec<f32>) -> Pixels {
 fn stylized(frame: &Frame, name: &str, (channels, precision): (u32, Precision)) -> Pixels {
     let library = library();
     let mut style = Style::load(&library, name, &[]).expect("a style");
-    let usable = filter::usable_guides(&library, &style).expect("the library answers");
+    let usable = style.usable_guides(&library).expect("the library answers");
     let size = (frame.width, frame.height);
     let request = frame.request(style.request(&library, size).expect("a request"));
     let color = floats(size.0, size.1, 4, frame.color.as_flattened().to_vec());
@@ -68,7 +68,7 @@ fn stylized(frame: &Frame, name: &str, (channels, precision): (u32, Precision)) 
 fn applied(path: &Path, name: &str, space: Option<Space>, backend: Backend) -> Pixels {
     let library = library();
     let style = Style::load(&library, name, &[]).expect("a style");
-    let wanted = filter::usable_guides(&library, &style).expect("the library answers");
+    let wanted = style.usable_guides(&library).expect("the library answers");
     let mut source = read::read(path, &Selection { wanted, ..Selection::default() }).expect("a picture");
     square::make(&library, "picture", &mut source).expect("square pixels");
     let budget = Budget::new(u64::MAX, 1);
@@ -114,7 +114,7 @@ fn uploaded(gpu: &Gpu, (width, height): (u32, u32), channels: u32, data: &[f32])
 fn on_the_device(frame: &Frame, name: &str) -> Vec<f32> {
     let (library, gpu) = (library(), Gpu::open().expect("a graphics adapter"));
     let style = Style::load(&library, name, &[]).expect("a style");
-    let usable = filter::usable_guides(&library, &style).expect("the library answers");
+    let usable = style.usable_guides(&library).expect("the library answers");
     let size = (frame.width, frame.height);
     let wanted: Vec<_> = frame.guides.iter().filter(|image| usable.contains(&image.guide)).collect();
     let names = wanted.iter().map(|image| image.guide.id());

@@ -15,6 +15,7 @@
 
 #![forbid(unsafe_code)]
 
+mod animated;
 pub mod background;
 pub mod buffers;
 pub mod drivers;

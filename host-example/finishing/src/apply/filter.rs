@@ -61,6 +61,8 @@ struct Layer {
     look: MaskedStyle,
     /// The mask that its graph takes as an input; that of other looks is applied to their results.
     input: Option<usize>,
+    /// True where it draws on nothing, so that results have alpha.
+    is_bare: bool,
     /// State that is kept of the frames of each picture.
     sequences: Vec<Kept>,
 }
@@ -115,7 +117,8 @@ fn layers(looks: Vec<MaskedStyle>) -> Result<Vec<Layer>> {
             ));
         }
         let input = if is_single && style.takes("mask")? { *mask } else { None };
-        layers.push(Layer { look, input, sequences: Vec::new() });
+        let is_bare = style.draws_alone()?;
+        layers.push(Layer { look, input, is_bare, sequences: Vec::new() });
     }
     Ok(layers)
 }
@@ -274,15 +277,17 @@ impl Filter {
         }
         let to = format.state(source.state());
         let scalar = self.layers.iter().all(|layer| layer.look.style.kind != Kind::Color);
+        let is_bare = self.layers.iter().any(|layer| layer.is_bare);
         let mut filtered =
             Filtered { results: Vec::with_capacity(count), meaning: Meaning::usual(to), replaced: 0 };
         for (at, picture) in source.pictures.iter().take(count).enumerate() {
             let channels = match in_place {
-                Some(exr) => exr.result_channels(at, scalar),
+                Some(exr) => exr.result_channels(at, scalar, is_bare),
                 None if scalar => 1,
+                None if is_bare => 4,
                 None => picture.pixels.channels().max(3),
             };
-            let working = WorkingSpace::of(self.space, picture);
+            let working = WorkingSpace::of(self.space, picture).with_alpha(is_bare);
             let there = working.there.as_ref();
             let (color, bad) = own.working(at, there).unwrap_or((&picture.pixels, 0));
             filtered.replaced += bad;
@@ -367,7 +372,7 @@ impl Planner {
     pub fn new(library: Library, looks: Vec<MaskedStyle>) -> Result<Self> {
         let mut guides = Vec::new();
         for look in &looks {
-            guides.extend(usable_guides(&library, &look.style)?);
+            guides.extend(look.style.usable_guides(&library)?);
         }
         Ok(Self { library, layers: layers(looks)?, guides, has_flow: false, last: None })
     }
@@ -473,27 +478,4 @@ struct LayerJob<'a> {
     /// The picture in its working space.
     color: &'a Pixels,
     window: &'a Window<'a>,
-}
-
-/// Guides that a style can use, each once, whether or not they are connected.
-///
-/// # Errors
-/// [`isophote_files::error::Error::Failure`] when the library fails.
-pub fn usable_guides(library: &Library, style: &Style) -> Result<Vec<Guide>> {
-    let mut guides = Vec::new();
-    let refused = |e: isophote_loader::Error| e.at(&style.name, "choose another style");
-    // Stills read no motion.
-    let is_steady = style.is_animated() || library.frames(&style.graph).map_err(refused)? != [0, 0];
-    for node in 0..style.graph.count() {
-        let spec = style.graph.spec(node).map_err(refused)?;
-        for port in spec.inputs {
-            let is_read = |guide: &Guide| (guide.id(), guide.kind()) == (port.id, port.kind);
-            let guide = Guide::ALL.into_iter().find(is_read);
-            // Several nodes may read one.
-            let is_new = |guide: &Guide| !guides.contains(guide) && (is_steady || !guide.is_motion());
-            let guide = guide.filter(is_new);
-            guides.extend(guide);
-        }
-    }
-    Ok(guides)
 }

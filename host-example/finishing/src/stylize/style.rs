@@ -14,6 +14,7 @@ use isophote_files::{frames, output};
 use isophote_loader::abi::IsophoteRequest;
 use isophote_loader::catalogue::Kind;
 use isophote_loader::{Graph, Library, Style as Tracks};
+use isophote_pictures::exr::Guide;
 
 /// One `--set`: `id=value`, or `node.id=value` for one node of a graph.
 #[derive(Clone, Debug, PartialEq, Eq)]
@@ -263,6 +264,40 @@ impl Style {
         let nodes = graph["nodes"].as_array().into_iter().flatten();
         let mut sources = nodes.filter_map(|node| node["inputs"].as_object()).flat_map(Map::values);
         Ok(sources.any(|source| *source == format!("@{guide}")))
+    }
+
+    /// True where a node draws lines alone, on nothing, so that results have alpha whether or not pictures have.
+    ///
+    /// # Errors
+    /// [`Error::Failure`] when the library fails.
+    pub fn draws_alone(&self) -> Result<bool> {
+        let json = self.graph.to_json().map_err(|e| e.at(&self.name, "choose another style"))?;
+        let graph: Value = serde_json::from_str(&json).unwrap_or_default();
+        let mut nodes = graph["nodes"].as_array().into_iter().flatten();
+        Ok(nodes.any(|node| node["params"]["show"] == "lines"))
+    }
+
+    /// Guides that it can use, each once, whether or not they are connected.
+    ///
+    /// # Errors
+    /// [`Error::Failure`] when the library fails.
+    pub fn usable_guides(&self, library: &Library) -> Result<Vec<Guide>> {
+        let mut guides = Vec::new();
+        let refused = |e: isophote_loader::Error| e.at(&self.name, "choose another style");
+        // Stills read no motion.
+        let is_steady = self.is_animated() || library.frames(&self.graph).map_err(refused)? != [0, 0];
+        for node in 0..self.graph.count() {
+            let spec = self.graph.spec(node).map_err(refused)?;
+            for port in spec.inputs {
+                let is_read = |guide: &Guide| (guide.id(), guide.kind()) == (port.id, port.kind);
+                let guide = Guide::ALL.into_iter().find(is_read);
+                // Several nodes may read one.
+                let is_new = |guide: &Guide| !guides.contains(guide) && (is_steady || !guide.is_motion());
+                let guide = guide.filter(is_new);
+                guides.extend(guide);
+            }
+        }
+        Ok(guides)
     }
 
     /// Lets all nodes that can be steady over time estimate motion from the pictures themselves.

@@ -252,9 +252,9 @@ impl ExrFile {
         pictures.map_err(|fault| fault.of(path))
     }
 
-    /// Samples a pixel that the result of a picture must have.
-    pub fn result_channels(&self, picture: usize, scalar: bool) -> u32 {
-        picture::result_channels(&self.chosen[picture], &self.selection, scalar)
+    /// Samples a pixel that the result of a picture must have; one with alpha keeps it in a layer of its own.
+    pub fn result_channels(&self, picture: usize, scalar: bool, has_alpha: bool) -> u32 {
+        picture::result_channels(&self.chosen[picture], &self.selection, scalar, has_alpha)
     }
 
     /// Puts the result of a picture into its place.

@@ -115,11 +115,12 @@ pub fn read(
 }
 
 /// Samples a pixel that a result must have to go into the file.
-pub fn result_channels(chosen: &Chosen, selection: &Selection, scalar: bool) -> u32 {
+pub fn result_channels(chosen: &Chosen, selection: &Selection, scalar: bool, has_alpha: bool) -> u32 {
     match (scalar, chosen.alpha) {
         (true, _) if selection.into.is_some() => 1,
         (true, None) if chosen.model == Model::Grey => 1,
         (_, Some(_)) => 4,
+        (_, None) if has_alpha && selection.into.is_some() => 4,
         (_, None) => 3,
     }
 }

@@ -50,8 +50,8 @@ pub struct ApplyArgs {
     /// standard input. A folder of pictures where the results go to a folder.
     #[arg(required_unless_present_any = ["preset", "layered", "to"], value_hint = ValueHint::AnyPath)]
     pub input: Option<PathBuf>,
-    /// The result: .png, .jpg, .tif or .exr, for a sequence with #### as well; for a video another one, - for YUV4MPEG on
-    /// standard output, or pictures of its frames, such as out.####.png, numbered from 1. A sequence becomes a video where one
+    /// The result: .png, .jpg, .tif, .exr, or .svg for curves around areas of one colour, for a sequence with #### as well;
+    /// for a video another one, - for YUV4MPEG on standard output, or pictures of its frames, such as out.####.png, numbered from 1. A sequence becomes a video where one
     /// is named, such as out.mp4. A folder, such as out/, gets files of the same names. [default: a file beside the picture with the style
     /// in its name, such as photo.cartoon.png; with --in-place the picture itself]
     #[arg(value_hint = ValueHint::AnyPath)]

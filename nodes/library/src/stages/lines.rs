@@ -1,12 +1,15 @@
 //! The lines of styles: the flow-based difference of Gaussians (§ 4.5) under the controls of artists.
 
+use crate::declare::choice::choice;
 use crate::declare::spec::{Param, Scope};
+use crate::kernels::colour::lines_alone;
 use crate::kernels::lines::flow_dog_two_dimensional::Stepping;
 use crate::kernels::shared::edge_threshold::{Threshold, Xdog};
 use crate::kernels::shared::stream::Integrator;
 use crate::stages::flow_dog::{FlowDog, Guided, Kernel};
 use crate::stages::line_context::{self, LineContext};
 use crate::stages::{ADVANCED, LOOK};
+use isophote_engine::ImageId;
 
 pub(crate) const LINE_WIDTH: Param = Param::length("line_width", "Line width", 2.0, [0.2, 40.0])
     .slider(0.8, 10.0)
@@ -49,6 +52,30 @@ pub(crate) const GUIDE_WEIGHT: Param = Param::float("guide_weight", "Guide stren
     .group(ADVANCED)
     .hint("Strength of the lines that normals, depth and object ids draw; 0 leaves these out.")
     .doc("Strength of lines where normal, depth or object id break; 0 leaves the guides unread.");
+
+pub(crate) const SHOW: Param = Param::choice("show", "Show", Show::Picture.selected())
+    .group("output")
+    .hint("Shows the picture, or the lines alone on nothing, to be laid over pictures elsewhere.")
+    .doc("`mix` and the mask lay lines alone over the picture, as they do all results.");
+
+choice! {
+    /// Part of a drawing that is shown.
+    pub(crate) enum Show {
+        /// All of it.
+        Picture ("picture", "Picture"),
+        /// All that is drawn, with the picture and the paper left out: transparent between lines.
+        Lines ("lines", "Lines alone"),
+    }
+}
+
+/// A drawing as `show` says: the picture with its lines, or these alone. `source` is the picture without them, `edges` where
+/// they are, `opacity` theirs.
+pub(crate) fn shown(scope: &mut Scope<'_>, [drawn, source, edges]: [ImageId; 3], opacity: f32) -> ImageId {
+    match scope.option(SHOW.id) {
+        Show::Picture => drawn,
+        Show::Lines => lines_alone::pass(scope.plan, [drawn, source, edges], opacity),
+    }
+}
 
 /// The technical parameters of lines.
 #[derive(Clone, Copy, Debug, PartialEq)]

@@ -4,7 +4,7 @@ use super::ApplyArgs;
 use isophote_files::error::{Error, Result};
 use isophote_files::frames::Pattern;
 use isophote_files::output;
-use isophote_finishing::apply::filter::{self, MaskedStyle, Planner};
+use isophote_finishing::apply::filter::{MaskedStyle, Planner};
 use isophote_finishing::apply::looks::Entry;
 use isophote_finishing::apply::masks::{MaskChoice, Masks};
 use isophote_finishing::apply::tasks::Tasks;
@@ -17,7 +17,7 @@ impl ApplyArgs {
     pub(super) fn wanted(&self, library: &Library, looks: &[MaskedStyle]) -> Result<Vec<Guide>> {
         let mut wanted = Vec::new();
         for look in looks {
-            wanted.extend(filter::usable_guides(library, &look.style)?);
+            wanted.extend(look.style.usable_guides(library)?);
         }
         wanted.retain(|guide| !(self.estimates_motion() && guide.is_motion()));
         Ok(wanted)

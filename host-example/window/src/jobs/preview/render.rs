@@ -11,7 +11,6 @@ use crate::state::preview::order::Order;
 use crate::state::preview::picture::{self, Meaning, Picture};
 use isophote_files::error::{AtPlace, Error, Result};
 use isophote_files::limits;
-use isophote_finishing::apply::filter;
 use isophote_finishing::stylize::style::Style;
 use isophote_loader::abi::{ISOPHOTE_ERROR_CANCELLED, IsophoteRequest};
 use isophote_loader::catalogue::Kind;
@@ -86,7 +85,7 @@ impl Renderer {
         let request = self.request(picture, size, &style)?;
         let refused = |e: isophote_loader::Error| e.at(&style.name, "choose another look");
         let read = style.graph.support(&request, part).map_err(refused)?;
-        let guides = filter::usable_guides(&self.library, &style)?;
+        let guides = style.usable_guides(&self.library)?;
         let mut control = Control { threads: self.threads, cancelled: Some(cancelled), ..Control::default() };
         let frame = self.read(&picture.frame, size, read);
         let color = pixels(frame, 4, frame.color.as_flattened())?;

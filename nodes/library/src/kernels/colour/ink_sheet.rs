@@ -4,6 +4,7 @@
 //! Cost: 12 hashes and about 120 multiply-adds per pixel.
 
 pub use crate::kernels::shaders::ink_sheet::Params;
+use crate::kernels::shared::coverage::LEAST_COVERAGE;
 use crate::kernels::shared::mark_tones::{INVERSE_FADE, SMOOTH_FROM, rise, tone_lightness};
 use crate::kernels::shared::value_noise::noise;
 use crate::kernels::simd::pixels::{for_blocks, write};
@@ -49,6 +50,8 @@ pub struct Sheet {
     pub cut: bool,
     /// Opaque also where the picture is not.
     pub cover: bool,
+    /// What is drawn alone, without the paper.
+    pub bare: bool,
     /// Position of the picture in the canonical one, pixels.
     pub origin: [f32; 2],
 }
@@ -85,12 +88,12 @@ pub fn pass(plan: &mut PlanBuilder, drawing: &Drawing, sheet: &Sheet) -> ImageId
         tint: DARKEST + (1.0 - DARKEST) * (1.0 - sheet.ground / COVERED).clamp(0.0, 1.0),
         texture_amount: sheet.texture,
         cover: sheet.cover.into(),
+        bare: sheet.bare.into(),
         follow: sheet.follow,
         dryness: sheet.dryness,
         cut: f32::from(sheet.cut),
         smooth_from: SMOOTH_FROM,
         inverse_fade: INVERSE_FADE,
-        padding: Default::default(),
         origin: sheet.origin,
     };
     let inputs = [drawing.lines, drawing.color, drawing.strokes, drawing.marks, drawing.tones];
@@ -141,17 +144,23 @@ fn sheet<S: Simd>(simd: S, pass: &CpuPass<'_>, params: &Params, band: &mut Band<
 
             // Chalk: the picture's own colours, a little lighter, where the paper catches them.
             let chalk = catches(zero + params.ground, height, grain) * params.colour * alpha;
+            let covered = one - (one - ink) * (one - chalk);
             let paper = (tooth - 0.5) * params.texture_amount + 1.0;
             let mut laid = [r, g, b];
             for (channel, value) in laid.iter_mut().enumerate() {
                 let own = value.within(zero, one);
-                let sheet = mix(paper * params.paper[channel], own * 0.94 + 0.06, chalk);
+                let own_chalk = own * 0.94 + 0.06;
                 let line = f32x8::splat(simd, params.line[channel]);
                 let line = mix(line, own * params.tint, zero + params.colour);
-                *value = mix(sheet, line, ink);
+                *value = if params.bare != 0 {
+                    mix(own_chalk, line, ink / covered.at_least(LEAST_COVERAGE))
+                } else {
+                    mix(mix(paper * params.paper[channel], own_chalk, chalk), line, ink)
+                };
             }
             let [r, g, b] = laid;
-            write([r, g, b, if params.cover != 0 { one } else { a }], target);
+            let sheet = if params.cover != 0 { one } else { a };
+            write([r, g, b, if params.bare != 0 { covered } else { sheet }], target);
         },
     );
 }

@@ -4,8 +4,10 @@ use crate::declare::ports;
 use crate::declare::spec::{NodeSpec, Param, STEADINESS, Scope, WINDOW};
 use crate::declare::value::Value;
 use crate::kernels::colour::blueprint_paper::{self, Sheet};
+use crate::kernels::colour::composite_lines::{self, Params as Composite};
 use crate::kernels::colour::{lightness, rgb_to_lab};
 use crate::stages::abstraction::{self, Abstraction};
+use crate::stages::lines::{SHOW, Show};
 use crate::stages::steady::{Agreement, COLOUR_AGREEMENT, steadied};
 use crate::stages::{
     ADVANCED, LOOK, difference_of_gaussians as dog, flow_dog, flow_map, line_context, lines,
@@ -68,6 +70,7 @@ pub static NODE: NodeSpec = NodeSpec {
         line_context::LOCAL_CONTRAST.with_default(Value::Float(1.0)).group(ADVANCED),
         line_context::INHIBITION.with_default(Value::Float(1.0)).group(ADVANCED),
         line_context::COLOUR_EDGES.group(ADVANCED),
+        SHOW,
     ],
     build,
 };
@@ -88,9 +91,15 @@ fn build(scope: &mut Scope<'_>) -> ImageId {
         let seen = flow_dog::Seen { lightness, lab: Some(smooth) };
         [smooth, flow.edges(scope.plan, seen, tensor, &guides)]
     });
+    let line = scope.color("line_color");
+    if scope.option::<Show>(SHOW.id) == Show::Lines {
+        let source = scope.required("color");
+        let drawn = composite_lines::pass(scope.plan, source, edges, &Composite { line, paper: [0.0; 4] });
+        return lines::shown(scope, [drawn, source, edges], line[3]);
+    }
     let lightness = lightness::pass_lab(scope.plan, smooth);
     let sheet = Sheet {
-        line: scope.color("line_color"),
+        line,
         paper: scope.color("paper_color"),
         spacing: scope.float("grid"),
         scale: scope.scale(),

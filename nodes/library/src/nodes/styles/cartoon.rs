@@ -83,6 +83,7 @@ pub static NODE: NodeSpec = NodeSpec {
         line_context::INHIBITION.with_default(Value::Float(1.0)).group(ADVANCED),
         line_context::COLOUR_EDGES.with_default(Value::Float(0.5)).group(ADVANCED),
         LINE_ON_DARK.group(ADVANCED),
+        lines::SHOW,
     ],
     build,
 };
@@ -158,6 +159,8 @@ fn build(scope: &mut Scope<'_>) -> ImageId {
         rgb = warp_sharpen::warped(scope.plan, rgb, sigma, warp);
     }
     let drawn = lined(scope, [rgb, edges, smooth], flow.guide_weight);
+    let opacity = scope.color("line_color")[3];
+    let drawn = lines::shown(scope, [drawn, rgb, edges], opacity);
     let sigma_a = scope.float("sigma_a");
     if sigma_a > 0.0 {
         let smooth = Lic { sigma: sigma_a, ..lic::unadapted() };

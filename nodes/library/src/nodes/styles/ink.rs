@@ -24,6 +24,7 @@ use crate::stages::abstraction::{self, Abstraction};
 use crate::stages::flow_dog::{self, FlowDog, Kernel, Seen};
 use crate::stages::line_context::LineContext;
 use crate::stages::line_on_dark::{MASSES_ON_DARK, MassesOnDark};
+use crate::stages::lines::{SHOW, Show};
 use crate::stages::steady::{Agreement, COLOUR_AGREEMENT, steadied};
 use crate::stages::structure_tensor::of_color_and_guides;
 use crate::stages::tensor_options::TensorOptions;
@@ -142,6 +143,7 @@ pub static NODE: NodeSpec = NodeSpec {
             "How far regular hatching bends over the form: 1 is the medium's own, 0 is straight.",
         )
         .doc("Factor on the distance that hatches move aside per unit of L."),
+        SHOW,
     ],
     build,
 };
@@ -295,6 +297,7 @@ fn sheet(scope: &Scope<'_>, drawing: &Preset) -> Sheet {
         ground: drawing.ground,
         texture: drawing.texture,
         cover: scope.bool("cover"),
+        bare: scope.option::<Show>(SHOW.id) == Show::Lines,
     }
 }
 
