@@ -18,6 +18,7 @@
 pub mod background;
 pub mod buffers;
 pub mod drivers;
+mod frame_buffers;
 pub mod gpu;
 mod ground;
 pub mod layouts;

@@ -311,6 +311,8 @@ impl RenderArgs {
             fps: self.fps,
             scene_referred: is_exr && !self.tone_mapped,
             rest_positions: is_exr,
+            // They are light of the scene.
+            layers: is_exr && !self.tone_mapped,
             backend: self.backend,
         })
     }
@@ -319,13 +321,21 @@ impl RenderArgs {
 /// Guide, which the renderer knows of a pixel beside its colour: target, names of channels, precision.
 type Guide = (fn(&Targets) -> Option<&Target>, &'static [&'static str], Precision);
 
+/// Channels of colours of surfaces and of their light.
+const ALBEDO: [&str; 4] = ["albedo.R", "albedo.G", "albedo.B", "albedo.A"];
+const DIFFUSE: [&str; 4] = ["diffuse.R", "diffuse.G", "diffuse.B", "diffuse.A"];
+const SPECULAR: [&str; 4] = ["specular.R", "specular.G", "specular.B", "specular.A"];
+
 /// Named as compositors and `apply` know them.
-const GUIDES: [Guide; 5] = [
+const GUIDES: [Guide; 8] = [
     (|targets| Some(&targets.normal), &["N.X", "N.Y", "N.Z"], Precision::Half),
     (|targets| Some(&targets.depth), &["Z"], Precision::Float),
     (|targets| Some(&targets.object_id), &["id"], Precision::Float),
     (|targets| Some(&targets.motion), &["backward.u", "backward.v"], Precision::Float),
     (|targets| targets.rest.as_ref(), &["Pref.X", "Pref.Y", "Pref.Z"], Precision::Float),
+    (|targets| Some(&targets.layers.as_ref()?.albedo), &ALBEDO, Precision::Half),
+    (|targets| Some(&targets.layers.as_ref()?.diffuse), &DIFFUSE, Precision::Half),
+    (|targets| Some(&targets.layers.as_ref()?.specular), &SPECULAR, Precision::Half),
 ];
 
 /// Writes a frame with everything that is known of it into one file.
