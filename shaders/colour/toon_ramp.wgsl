@@ -85,10 +85,10 @@ fn main(@builtin(global_invocation_id) id: vec3u) {
     let shine = params.highlight.a * above(centre.z, params.highlight_from.x, params.highlight_from.y, slope.z);
     colour = mix(colour * srgb_decode(tint), srgb_decode(params.rim.rgb), rim);
     colour = mix(colour, srgb_decode(params.highlight.rgb), shine);
-    colour *= saturate(surface.a / max(centre.w, 1e-4));
     let others = fetch(rest, 2u, p);
     if params.own == 0u {
-        colour += srgb_decode(others.rgb);
+        // As far as the layer covers the picture's pixel.
+        colour = colour * saturate(surface.a / max(centre.w, 1e-4)) + srgb_decode(others.rgb);
     }
     textureStore(target_image, vec2i(id.xy), vec4f(srgb_encode(colour), centre.w));
 }

@@ -270,6 +270,9 @@ pub fn guided<'h>(host: &'h Host, binary: &Binary, effect: Expected) -> Option<I
         return None;
     }
     plain(&instance);
+    if instance.has("rim") {
+        instance.set("rim", 1.0);
+    }
     if instance.has("guide_weight") {
         instance.set("guide_weight", 1.0);
     }

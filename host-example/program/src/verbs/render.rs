@@ -34,7 +34,7 @@ pub struct RenderArgs {
     scene: SceneArgs,
     #[command(flatten)]
     staging: StagingArgs,
-    /// The picture: .png; or .exr with the scene-linear colour, normals, depth, object numbers, motion and rest
+    /// The picture: .png; or .exr with the scene-linear colour and its light, normals, depth, object numbers, motion and rest
     /// positions. out.####.exr, out.@@@@.exr or out.%04d.exr for a sequence; .#### is added where it lacks. A video that
     /// ffmpeg writes, such as .mp4, .mov, .mkv or .webm, on black where the background is transparent. A folder, such as
     /// out/, gets a .png file with the scene's name.

@@ -20,12 +20,6 @@ crate::kernel!(toon_light {
         outliers: 1e-3,
         reason: "powers are exact to a few units in the last place, and dark surfaces magnify what they reflect",
     },
-    fast: Tolerance {
-        absolute: 4e-3,
-        relative: 4e-3,
-        outliers: 1e-2,
-        reason: "light over the colour of a dark surface magnifies the rounding of both",
-    },
 });
 
 /// Layers of a picture that tell its light; all colours are gamma-encoded.

@@ -126,16 +126,16 @@ fn shaded<S: Simd>(
     let [from, soft] = params.highlight_from;
     let shine = above(around.centre(2), from, soft, slope_of(&around, 2)) * params.highlight[3];
     colour = mix(mix(colour, srgb_decode(rim_colour), rim), srgb_decode(shine_colour), shine);
-    let share = (covered / alpha.at_least(1e-4)).within(0.0, 1.0);
-    let mut sum = [colour[0] * share, colour[1] * share, colour[2] * share];
     if params.own == 0 {
+        // As far as the layer covers the picture's pixel.
+        let share = (covered / alpha.at_least(1e-4)).within(0.0, 1.0);
         let [r, g, b, _]: [f32x8<S>; 4] = around.block.read(simd, &pass.inputs[2]);
         let rest = srgb_decode([r, g, b]);
         for c in 0..3 {
-            sum[c] += rest[c];
+            colour[c] = colour[c] * share + rest[c];
         }
     }
-    let [r, g, b] = srgb_encode(sum);
+    let [r, g, b] = srgb_encode(colour);
     [r, g, b, alpha]
 }
 

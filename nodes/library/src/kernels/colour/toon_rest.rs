@@ -19,7 +19,7 @@ crate::kernel!(toon_rest {
         reason: "what layers leave is the difference of like numbers, which the curve makes steep near black",
     },
     fast: Tolerance {
-        absolute: 3e-2,
+        absolute: 1e-2,
         relative: 4e-3,
         outliers: 1e-2,
         reason: "differences of light as 16-bit floats, which the curve makes steep near black",
