@@ -1465,24 +1465,24 @@ def toon_shading(
     object_id: Any = None,
     steps: int = 3,
     exposure: float = 0.0,
-    softness: float = 0.04,
-    color_1: Color = (0.47, 0.49, 0.66, 1.0),
-    color_2: Color = (0.76, 0.74, 0.78, 1.0),
+    softness: float = 0.02,
+    color_1: Color = (0.54, 0.54, 0.69, 1.0),
+    color_2: Color = (0.8, 0.78, 0.81, 1.0),
     color_3: Color = (1.0, 0.985, 0.94, 1.0),
     color_4: Color = (1.0, 1.0, 0.97, 1.0),
     color_5: Color = (1.0, 1.0, 1.0, 1.0),
     color_6: Color = (1.0, 1.0, 1.0, 1.0),
-    at_2: float = 0.4,
-    at_3: float = 0.68,
-    at_4: float = 0.9,
-    at_5: float = 1.05,
+    at_2: float = 0.55,
+    at_3: float = 0.88,
+    at_4: float = 1.0,
+    at_5: float = 1.1,
     at_6: float = 1.2,
     highlight: float = 0.0,
     highlight_size: float = 0.4,
     highlight_softness: float = 0.05,
     highlight_color: Color = (1.0, 1.0, 0.97, 1.0),
     rim: float = 0.0,
-    rim_width: float = 0.4,
+    rim_width: float = 0.25,
     rim_softness: float = 0.08,
     rim_color: Color = (1.0, 0.97, 0.9, 1.0),
     detail: float = 0.5,
@@ -1507,14 +1507,15 @@ def toon_shading(
     painted. Light in steps on the colours of surfaces. Light is the luminance of `diffuse` over
     that of `albedo`, or of the picture over that of `albedo` where there is no `diffuse`; without
     an albedo it is the luminance of `diffuse`, and without both that of the picture, smoothed by
-    the bilateral filter along the local structure. Steps lie in its CIELAB lightness over 100, so
-    that 1 is a surface which shows its own colour. Each step multiplies the albedo, in linear
-    light, by its colour: white shows surfaces in their own colours. Without an albedo the picture's
-    light is divided out of its colours, and each step has a tone of its own. What no surface
-    reflects, such as the sky and what glows, stays as it is: what `diffuse` and `specular` leave of
-    the picture where both are there, and otherwise what has no albedo. Where `diffuse` is nothing
-    and `specular` is something, as on metals, light is `specular`. Borders are smooth steps at
-    least a pixel and a half wide, by the gradient of the light. (thesis § 4.6)
+    the bilateral filter along the local structure; surfaces then count as such that reflect 0.45 of
+    it. Steps lie in its CIELAB lightness over 100, so that 1 is a surface which shows its own
+    colour. Each step multiplies the albedo, in linear light, by its colour: white shows surfaces in
+    their own colours. Without an albedo the picture's light is divided out of its colours, and each
+    step has a tone of its own. What no surface reflects, such as the sky and what glows, stays as
+    it is: what `diffuse` and `specular` leave of the picture where both are there, and otherwise
+    what has no albedo. Where `diffuse` is nothing and `specular` is something, as on metals, light
+    is `specular`. Borders are smooth steps at least a pixel and a half wide, by the gradient of the
+    light. (thesis § 4.6)
 
     Inputs:
         image: The picture.
