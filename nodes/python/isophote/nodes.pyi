@@ -1504,18 +1504,18 @@ def toon_shading(
     **picture: Unpack[Picture],
 ) -> Array:
     """Toon shading. Light in a few flat steps, each in a colour of its own, as cel animation is
-    painted. Light in steps on the colours of surfaces. Light is the luminance of `diffuse` over
-    that of `albedo`, or of the picture over that of `albedo` where there is no `diffuse`; without
-    an albedo it is the luminance of `diffuse`, and without both that of the picture, smoothed by
-    the bilateral filter along the local structure; surfaces then count as such that reflect 0.45 of
-    it. Steps lie in its CIELAB lightness over 100, so that 1 is a surface which shows its own
-    colour. Each step multiplies the albedo, in linear light, by its colour: white shows surfaces in
-    their own colours. Without an albedo the picture's light is divided out of its colours, and each
-    step has a tone of its own. What no surface reflects, such as the sky and what glows, stays as
-    it is: what `diffuse` and `specular` leave of the picture where both are there, and otherwise
-    what has no albedo. Where `diffuse` is nothing and `specular` is something, as on metals, light
-    is `specular`. Borders are smooth steps at least a pixel and a half wide, by the gradient of the
-    light. (thesis § 4.6)
+    painted. Light in steps on the colours of surfaces (Lake et al. 2000). Light is the luminance of
+    `diffuse` over that of `albedo`, or of the picture over that of `albedo` where there is no
+    `diffuse`; without an albedo it is the luminance of `diffuse`, and without both that of the
+    picture, smoothed by the bilateral filter along the local structure; surfaces then count as such
+    that reflect 0.45 of it. Steps lie in its CIELAB lightness over 100, so that 1 is a surface
+    which shows its own colour. Each step multiplies the albedo, in linear light, by its colour:
+    white shows surfaces in their own colours. Without an albedo the picture's light is divided out
+    of its colours, and each step has a tone of its own. What no surface reflects, such as the sky
+    and what glows, stays as it is: what `diffuse` and `specular` leave of the picture where both
+    are there, and otherwise what has no albedo. Where `diffuse` is nothing and `specular` is
+    something, as on metals, light is `specular`. Borders are smooth steps at least a pixel and a
+    half wide, by the gradient of the light. (thesis § 4.6)
 
     Inputs:
         image: The picture.
@@ -1540,12 +1540,18 @@ def toon_shading(
         exposure: Brightens or dims the light before it is cut into steps, in stops: more light
             moves shadows back. -16 to 16.
         softness: Softness of the borders of all steps: 0 is as crisp as pixels allow. 0 to 1.
-        color_1: Colour of the darkest step, the shadow; white leaves surfaces as they are.
+        color_1: Colour of the darkest step, the shadow; white leaves surfaces as they are. Its
+            opacity is not used.
         color_2: Colour of this step; white leaves surfaces as they are. No effect with fewer steps.
+            Its opacity is not used.
         color_3: Colour of this step; white leaves surfaces as they are. No effect with fewer steps.
+            Its opacity is not used.
         color_4: Colour of this step; white leaves surfaces as they are. No effect with fewer steps.
+            Its opacity is not used.
         color_5: Colour of this step; white leaves surfaces as they are. No effect with fewer steps.
+            Its opacity is not used.
         color_6: Colour of this step; white leaves surfaces as they are. No effect with fewer steps.
+            Its opacity is not used.
         at_2: Light from which on this step is: 0 is none, 1 shows surfaces in their own colours. No
             effect with fewer steps. CIELAB lightness over 100. A step that begins below the one
             before it covers that. 0 to 2.

@@ -201,11 +201,11 @@ pub fn guides_enter_in_the_general_context(binary: &Binary, effect: Expected) {
     instance.connect("Depth", Picture::packed_in(depth_layout, WIDTH, HEIGHT, &depths));
     let got = instance.render(layout, SIZE).packed();
     let mut graph = effect.graph(false);
-    for weight in ["guide_weight", "rim"] {
+    for (id, value) in [("guide_weight", "1"), ("rim", "1"), ("rim_width", "0.9")] {
         if let Ok(node) = graph.find("n")
-            && graph.value(node, weight).is_ok()
+            && graph.value(node, id).is_ok()
         {
-            graph.set_text(node, weight, "1").unwrap();
+            graph.set_text(node, id, value).unwrap();
         }
     }
     if let Ok(tensor) = graph.find("t") {

@@ -1,4 +1,5 @@
-//! Cel shading: light in steps, each with a colour of its own, on the colours of surfaces.
+//! Cel shading: light in steps, each with a colour of its own, on the colours of surfaces, as Lake et al. 2000 paint them by a
+//! table of light; here of the layers of light that renderers write, or of a picture alone.
 
 use crate::declare::ports;
 use crate::declare::spec::{ImageKind, NodeSpec, Param, Port, STEADINESS, Scope, WINDOW};
@@ -16,7 +17,7 @@ pub static NODE: NodeSpec = NodeSpec {
     label: "Toon shading",
     group: "colour",
     hint: "Light in a few flat steps, each in a colour of its own, as cel animation is painted.",
-    doc: "Light in steps on the colours of surfaces. Light is the luminance of `diffuse` over that of `albedo`, or of \
+    doc: "Light in steps on the colours of surfaces (Lake et al. 2000). Light is the luminance of `diffuse` over that of `albedo`, or of \
           the picture over that of `albedo` where there is no `diffuse`; without an albedo it is the luminance of \
           `diffuse`, and without both that of the picture, smoothed by the bilateral filter along the local structure; \
           surfaces then count as such that reflect 0.45 of it. Steps lie in its CIELAB lightness over 100, so that 1 \
@@ -136,6 +137,7 @@ const fn color(step: usize) -> Param {
     Param::color(id, label, TINTS[step])
         .group(LOOK)
         .hint("Colour of this step; white leaves surfaces as they are. No effect with fewer steps.")
+        .doc("Its opacity is not used.")
 }
 
 const fn place(step: usize) -> Param {
