@@ -25,11 +25,16 @@ const STEADINESS: (&str, &str) = ("steadiness", "0.5");
 /// carries marks.
 const AROUND: [u32; 2] = [8, 0];
 
+/// Frames that sequences of files know: as many after as count.
+const BOTH_WAYS: [u32; 2] = [8, 2];
+
 /// A style's frames for themselves, and steady ones.
 struct Pair {
     name: &'static str,
     still: Row,
     steady: Row,
+    /// By frames before and after.
+    both_ways: Row,
     /// By motion that is estimated.
     estimated: Row,
 }
@@ -42,19 +47,20 @@ fn measured(shot: &Shot) -> Vec<Pair> {
     styles
         .map(|name| {
             let steady = || Style::new(name, &[STEADINESS]).without_guides();
-            let mut rows = table(
+            let rows = table(
                 shot,
                 vec![
                     Entry::new(name, Style::new(name, &[]).without_guides().play(shot, AROUND)),
                     Entry::new(format!("{name} steady"), steady().play(shot, AROUND)).against(name),
+                    Entry::new(format!("{name} both ways"), steady().play(shot, BOTH_WAYS)).against(name),
                     Entry::new(format!("{name} estimated"), steady().estimating().play(shot, AROUND))
                         .against(name),
                 ],
             );
-            let (Some(estimated), Some(steady), Some(still)) = (rows.pop(), rows.pop(), rows.pop()) else {
-                panic!("three rows")
+            let Ok([still, steady, both_ways, estimated]) = <[Row; 4]>::try_from(rows) else {
+                panic!("four rows")
             };
-            Pair { name, still, steady, estimated }
+            Pair { name, still, steady, both_ways, estimated }
         })
         .collect()
 }
@@ -68,9 +74,12 @@ fn print(title: &str, pairs: &[Pair]) {
         "steady by optical flow",
         "steady, a contrast",
         "jumps, % of pixels",
+        "both ways, a contrast",
+        "jumps",
+        "energy",
     ];
     let mut table = Table::new(16, "steadiness over time", title, &columns);
-    for Pair { name, still, steady, estimated } in pairs {
+    for Pair { name, still, steady, both_ways, estimated } in pairs {
         table.row(&[
             (*name).to_owned(),
             format!("{:.2}", still.steadiness.ratio),
@@ -79,6 +88,9 @@ fn print(title: &str, pairs: &[Pair]) {
             format!("{:.2}", estimated.steadiness.ratio),
             format!("{:.2}", steady.steadiness.a_contrast()),
             format!("{:.2}", 100.0 * steady.steadiness.jumps),
+            format!("{:.2}", both_ways.steadiness.a_contrast()),
+            format!("{:.2}", 100.0 * both_ways.steadiness.jumps),
+            format!("{:.3}", both_ways.steadiness.energy_of_still),
         ]);
     }
     table.print();

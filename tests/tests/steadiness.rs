@@ -28,6 +28,7 @@ fn shot(seen: impl Fn(i32, i32, i32) -> Seen) -> Shot {
     let frame = |t: i32| Frame {
         color: from_fn(w, h, |x, y| [seen(t, x, y).value, 0.5 * seen(t, x, y).value, 0.3, 1.0]),
         motion: from_fn(w, h, |x, y| seen(t, x, y).motion),
+        motion_forward: from_fn(w, h, |x, y| seen(t, x, y).motion.map(|way| -way)),
         depth: from_fn(w, h, |x, y| [seen(t, x, y).depth]),
         object_id: from_fn(w, h, |x, y| [seen(t, x, y).id]),
         normal: from_fn(w, h, |_, _| [0.0, 0.0, 1.0, 1.0]),

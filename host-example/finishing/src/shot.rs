@@ -261,6 +261,22 @@ impl Shot {
         let target = choose(self.renderer.targets());
         target.map(|target| self.readback.read(&self.gpu, &target.texture)).transpose()
     }
+
+    /// Pixels from where points of the frame drawn last are to where they will be in the frame that follows; nothing before
+    /// a frame was drawn. From then on, what is known of the pixels has this motion.
+    ///
+    /// # Errors
+    /// [`isophote_files::error::Error::Failure`] when the device fails.
+    pub fn read_motion_forward(&mut self) -> Result<Option<Picture>> {
+        let Some((number, view)) = self.drawn else { return Ok(None) };
+        let next = self.go_to(number + 1);
+        self.renderer.pass_over(&self.scene, &self.pose, &next, &self.lighting);
+        self.go_to(number);
+        let mut encoder = self.gpu.device.create_command_encoder(&Default::default());
+        self.renderer.encode_motion(&mut encoder, &self.scene, &self.pose, &view, &self.lighting);
+        self.gpu.queue.submit([encoder.finish()]);
+        self.read(|targets| Some(&targets.motion))
+    }
 }
 
 /// The colour that is asked for.

@@ -8,7 +8,7 @@ use exr::prelude::read_first_flat_layer_from_file;
 use support::{IN_PIXELS, folder, isophote, listing, succeeds};
 
 /// Everything of a rendered frame, in the order of EXR files.
-const CHANNELS: [&str; 26] = [
+const CHANNELS: [&str; 28] = [
     "A",
     "B",
     "G",
@@ -30,6 +30,8 @@ const CHANNELS: [&str; 26] = [
     "diffuse.B",
     "diffuse.G",
     "diffuse.R",
+    "forward.u",
+    "forward.v",
     "id",
     "specular.A",
     "specular.B",
@@ -269,4 +271,35 @@ fn layers_add_up_to_the_picture_and_shade_it_in_steps() {
 /// The light of a gamma-encoded number.
 fn colour_of(encoded: f32) -> f32 {
     ((encoded + 0.055) / 1.055).powf(2.4)
+}
+
+#[test]
+fn motion_to_the_next_frame_leads_where_its_own_leads_back() {
+    let folder = folder();
+    // So slowly that a face which is seen stays in sight.
+    render(folder.path(), "all.%04d.exr", &["--frames", "4,5,60", "--turntable"]);
+    let frame = |number: u32| read(&folder.path().join(format!("all.{number:04}.exr")));
+    let (here, next) = (frame(4), frame(5));
+    let [u, v, ids] = ["forward.u", "forward.v", "id"].map(|name| channel(&here, name));
+    let [back_u, back_v, next_ids] = ["backward.u", "backward.v", "id"].map(|name| channel(&next, name));
+    let (width, height) = (96, 64);
+    let (mut seen, mut apart) = (0, 0);
+    for (index, id) in ids.iter().enumerate().filter(|(_, id)| **id != 0.0) {
+        let (x, y) = (index % width, index / width);
+        // Files count rows from below.
+        let to = (x as f32 + u[index], y as f32 - v[index]);
+        let (x, y) = (to.0.round(), to.1.round());
+        if x < 0.0 || y < 0.0 || x >= width as f32 || y >= height as f32 {
+            continue;
+        }
+        let there = y as usize * width + x as usize;
+        if next_ids[there] == *id {
+            seen += 1;
+            // A pixel's centre is up to half a pixel from where the point is, and a face may lie between.
+            let way = (u[index] + back_u[there]).hypot(v[index] + back_v[there]);
+            apart += usize::from(way > 0.5 + 0.1 * u[index].hypot(v[index]));
+        }
+    }
+    assert!(u.iter().any(|v| v.abs() > 1.0), "a turning cube moves");
+    assert!(seen > 500 && apart * 20 < seen, "{apart} of {seen} pixels lead elsewhere");
 }

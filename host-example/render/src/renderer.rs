@@ -228,14 +228,26 @@ impl Renderer {
         if let Some(layers) = &self.targets.layers {
             self.layers_pass(encoder, scene, layers);
         }
-        let targets = &self.targets;
-        let geometry = [&targets.normal, &targets.depth, &targets.object_id, &targets.motion];
-        self.geometry_pass(encoder, scene, Pass::Geometry, &geometry);
+        self.geometry_passes(encoder, scene);
         if let Some(rest) = &self.targets.rest {
             self.geometry_pass(encoder, scene, Pass::Rest, &[rest]);
         }
         self.tone_map.encode(encoder, &self.targets);
         self.history.view_projection = Some(frame.view_projection);
+    }
+
+    /// Records the geometry of the frame that was encoded last once more, now that another one was [passed
+    /// over](Self::pass_over): its motion vectors lead there. Its encoder must have been submitted.
+    pub fn encode_motion(
+        &mut self,
+        encoder: &mut wgpu::CommandEncoder,
+        scene: &Scene,
+        pose: &Pose,
+        view: &View,
+        lighting: &Lighting,
+    ) {
+        self.pass_over(scene, pose, view, lighting);
+        self.geometry_passes(encoder, scene);
     }
 
     fn write_buffers(&mut self, scene: &Scene, pose: &Pose, view: &View, lighting: &Lighting) -> FrameBlock {
@@ -375,6 +387,13 @@ impl Renderer {
         for &(_, index) in self.visible.solid.iter().chain(&self.visible.blended) {
             self.draw(&mut pass, scene, index, Pass::Layers);
         }
+    }
+
+    /// All that is known of each pixel but its colour and its rest position.
+    fn geometry_passes(&self, encoder: &mut wgpu::CommandEncoder, scene: &Scene) {
+        let targets = &self.targets;
+        let geometry = [&targets.normal, &targets.depth, &targets.object_id, &targets.motion];
+        self.geometry_pass(encoder, scene, Pass::Geometry, &geometry);
     }
 
     /// One sample a pixel of what is nearest, into `targets`.

@@ -25,9 +25,12 @@ pub fn frame(path: &Path) -> Result<Frame, String> {
     color.iter_mut().flatten().for_each(|v| *v = encoded(*v));
     // The sky has no coverage in the file, but it is in the picture.
     color.push(vec![1.0; color[0].len()]);
-    let mut motion = channels(&["backward.u", "backward.v"])?;
-    // Files count rows from below, as compositors do.
-    motion[1].iter_mut().for_each(|v| *v = -*v);
+    let moved = |names: &[&str]| -> Result<Image, String> {
+        let mut motion = channels(names)?;
+        // Files count rows from below, as compositors do.
+        motion[1].iter_mut().for_each(|v| *v = -*v);
+        joined(&motion)
+    };
     let object_id = channels(&["id"])?;
     let validity: Vec<f32> = object_id[0].iter().map(|id| f32::from(u8::from(*id != 0.0))).collect();
     let with_validity = |names: &[&str]| -> Result<Image, String> {
@@ -37,7 +40,8 @@ pub fn frame(path: &Path) -> Result<Frame, String> {
     };
     Ok(Frame {
         color: joined(&color)?,
-        motion: joined(&motion)?,
+        motion: moved(&["backward.u", "backward.v"])?,
+        motion_forward: moved(&["forward.u", "forward.v"])?,
         depth: joined(&channels(&["Z"])?)?,
         object_id: joined(&object_id)?,
         normal: with_validity(&["N.X", "N.Y", "N.Z"])?,

@@ -10,6 +10,8 @@ pub struct Frame {
     pub color: Image,
     /// From where the surface is to where it was one frame ago: x right and y down, pixels.
     pub motion: Image,
+    /// From where the surface is to where it will be one frame later, likewise.
+    pub motion_forward: Image,
     /// Distance from the camera, scene units; 0 where there is nothing.
     pub depth: Image,
     /// A number per object; 0 where there is nothing.
@@ -25,7 +27,7 @@ pub struct Frame {
 pub struct Shot {
     /// For tables and names of files.
     pub name: String,
-    /// The frames; the motion of the first leads nowhere.
+    /// The frames; the motion of the first leads nowhere, and that of the last forward to none of them.
     pub frames: Vec<Frame>,
     /// True where nothing moves, so that the motion is right where there is no object, too.
     pub is_static: bool,
@@ -39,6 +41,7 @@ impl Shot {
         let mut one = || {
             let mut frame = frame.clone();
             frame.motion.data_mut().fill(0.0);
+            frame.motion_forward.data_mut().fill(0.0);
             for pixel in frame.color.data_mut().chunks_exact_mut(4) {
                 pixel[..3].iter_mut().for_each(|v| *v += (sigma * random.normal()) as f32);
             }

@@ -64,6 +64,7 @@ impl Style {
                 let image = match input {
                     GraphInput::Color => &frame.color,
                     GraphInput::Motion => &frame.motion,
+                    GraphInput::MotionForward if around[1] > 0 => &frame.motion_forward,
                     GraphInput::Normal if self.has_guides => &frame.normal,
                     GraphInput::Depth if self.has_guides => &frame.depth,
                     GraphInput::ObjectId if self.has_guides => &frame.object_id,

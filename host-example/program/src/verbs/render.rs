@@ -327,16 +327,19 @@ const DIFFUSE: [&str; 4] = ["diffuse.R", "diffuse.G", "diffuse.B", "diffuse.A"];
 const SPECULAR: [&str; 4] = ["specular.R", "specular.G", "specular.B", "specular.A"];
 
 /// Named as compositors and `apply` know them.
-const GUIDES: [Guide; 8] = [
+const GUIDES: [Guide; 7] = [
     (|targets| Some(&targets.normal), &["N.X", "N.Y", "N.Z"], Precision::Half),
     (|targets| Some(&targets.depth), &["Z"], Precision::Float),
     (|targets| Some(&targets.object_id), &["id"], Precision::Float),
-    (|targets| Some(&targets.motion), &["backward.u", "backward.v"], Precision::Float),
     (|targets| targets.rest.as_ref(), &["Pref.X", "Pref.Y", "Pref.Z"], Precision::Float),
     (|targets| Some(&targets.layers.as_ref()?.albedo), &ALBEDO, Precision::Half),
     (|targets| Some(&targets.layers.as_ref()?.diffuse), &DIFFUSE, Precision::Half),
     (|targets| Some(&targets.layers.as_ref()?.specular), &SPECULAR, Precision::Half),
 ];
+
+/// Motion from the frame before and to the frame that follows.
+const BACKWARD: &[&str] = &["backward.u", "backward.v"];
+const FORWARD: &[&str] = &["forward.u", "forward.v"];
 
 /// Writes a frame with everything that is known of it into one file.
 fn save_layers(
@@ -354,14 +357,19 @@ fn save_layers(
         Some(Depth::Float) => Precision::Float,
         _ => usual,
     };
-    let mut guides = Vec::with_capacity(GUIDES.len());
+    let mut guides = Vec::with_capacity(GUIDES.len() + 2);
     for (target, names, precision) in GUIDES {
-        if let Some(mut picture) = shot.read(target)? {
-            if names == ["backward.u", "backward.v"] {
-                // Compositors count rows from below.
-                picture.data.iter_mut().skip(1).step_by(2).for_each(|v| *v = 0.0 - *v);
-            }
+        if let Some(picture) = shot.read(target)? {
             guides.push((picture, names, precision));
+        }
+    }
+    let motion = shot.read(|targets| Some(&targets.motion))?;
+    let forward = shot.read_motion_forward()?;
+    for (motion, names) in [(motion, BACKWARD), (forward, FORWARD)] {
+        if let Some(mut picture) = motion {
+            // Compositors count rows from below.
+            picture.data.iter_mut().skip(1).step_by(2).for_each(|v| *v = 0.0 - *v);
+            guides.push((picture, names, Precision::Float));
         }
     }
     let mut layers = vec![Layer { picture: color, names, precision }];
