@@ -264,6 +264,17 @@ extern "C" {
 // Bit of `IsophoteRequest::guides` for `rest_position`: points of the undeformed objects.
 #define ISOPHOTE_GUIDE_REST_POSITION 128
 
+// Bit of `IsophoteRequest::guides` for `albedo`: colours of surfaces without light, in the picture's space.
+#define ISOPHOTE_GUIDE_ALBEDO 256
+
+// Bit of `IsophoteRequest::guides` for `diffuse`: light that surfaces reflect in all directions, in their colours and
+// the picture's space.
+#define ISOPHOTE_GUIDE_DIFFUSE 512
+
+// Bit of `IsophoteRequest::guides` for `specular`: light that surfaces mirror: highlights and reflections, in the
+// picture's space.
+#define ISOPHOTE_GUIDE_SPECULAR 1024
+
 // The host binds its own texture, which shows the window of the picture that the plan names.
 #define ISOPHOTE_ROLE_INPUT 0
 

@@ -141,6 +141,14 @@ pub const ISOPHOTE_GUIDE_MOTION: u32 = 32;
 pub const ISOPHOTE_GUIDE_MOTION_FORWARD: u32 = 64;
 /// Bit of `IsophoteRequest::guides` for `rest_position`: points of the undeformed objects.
 pub const ISOPHOTE_GUIDE_REST_POSITION: u32 = 128;
+/// Bit of `IsophoteRequest::guides` for `albedo`: colours of surfaces without light, in the picture's space.
+pub const ISOPHOTE_GUIDE_ALBEDO: u32 = 256;
+/// Bit of `IsophoteRequest::guides` for `diffuse`: light that surfaces reflect in all directions, in their colours and
+/// the picture's space.
+pub const ISOPHOTE_GUIDE_DIFFUSE: u32 = 512;
+/// Bit of `IsophoteRequest::guides` for `specular`: light that surfaces mirror: highlights and reflections, in the
+/// picture's space.
+pub const ISOPHOTE_GUIDE_SPECULAR: u32 = 1024;
 // end of guides
 
 /// Purpose of a texture of a plan. One of `ISOPHOTE_ROLE_...`.

@@ -122,6 +122,7 @@ const RECOLOURING: &[(&str, &str)] = &[
     ("blueprint", "the picture is drawn in one colour on paper of another"),
     ("ink", "tones become ink or paper"),
     ("watercolor", "pigment and paper have tones of their own"),
+    ("toon_shading", "steps of light have tones of their own"),
 ];
 
 /// Filters that give a flat picture a texture.

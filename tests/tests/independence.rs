@@ -28,6 +28,7 @@ const DIRECTED: &[(&str, &str, &str)] = &[
     ("flow_dilation", "", "noise belongs to the place"),
     ("ink", "", "paper and strokes belong to the place"),
     ("oil_paint", "abstraction=xy", "the separable filter runs along x first (§ 3.3)"),
+    ("toon_shading", "abstraction=xy", "the separable filter runs along x first (§ 3.3)"),
     ("blueprint", "abstraction=xy", "the separable filter runs along x first (§ 3.3)"),
 ];
 

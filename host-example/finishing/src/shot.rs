@@ -52,6 +52,8 @@ pub struct Options {
     pub scene_referred: bool,
     /// True where rest positions are rendered whatever the style.
     pub rest_positions: bool,
+    /// True where colours of surfaces and their light are rendered, whatever the style.
+    pub layers: bool,
     /// Backend that the style runs on; the renderer's device may be a driver that computes on the CPU.
     pub backend: Backend,
 }
@@ -134,6 +136,9 @@ impl Shot {
         };
         if options.rest_positions || finish.wants_rest_positions()? {
             renderer.add_rest_positions();
+        }
+        if options.layers {
+            renderer.add_layers();
         }
         gpu.check()?;
         let pose = Pose::at_rest(&scene);

@@ -379,3 +379,56 @@ fn light_of_other_primaries_is_written_with_them() {
         assert!(found.has_primaries(primaries::REC2020) && found.transfer == Transfer::Linear, "{found:?}");
     }
 }
+
+#[test]
+fn colours_and_light_of_surfaces_are_found_by_the_names_of_renderers() {
+    let folder = tempfile::tempdir().expect("a folder");
+    // A layer of each, whose red, green and blue are multiples of its number, and a picture with alpha.
+    let file = |layers: &[(&str, f32)]| {
+        let own =
+            [("R", 0.1), ("G", 0.2), ("B", 0.3), ("A", 0.5)].map(|(name, value)| (name.to_owned(), value));
+        let of = |(layer, value): &(&str, f32)| {
+            [("R", 1.0), ("G", 2.0), ("B", 4.0)].map(|(c, factor)| (format!("{layer}.{c}"), value * factor))
+        };
+        let all: Vec<(String, f32)> = own.into_iter().chain(layers.iter().flat_map(of)).collect();
+        let all: Vec<(&str, f32)> = all.iter().map(|(name, value)| (name.as_str(), *value)).collect();
+        exr_file(folder.path(), &all)
+    };
+    let found = |path: &Path, kind| guide(path, kind, None).expect("a picture").map(|pixels| pixels.to_f32());
+    let plain = |value: f32| [value, 2.0 * value, 4.0 * value, 0.5];
+    for (kind, names) in [
+        (
+            Guide::Albedo,
+            &["albedo", "diffuse_albedo", "ViewLayer.DiffCol", "VRayDiffuseFilter", "DiffuseFilter"][..],
+        ),
+        (Guide::Diffuse, &["diffuse", "combineddiffuse", "DiffuseLighting"]),
+        (Guide::Specular, &["specular", "combinedglossyreflection"]),
+    ] {
+        for name in names {
+            let numbers = found(&file(&[(name, 0.25)]), kind).unwrap_or_else(|| panic!("{name}"));
+            assert_eq!(numbers[..4], plain(0.25), "{name}, with the alpha of the picture");
+            assert_eq!(numbers.len(), 4 * 8);
+        }
+        assert_eq!(found(&file(&[("fog", 0.25)]), kind), None);
+    }
+    // Arnold's light has the colours of surfaces in it, and its parts are none of these.
+    let arnold = file(&[("diffuse_direct", 0.5), ("diffuse_indirect", 0.5)]);
+    assert_eq!(found(&arnold, Guide::Diffuse), None);
+    // That of Blender has not: (direct + indirect) colour.
+    for names in [["DiffCol", "DiffDir", "DiffInd"], ["Diffuse Color", "Diffuse Direct", "Diffuse Indirect"]]
+    {
+        let [colour, direct, indirect] = names.map(|name| format!("ViewLayer.{name}"));
+        let blender = file(&[(colour.as_str(), 0.5), (direct.as_str(), 0.25), (indirect.as_str(), 0.125)]);
+        assert_eq!(found(&blender, Guide::Diffuse).expect("light")[..4], [0.1875, 0.75, 3.0, 0.5]);
+        assert_eq!(found(&blender, Guide::Albedo).expect("colours")[..4], plain(0.5));
+    }
+    let blender = file(&[("ViewLayer.GlossCol", 0.5), ("ViewLayer.GlossDir", 0.25)]);
+    assert_eq!(found(&blender, Guide::Specular).expect("light")[..4], [0.125, 0.5, 2.0, 0.5]);
+    // They are pictures all the same, for whoever asks for them, and channels can be named.
+    let selection = Selection { layer: Some("diffuse".into()), ..Selection::default() };
+    assert!(read::read(&file(&[("diffuse", 0.25)]), &selection).is_ok());
+    let named = guide(&file(&[("fog", 0.25)]), Guide::Albedo, Some("albedo=fog.R,fog.G,fog.B"));
+    assert_eq!(named.expect("a picture").expect("colours").to_f32()[..4], plain(0.25));
+    let layer = guide(&file(&[("fog", 0.25)]), Guide::Albedo, Some("albedo=fog"));
+    assert_eq!(layer.expect("a picture").expect("colours").to_f32()[..4], plain(0.25));
+}

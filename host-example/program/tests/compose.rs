@@ -8,7 +8,7 @@ use exr::prelude::read_first_flat_layer_from_file;
 use support::{IN_PIXELS, folder, isophote, listing, succeeds};
 
 /// Everything of a rendered frame, in the order of EXR files.
-const CHANNELS: [&str; 16] = [
+const CHANNELS: [&str; 28] = [
     "A",
     "B",
     "G",
@@ -20,11 +20,23 @@ const CHANNELS: [&str; 16] = [
     "Pref.Z",
     "R",
     "Z",
+    "albedo.A",
+    "albedo.B",
+    "albedo.G",
+    "albedo.R",
     "backward.u",
     "backward.v",
+    "diffuse.A",
+    "diffuse.B",
+    "diffuse.G",
+    "diffuse.R",
     "forward.u",
     "forward.v",
     "id",
+    "specular.A",
+    "specular.B",
+    "specular.G",
+    "specular.R",
 ];
 
 type Exr = exr::prelude::Image<exr::prelude::Layer<exr::prelude::AnyChannels<exr::prelude::FlatSamples>>>;
@@ -208,6 +220,57 @@ fn any_frames_of_a_sequence_are_rendered_as_in_the_whole() {
     render(folder.path(), "all.%04d.exr", &["--frames", "1-5", "--turntable", "--skip-existing"]);
     assert_eq!(bytes("all.0001.exr"), bytes("some.001.exr"));
     assert_eq!(bytes("all.0004.exr"), whole, "a whole picture was rendered again");
+}
+
+#[test]
+fn layers_add_up_to_the_picture_and_shade_it_in_steps() {
+    let folder = folder();
+    render(folder.path(), "lit.exr", &["--background", "transparent", "--no-ground"]);
+    let lit = read(&folder.path().join("lit.exr"));
+    let mut seen = 0;
+    for colour in ["R", "G", "B"] {
+        let [albedo, diffuse, specular] =
+            ["albedo", "diffuse", "specular"].map(|layer| channel(&lit, &format!("{layer}.{colour}")));
+        for (index, all) in channel(&lit, colour).iter().enumerate() {
+            let sum = diffuse[index] + specular[index];
+            assert!((all - sum).abs() <= 0.003 * all + 1e-5, "{colour} of {index}: {all} and {sum}");
+            seen += usize::from(albedo[index] > 0.1 && diffuse[index] > 0.0 && specular[index] > 0.0);
+        }
+    }
+    assert!(seen > 1000, "{seen} are lit");
+    // What is covered is so by all layers, and what is tone-mapped has no light of the scene.
+    assert_eq!(channel(&lit, "A"), channel(&lit, "albedo.A"));
+    render(folder.path(), "display.exr", &["--tone-mapped"]);
+    let display = read(&folder.path().join("display.exr"));
+    let names: Vec<String> =
+        display.layer_data.channel_data.list.iter().map(|channel| channel.name.to_string()).collect();
+    assert!(names.iter().all(|name| !name.starts_with("albedo")), "{names:?}");
+
+    // Without a word the layers are used: each side of a cube is one tone.
+    let steps = ["--set", "color_1=#400000", "--set", "color_2=#004000", "--set", "color_3=#000040"];
+    apply(folder.path(), &[&["toon_shading", "lit.exr", "steps.exr"], &steps[..]].concat());
+    let none = ["--guide", "albedo=none", "--guide", "diffuse=none", "--guide", "specular=none"];
+    apply(folder.path(), &[&["toon_shading", "lit.exr", "blind.exr"], &steps[..], &none[..]].concat());
+    let shaded = |name: &str| {
+        let image = read(&folder.path().join(name));
+        ["R", "G", "B"].map(|colour| channel(&image, colour))
+    };
+    let [steps, blind] = ["steps.exr", "blind.exr"].map(shaded);
+    assert_ne!(steps, blind);
+    let tone = colour_of(64.0 / 255.0);
+    let albedo = ["R", "G", "B"].map(|colour| channel(&lit, &format!("albedo.{colour}")));
+    let (mut flat, mut covered) = (0, 0);
+    for (index, alpha) in channel(&lit, "A").iter().enumerate().filter(|(_, alpha)| **alpha == 1.0) {
+        covered += usize::from(*alpha == 1.0);
+        let is_tone = |at: usize| (steps[at][index] - tone * albedo[at][index]).abs() < 0.002;
+        flat += usize::from((0..3).any(is_tone));
+    }
+    assert!(flat * 10 > covered * 9, "{flat} of {covered} have a tone");
+}
+
+/// The light of a gamma-encoded number.
+fn colour_of(encoded: f32) -> f32 {
+    ((encoded + 0.055) / 1.055).powf(2.4)
 }
 
 #[test]

@@ -183,7 +183,7 @@ fn pictures_tell_their_size_colours_layers_and_guides() {
         let name = |item: &Value| item["name"].as_str().unwrap_or_default().to_owned();
         list.as_array().expect("a list").iter().map(name).collect()
     };
-    assert_eq!(names(&told["guides"]), ["normal", "depth"]);
+    assert_eq!(names(&told["guides"]), ["normal", "depth", "diffuse"]);
     assert!(names(&told["layers"]).contains(&"diffuse".to_owned()), "{}", told["layers"]);
     assert_eq!(told["motion"], false);
     let (text, _) = succeeds(isophote().arg("info").arg(&path));

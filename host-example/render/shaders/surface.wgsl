@@ -74,11 +74,17 @@ struct Surface {
     n_dot_v: f32,
 }
 
+// Light that goes from a surface towards the camera.
+struct Reflected {
+    diffuse: vec3f,
+    specular: vec3f,
+}
+
 // Light reflected towards the camera, for light that a white surface facing it would reflect as 1.
-fn reflected(s: Surface, to_light: vec3f) -> vec3f {
+fn reflected(s: Surface, to_light: vec3f) -> Reflected {
     let n_dot_l = dot(s.normal, to_light);
     if n_dot_l <= 0.0 {
-        return vec3f(0.0);
+        return Reflected(vec3f(0.0), vec3f(0.0));
     }
     let middle = normalize(s.view + to_light);
     let n_dot_h = saturate(dot(s.normal, middle));
@@ -89,7 +95,7 @@ fn reflected(s: Surface, to_light: vec3f) -> vec3f {
     let visibility = 0.5 / (n_dot_l * sqrt(s.n_dot_v * s.n_dot_v * (1.0 - a2) + a2)
         + s.n_dot_v * sqrt(n_dot_l * n_dot_l * (1.0 - a2) + a2));
     let fresnel = s.specular + (1.0 - s.specular) * pow(1.0 - v_dot_h, 5.0);
-    return n_dot_l * (s.diffuse * (1.0 - fresnel) + fresnel * distribution * visibility);
+    return Reflected(n_dot_l * s.diffuse * (1.0 - fresnel), n_dot_l * fresnel * distribution * visibility);
 }
 
 fn lit(cascade: u32, uv: vec2f, depth: f32) -> f32 {
@@ -142,8 +148,8 @@ fn sunlight(position: vec3f, normal: vec3f) -> f32 {
     return mix(share, sunlight_of(cascade + 1u, position, normal), fade);
 }
 
-fn punctual(s: Surface, position: vec3f) -> vec3f {
-    var sum = vec3f(0.0);
+fn punctual(s: Surface, position: vec3f) -> Reflected {
+    var sum = Reflected(vec3f(0.0), vec3f(0.0));
     for (var i = 0u; i < u32(frame.settings.y); i++) {
         let light = lights[i];
         let kind = u32(light.position.w);
@@ -163,7 +169,9 @@ fn punctual(s: Surface, position: vec3f) -> vec3f {
             let edge = saturate(dot(light.direction.xyz, -to_light) * light.spot.x + light.spot.y);
             strength *= edge * edge;
         }
-        sum += reflected(s, to_light) * light.color.rgb * strength;
+        let one = reflected(s, to_light);
+        sum.diffuse += one.diffuse * light.color.rgb * strength;
+        sum.specular += one.specular * light.color.rgb * strength;
     }
     return sum;
 }
@@ -176,8 +184,16 @@ fn specular_integral(roughness: f32, n_dot_v: f32) -> vec2f {
     return vec2f(-1.04, 1.04) * a + r.zw;
 }
 
-// Colour and coverage.
-fn shaded(in: SurfaceInput, front: bool) -> vec4f {
+// Colour of a surface and its light, which is the sum of the last three.
+struct Shaded {
+    albedo: vec3f,
+    diffuse: vec3f,
+    specular: vec3f,
+    emission: vec3f,
+    coverage: f32,
+}
+
+fn shaded(in: SurfaceInput, front: bool) -> Shaded {
     let base = base_color(in.uv0, in.uv1, in.color);
     let side = select(-1.0, 1.0, front);
     let smooth_normal = safe_normalize(in.normal) * side;
@@ -223,7 +239,7 @@ fn shaded(in: SurfaceInput, front: bool) -> vec4f {
         }
     }
 
-    var color = base.rgb;
+    var out = Shaded(vec3f(0.0), vec3f(0.0), vec3f(0.0), base.rgb, coverage);
     if !has(UNLIT) {
         roughness = clamp(roughness, 0.06, 1.0);
         var s: Surface;
@@ -234,31 +250,49 @@ fn shaded(in: SurfaceInput, front: bool) -> vec4f {
         s.view = select(frame.backward.xyz, safe_normalize(frame.eye.xyz - in.position), frame.eye.w > 0.5);
         s.n_dot_v = max(abs(dot(s.normal, s.view)), 1e-3);
 
-        color = emissive + punctual(s, in.position);
+        var light = punctual(s, in.position);
         if frame.sun_color.w > 0.5 && dot(normal, frame.sun_direction.xyz) > 0.0 {
             // Where the surface itself turns away, a bent normal does not bring the sun back. Fading early also
             // hides that coarse meshes shade themselves facet by facet where the light grazes them.
             let facing = smoothstep(0.0, 0.25, dot(smooth_normal, frame.sun_direction.xyz));
-            color += reflected(s, frame.sun_direction.xyz) * frame.sun_color.rgb * facing
-                * sunlight(in.position, smooth_normal);
+            let sun = frame.sun_color.rgb * facing * sunlight(in.position, smooth_normal);
+            let one = reflected(s, frame.sun_direction.xyz);
+            light.diffuse += one.diffuse * sun;
+            light.specular += one.specular * sun;
         }
         let blur = sqrt(s.alpha);
         let terms = specular_integral(blur, s.n_dot_v);
         let direction = reflect(-s.view, s.normal);
         // Glossy reflections are hidden less than diffuse light, and not where they point outward.
         let specular_occlusion = saturate(pow(s.n_dot_v + occlusion, exp2(-16.0 * s.alpha - 1.0)) - 1.0 + occlusion);
-        color += frame.settings.w * s.diffuse * sky_irradiance(s.normal) * occlusion;
-        color += frame.settings.w * mirrored(direction, blur) * (s.specular * terms.x + terms.y) * specular_occlusion;
+        light.diffuse += frame.settings.w * s.diffuse * sky_irradiance(s.normal) * occlusion;
+        light.specular += frame.settings.w * mirrored(direction, blur) * (s.specular * terms.x + terms.y) * specular_occlusion;
+        out = Shaded(base.rgb, light.diffuse, light.specular, emissive, coverage);
     }
+    return out;
+}
+
+// A colour as targets take it, multiplied by coverage where it is blended.
+fn blended(color: vec3f, coverage: f32) -> vec4f {
     if ALPHA_MODE == 2u {
         return vec4f(color * coverage, coverage);
     }
     return vec4f(color, coverage);
 }
 
+fn whole(s: Shaded) -> vec4f {
+    return blended(s.emission + s.diffuse + s.specular, s.coverage);
+}
+
 @fragment
 fn surface_fragment(in: SurfaceInput, @builtin(front_facing) front: bool) -> @location(0) vec4f {
-    return shaded(in, front);
+    return whole(shaded(in, front));
+}
+
+// Samples of a pixel that so much coverage comes to.
+fn covered_samples(coverage: f32) -> u32 {
+    let covered = vec4f(coverage) > vec4f(0.0, 0.25, 0.5, 0.75);
+    return dot(vec4u(covered), vec4u(1u, 2u, 4u, 8u));
 }
 
 struct Holed {
@@ -270,7 +304,32 @@ struct Holed {
 // of alpha.
 @fragment
 fn surface_holed_fragment(in: SurfaceInput, @builtin(front_facing) front: bool) -> Holed {
-    let color = shaded(in, front);
-    let covered = vec4f(color.a) > vec4f(0.0, 0.25, 0.5, 0.75);
-    return Holed(vec4f(color.rgb, 1.0), dot(vec4u(covered), vec4u(1u, 2u, 4u, 8u)));
+    let color = whole(shaded(in, front));
+    return Holed(vec4f(color.rgb, 1.0), covered_samples(color.a));
+}
+
+// The same surfaces taken apart, in a pass of their own, since few frames need it.
+struct Layers {
+    @location(0) albedo: vec4f,
+    @location(1) diffuse: vec4f,
+    @location(2) specular: vec4f,
+}
+
+@fragment
+fn layers_fragment(in: SurfaceInput, @builtin(front_facing) front: bool) -> Layers {
+    let s = shaded(in, front);
+    return Layers(blended(s.albedo, s.coverage), blended(s.diffuse, s.coverage), blended(s.specular, s.coverage));
+}
+
+struct HoledLayers {
+    @location(0) albedo: vec4f,
+    @location(1) diffuse: vec4f,
+    @location(2) specular: vec4f,
+    @builtin(sample_mask) samples: u32,
+}
+
+@fragment
+fn layers_holed_fragment(in: SurfaceInput, @builtin(front_facing) front: bool) -> HoledLayers {
+    let s = shaded(in, front);
+    return HoledLayers(vec4f(s.albedo, 1.0), vec4f(s.diffuse, 1.0), vec4f(s.specular, 1.0), covered_samples(s.coverage));
 }

@@ -151,7 +151,8 @@ impl Ground {
             Pass::Surface => &self.surface,
             Pass::Geometry => &self.motion,
             Pass::Rest => &self.rest,
-            Pass::Shadow | Pass::Depth => return,
+            // Of the ground itself there is nothing.
+            Pass::Shadow | Pass::Depth | Pass::Layers => return,
         };
         pass.set_pipeline(pipeline);
         pass.set_bind_group(1, &self.group, &[]);

@@ -19,6 +19,7 @@ mod animated;
 pub mod background;
 pub mod buffers;
 pub mod drivers;
+mod frame_buffers;
 pub mod gpu;
 mod ground;
 pub mod layouts;

@@ -22,6 +22,15 @@ pub enum Pass {
     Geometry,
     /// Rest positions.
     Rest,
+    /// Colours of surfaces and their light.
+    Layers,
+}
+
+impl Pass {
+    /// True where surfaces are shaded, and what is transparent is blended.
+    fn is_seen(self) -> bool {
+        matches!(self, Self::Surface | Self::Layers)
+    }
 }
 
 /// Properties that distinguish the pipelines of a pass.
@@ -51,7 +60,9 @@ impl Variant {
             Pass::Geometry | Pass::Rest => {
                 Self { pass, alpha: alpha.min(1), double_sided: material.double_sided, mirrored }
             }
-            Pass::Surface => Self { pass, alpha, double_sided: material.double_sided, mirrored },
+            Pass::Surface | Pass::Layers => {
+                Self { pass, alpha, double_sided: material.double_sided, mirrored }
+            }
         }
     }
 }
@@ -169,6 +180,10 @@ impl Pipelines {
                 (&self.geometry, "geometry", formats.map(|f| target(f, None)).to_vec(), cutout)
             }
             Pass::Rest => (&self.geometry, "rest", vec![target(REST_FORMAT, None)], cutout),
+            Pass::Layers => {
+                let layers = [COLOR_FORMAT; 3].map(|f| target(f, blend)).to_vec();
+                (&self.surface, "layers", layers, alpha_mode)
+            }
         }
     }
 
@@ -183,10 +198,12 @@ impl Pipelines {
         })];
         let (module, name, targets, constants) = self.stage(variant);
         let in_shadow = variant.pass == Pass::Shadow;
-        let multisampled = matches!(variant.pass, Pass::Depth | Pass::Surface);
+        let multisampled = matches!(variant.pass, Pass::Depth | Pass::Surface | Pass::Layers);
         let no_fragments = in_shadow && variant.alpha == 0;
-        let has_holes = variant.pass == Pass::Surface && variant.alpha == 1;
-        let vertex_entry = format!("{name}_vertex");
+        let has_holes = variant.pass.is_seen() && variant.alpha == 1;
+        // Layers are of the same surfaces.
+        let vertices = if variant.pass == Pass::Layers { "surface" } else { name };
+        let vertex_entry = format!("{vertices}_vertex");
         let fragment_entry = format!("{name}_{}fragment", if has_holes { "holed_" } else { "" });
         // Constants may only be given to stages whose module declares them, and the vertex stage shares it.
         let options = wgpu::PipelineCompilationOptions { constants: &constants, ..Default::default() };
@@ -230,7 +247,7 @@ fn depth_state(variant: Variant) -> wgpu::DepthStencilState {
     let in_shadow = variant.pass == Pass::Shadow;
     wgpu::DepthStencilState {
         format: DEPTH_FORMAT,
-        depth_write_enabled: Some(variant.pass != Pass::Surface || variant.alpha < 2),
+        depth_write_enabled: Some(!variant.pass.is_seen() || variant.alpha < 2),
         depth_compare: Some(if in_shadow {
             wgpu::CompareFunction::Less
         } else {

@@ -9,12 +9,13 @@ use glam::Mat4;
 
 use crate::animated::{fill_joints, fill_weights, joint_offsets, weight_offsets};
 use crate::background::{Backdrop, Background};
+use crate::frame_buffers::Buffers;
 use crate::ground::Ground;
-use crate::layouts::{Layouts, bind_buffer};
+use crate::layouts::Layouts;
 use crate::lighting::Lighting;
 use crate::pipelines::{Pass, Pipelines, Variant};
 use crate::shadow::{Cascades, ShadowMaps};
-use crate::targets::{REST_FORMAT, Target, Targets};
+use crate::targets::{Layers, REST_FORMAT, Target, Targets};
 use crate::textures::TextureStore;
 use crate::tone_map::ToneMap;
 use crate::uniforms::{FrameBlock, InstanceBlock, LightBlock};
@@ -53,16 +54,6 @@ pub struct Renderer {
     history: History,
     scratch: Scratch,
     visible: Visible,
-}
-
-/// Buffers that are filled anew for each frame, and the group that binds them.
-struct Buffers {
-    frame: wgpu::Buffer,
-    instances: wgpu::Buffer,
-    joints: wgpu::Buffer,
-    weights: wgpu::Buffer,
-    lights: wgpu::Buffer,
-    bind_group: wgpu::BindGroup,
 }
 
 /// The frame before this one; empty before the first.
@@ -147,10 +138,13 @@ impl Renderer {
     /// As [`Renderer::new`]; the old targets then stay.
     pub fn resize(&mut self, size: (u32, u32)) -> Result<()> {
         if size != (self.targets.width, self.targets.height) {
-            let has_rest = self.targets.rest.is_some();
+            let (has_rest, has_layers) = (self.targets.rest.is_some(), self.targets.layers.is_some());
             self.targets = Targets::new(&self.device, size.0, size.1)?;
             if has_rest {
                 self.add_rest_positions();
+            }
+            if has_layers {
+                self.add_layers();
             }
             if let Some(ground) = &mut self.ground {
                 ground.resize(&self.device, size);
@@ -168,6 +162,12 @@ impl Renderer {
         }
         let size = (self.targets.width, self.targets.height);
         self.targets.rest = Some(Target::new(&self.device, "rest position", REST_FORMAT, 1, size));
+    }
+
+    /// Renders colours of surfaces and their light too from now on, in a pass of their own.
+    pub fn add_layers(&mut self) {
+        let size = (self.targets.width, self.targets.height);
+        self.targets.layers.get_or_insert_with(|| Layers::new(&self.device, size));
     }
 
     /// Takes another background from now on. `scene_referred` says that colours are wanted before tone mapping.
@@ -215,6 +215,9 @@ impl Renderer {
             if self.targets.rest.is_some() {
                 self.pipelines.prepare(&self.device, self.variant(scene, draw, Pass::Rest));
             }
+            if self.targets.layers.is_some() {
+                self.pipelines.prepare(&self.device, self.variant(scene, draw, Pass::Layers));
+            }
         }
         let eye = frame.eye.truncate();
         self.visible.update(scene, &self.primitives, pose, eye, frame.view_projection);
@@ -223,6 +226,9 @@ impl Renderer {
             ground.shadow_pass(encoder, &self.buffers.bind_group, &self.shadow_maps.group);
         }
         self.surface_pass(encoder, scene);
+        if let Some(layers) = &self.targets.layers {
+            self.layers_pass(encoder, scene, layers);
+        }
         self.geometry_passes(encoder, scene);
         if let Some(rest) = &self.targets.rest {
             self.geometry_pass(encoder, scene, Pass::Rest, &[rest]);
@@ -367,6 +373,23 @@ impl Renderer {
         }
     }
 
+    /// Colours of surfaces and their light, by samples as [`Renderer::surface_pass`] has them.
+    fn layers_pass(&self, encoder: &mut wgpu::CommandEncoder, scene: &Scene, layers: &Layers) {
+        let attachments = layers.attachments();
+        let depth = layouts::depth(&self.targets.multisampled_depth.view, 0.0, wgpu::StoreOp::Discard);
+        let mut pass = encoder.begin_render_pass(&wgpu::RenderPassDescriptor {
+            label: Some("layers"),
+            color_attachments: &attachments,
+            depth_stencil_attachment: Some(depth),
+            ..Default::default()
+        });
+        pass.set_bind_group(0, &self.buffers.bind_group, &[]);
+        pass.set_bind_group(3, &self.shadow_maps.group, &[]);
+        for &(_, index) in self.visible.solid.iter().chain(&self.visible.blended) {
+            self.draw(&mut pass, scene, index, Pass::Layers);
+        }
+    }
+
     /// All that is known of each pixel but its colour and its rest position.
     fn geometry_passes(&self, encoder: &mut wgpu::CommandEncoder, scene: &Scene) {
         let targets = &self.targets;
@@ -404,43 +427,5 @@ impl Renderer {
     /// The ground, where this frame has one.
     fn shown_ground(&self) -> Option<&Ground> {
         self.ground.as_ref().filter(|_| self.shows_ground)
-    }
-}
-
-impl Buffers {
-    fn new(
-        device: &wgpu::Device,
-        layouts: &Layouts,
-        draws: usize,
-        joints: usize,
-        weights: usize,
-        lights: usize,
-    ) -> Self {
-        let make = |label, size: usize, usage| {
-            device.create_buffer(&wgpu::BufferDescriptor {
-                label: Some(label),
-                size: size as u64,
-                usage: usage | wgpu::BufferUsages::COPY_DST,
-                mapped_at_creation: false,
-            })
-        };
-        let storage = wgpu::BufferUsages::STORAGE;
-        let frame = make("frame", size_of::<FrameBlock>(), wgpu::BufferUsages::UNIFORM);
-        let instances = make("instances", draws.max(1) * size_of::<InstanceBlock>(), storage);
-        let joints = make("joints", 2 * joints.max(1) * size_of::<Mat4>(), storage);
-        let weights = make("weights", 2 * weights.max(1) * size_of::<f32>(), storage);
-        let lights = make("lights", lights.max(1) * size_of::<LightBlock>(), storage);
-        let bind_group = device.create_bind_group(&wgpu::BindGroupDescriptor {
-            label: Some("frame"),
-            layout: &layouts.frame,
-            entries: &[
-                bind_buffer(0, &frame),
-                bind_buffer(1, &instances),
-                bind_buffer(2, &joints),
-                bind_buffer(3, &weights),
-                bind_buffer(4, &lights),
-            ],
-        });
-        Self { frame, instances, joints, weights, lights, bind_group }
     }
 }

@@ -1,5 +1,6 @@
 //! The textures that a frame is rendered into.
 
+use crate::layouts;
 use isophote_files::error::{Error, Result};
 
 /// Samples per pixel of the colour pass.
@@ -58,6 +59,40 @@ impl Target {
     }
 }
 
+/// What surfaces are and how they are lit, scene-linear Rec.709 times coverage, which alpha is; all 0 on the background, and on
+/// what is shown as it is. The radiance less diffuse and specular light is what surfaces emit, and the background.
+#[derive(Clone, Debug)]
+pub struct Layers {
+    /// Base colours without light, those of metals too.
+    pub albedo: Target,
+    /// Light that is reflected diffusely, in the colours of surfaces.
+    pub diffuse: Target,
+    /// Light that is mirrored: highlights and reflections.
+    pub specular: Target,
+    /// The same before samples are resolved.
+    pub(super) multisampled: [Target; 3],
+}
+
+impl Layers {
+    /// Allocates them.
+    pub(super) fn new(device: &wgpu::Device, size: (u32, u32)) -> Self {
+        let make = |label, samples| Target::new(device, label, COLOR_FORMAT, samples, size);
+        let labels = ["albedo", "diffuse", "specular"];
+        let [albedo, diffuse, specular] = labels.map(|label| make(label, 1));
+        Self { albedo, diffuse, specular, multisampled: labels.map(|label| make(label, SAMPLES)) }
+    }
+
+    /// Attachments in the order of the shader, which begin with nothing.
+    pub(super) fn attachments(&self) -> [Option<wgpu::RenderPassColorAttachment<'_>>; 3] {
+        let [a, b, c] = &self.multisampled;
+        [(a, &self.albedo), (b, &self.diffuse), (c, &self.specular)].map(|(multisampled, resolved)| {
+            let cleared = layouts::cleared(&multisampled.view, wgpu::Color::TRANSPARENT);
+            let ops = wgpu::Operations { store: wgpu::StoreOp::Discard, ..cleared.ops };
+            Some(wgpu::RenderPassColorAttachment { resolve_target: Some(&resolved.view), ops, ..cleared })
+        })
+    }
+}
+
 /// All targets of one size. Those that are public can be sampled and copied from.
 #[derive(Clone, Debug)]
 pub struct Targets {
@@ -78,6 +113,8 @@ pub struct Targets {
     /// Position in the scene before anything moves in x, y, z, where w is 1; all 0 on the background but where a shadow
     /// falls on the ground. Missing until [`crate::renderer::Renderer::add_rest_positions`] asks for it.
     pub rest: Option<Target>,
+    /// Colours of surfaces and their light. Missing until [`crate::renderer::Renderer::add_layers`] asks for them.
+    pub layers: Option<Layers>,
     pub(super) multisampled: Target,
     pub(super) multisampled_depth: Target,
     pub(super) geometry_depth: Target,
@@ -111,6 +148,7 @@ impl Targets {
             object_id: make("object id", OBJECT_ID_FORMAT, 1),
             motion: make("motion", MOTION_FORMAT, 1),
             rest: None,
+            layers: None,
             multisampled: make("multisampled", COLOR_FORMAT, SAMPLES),
             multisampled_depth: make("multisampled depth", DEPTH_FORMAT, SAMPLES),
             geometry_depth: make("geometry depth", DEPTH_FORMAT, 1),

@@ -120,6 +120,12 @@ guides! {
     MotionForward motion_forward ("Motion forward", Motion, 6, Some(3)),
     /// Points of the undeformed objects.
     RestPosition rest_position ("Rest position", Position, 7, Some(4)),
+    /// Colours of surfaces without light, in the picture's space.
+    Albedo albedo ("Albedo", Color, 8, Some(7)),
+    /// Light that surfaces reflect in all directions, in their colours and the picture's space.
+    Diffuse diffuse ("Diffuse light", Color, 9, Some(8)),
+    /// Light that surfaces mirror: highlights and reflections, in the picture's space.
+    Specular specular ("Specular light", Color, 10, Some(9)),
 }
 
 impl GraphInput {

@@ -38,6 +38,7 @@ nodes! {
     colour {
         composite_lines,
         quantize_luminance,
+        toon_shading,
         warp_sharpen,
     }
     lines {

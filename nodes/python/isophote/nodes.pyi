@@ -1449,6 +1449,171 @@ def quantize_luminance(
 
     The other arguments are those of `isophote.apply`.
     """
+def toon_shading(
+    image: Any,
+    /,
+    *,
+    albedo: Any = None,
+    diffuse: Any = None,
+    specular: Any = None,
+    normal: Any = None,
+    mask: Any = None,
+    flow: Any = None,
+    motion: Any = None,
+    motion_forward: Any = None,
+    depth: Any = None,
+    object_id: Any = None,
+    steps: int = 3,
+    exposure: float = 0.0,
+    softness: float = 0.02,
+    color_1: Color = (0.54, 0.54, 0.69, 1.0),
+    color_2: Color = (0.8, 0.78, 0.81, 1.0),
+    color_3: Color = (1.0, 0.985, 0.94, 1.0),
+    color_4: Color = (1.0, 1.0, 0.97, 1.0),
+    color_5: Color = (1.0, 1.0, 1.0, 1.0),
+    color_6: Color = (1.0, 1.0, 1.0, 1.0),
+    at_2: float = 0.55,
+    at_3: float = 0.88,
+    at_4: float = 1.0,
+    at_5: float = 1.1,
+    at_6: float = 1.2,
+    highlight: float = 0.0,
+    highlight_size: float = 0.4,
+    highlight_softness: float = 0.05,
+    highlight_color: Color = (1.0, 1.0, 0.97, 1.0),
+    rim: float = 0.0,
+    rim_width: float = 0.25,
+    rim_softness: float = 0.08,
+    rim_color: Color = (1.0, 0.97, 0.9, 1.0),
+    detail: float = 0.5,
+    softness_2: float = 0.0,
+    softness_3: float = 0.0,
+    softness_4: float = 0.0,
+    softness_5: float = 0.0,
+    softness_6: float = 0.0,
+    abstraction: Literal['oriented', 'flow', 'full', 'xy'] = 'oriented',
+    n_a: int = 4,
+    sigma_d: float = 3.0,
+    sigma_r: float = 4.25,
+    sigma_a: float = 4.0,
+    steadiness: float = 0.0,
+    window: int = 2,
+    mix: float = 1.0,
+    out: Any = None,
+    frame: int = 0,
+    **picture: Unpack[Picture],
+) -> Array:
+    """Toon shading. Light in a few flat steps, each in a colour of its own, as cel animation is
+    painted. Light in steps on the colours of surfaces (Lake et al. 2000). Light is the luminance of
+    `diffuse` over that of `albedo`, or of the picture over that of `albedo` where there is no
+    `diffuse`; without an albedo it is the luminance of `diffuse`, and without both that of the
+    picture, smoothed by the bilateral filter along the local structure; surfaces then count as such
+    that reflect 0.45 of it. Steps lie in its CIELAB lightness over 100, so that 1 is a surface
+    which shows its own colour. Each step multiplies the albedo, in linear light, by its colour:
+    white shows surfaces in their own colours. Without an albedo the picture's light is divided out
+    of its colours, and each step has a tone of its own. What no surface reflects, such as the sky
+    and what glows, stays as it is: what `diffuse` and `specular` leave of the picture where both
+    are there, and otherwise what has no albedo. Where `diffuse` is nothing and `specular` is
+    something, as on metals, light is `specular`. Borders are smooth steps at least a pixel and a
+    half wide, by the gradient of the light. (thesis § 4.6)
+
+    Inputs:
+        image: The picture.
+        albedo: Colours of surfaces without light, in the picture's space.
+        diffuse: Light that surfaces reflect in all directions, in their colours: a pass without
+            colour, such as Blender's DiffDir, is to be multiplied by that of the albedo.
+        specular: Light that surfaces mirror, by which highlights are shaped; by all light when
+            open.
+        normal: View-space normals, by which the rim is drawn.
+        mask: How much of the result is used, 0..=1, times `mix`; all of it when open.
+        flow: A flow map (see `flow_map`) that bends the orientation which the node follows, if it
+            follows any.
+        motion: Pixels from where a point is to where it was in the frame before; without it the
+            frames before count for nothing.
+        motion_forward: Pixels from where a point is to where it will be in the next frame; without
+            it the frames that follow count for nothing.
+        depth: Distance from the camera: neighbouring frames count where it agrees.
+        object_id: Object numbers: neighbouring frames count where they agree.
+
+    Parameters:
+        steps: Number of flat tones, from shadow to light. Steps above it have no effect. 1 to 6.
+        exposure: Brightens or dims the light before it is cut into steps, in stops: more light
+            moves shadows back. -16 to 16.
+        softness: Softness of the borders of all steps: 0 is as crisp as pixels allow. 0 to 1.
+        color_1: Colour of the darkest step, the shadow; white leaves surfaces as they are. Its
+            opacity is not used.
+        color_2: Colour of this step; white leaves surfaces as they are. No effect with fewer steps.
+            Its opacity is not used.
+        color_3: Colour of this step; white leaves surfaces as they are. No effect with fewer steps.
+            Its opacity is not used.
+        color_4: Colour of this step; white leaves surfaces as they are. No effect with fewer steps.
+            Its opacity is not used.
+        color_5: Colour of this step; white leaves surfaces as they are. No effect with fewer steps.
+            Its opacity is not used.
+        color_6: Colour of this step; white leaves surfaces as they are. No effect with fewer steps.
+            Its opacity is not used.
+        at_2: Light from which on this step is: 0 is none, 1 shows surfaces in their own colours. No
+            effect with fewer steps. CIELAB lightness over 100. A step that begins below the one
+            before it covers that. 0 to 2.
+        at_3: Light from which on this step is: 0 is none, 1 shows surfaces in their own colours. No
+            effect with fewer steps. CIELAB lightness over 100. A step that begins below the one
+            before it covers that. 0 to 2.
+        at_4: Light from which on this step is: 0 is none, 1 shows surfaces in their own colours. No
+            effect with fewer steps. CIELAB lightness over 100. A step that begins below the one
+            before it covers that. 0 to 2.
+        at_5: Light from which on this step is: 0 is none, 1 shows surfaces in their own colours. No
+            effect with fewer steps. CIELAB lightness over 100. A step that begins below the one
+            before it covers that. 0 to 2.
+        at_6: Light from which on this step is: 0 is none, 1 shows surfaces in their own colours. No
+            effect with fewer steps. CIELAB lightness over 100. A step that begins below the one
+            before it covers that. 0 to 2.
+        highlight: Strength of highlights with a shape of their own, from mirrored light where it is
+            known. 0 to 1.
+        highlight_size: Size of highlights: 0 takes the brightest points alone. They are where the
+            lightness of mirrored light is above 1.2 less this. 0 to 1.
+        highlight_softness: Softness of the borders of highlights. 0 to 1.
+        highlight_color: Colour and opacity of highlights.
+        rim: Strength of a band of light along outlines. Needs normals. 0 to 1.
+        rim_width: How far the band reaches onto round forms. It is where 1 less the cosine between
+            normal and view is above 1 less this. 0 to 0.9.
+        rim_softness: Softness of the inner border of the band. 0 to 1.
+        rim_color: Colour and opacity of the band.
+        detail: How much of the picture's detail stays: low values give flat areas, high ones keep
+            small things. Scales `sigma_r` from 3 to 1/3 times and `sigma_d` from 2 to 1/2. 0 to 1.
+        softness_2: Softness of the border where this step begins, beside that of all. No effect
+            with fewer steps. Width of the border in light, added to `softness`. 0 to 1.
+        softness_3: Softness of the border where this step begins, beside that of all. No effect
+            with fewer steps. Width of the border in light, added to `softness`. 0 to 1.
+        softness_4: Softness of the border where this step begins, beside that of all. No effect
+            with fewer steps. Width of the border in light, added to `softness`. 0 to 1.
+        softness_5: Softness of the border where this step begins, beside that of all. No effect
+            with fewer steps. Width of the border in light, added to `softness`. 0 to 1.
+        softness_6: Softness of the border where this step begins, beside that of all. No effect
+            with fewer steps. Width of the border in light, added to `softness`. 0 to 1.
+        abstraction: How colours are flattened: along the edges, along flowing lines, or in all
+            directions alike. Bilateral filter: across and along the local orientation (3.4), or
+            along stream lines (3.5), whose own scales then grow with `sigma_d` / 3 and `sigma_r` /
+            4.25; or without regard to it, by the full window (3.2) or along rows and then columns
+            (3.3).
+        n_a: How often the colours are smoothed: more rounds give flatter areas. Bilateral
+            iterations (n_a). 0 to 16.
+        sigma_d: How far colours are smoothed over what is around them. Spatial standard deviation
+            of the bilateral filter. 0.1 to 20 px.
+        sigma_r: How different colours may be and still be smoothed into one. Standard deviation of
+            the bilateral filter in range, CIELAB units. 0.1 to 200.
+        sigma_a: How far shapes of light are smoothed along their borders where they are found in
+            the picture alone. Standard deviation of the smoothing along stream lines. 0 to 20 px.
+        steadiness: How calm moving pictures are: neighbouring frames are averaged along the motion.
+            0 is off, 0.5 suits most shots. How much neighbouring frames count, carried here along
+            the motion of things: 0 leaves each frame alone, 0.5 is for sequences, 1 lets all frames
+            of the window count alike. 0 to 1.
+        window: Neighbouring frames that count, to each side. They count as far as they and the
+            motion from them are known. 0 to 8.
+        mix: Blends the result with the picture: 0 leaves the picture as it was, 1 shows the result
+            alone. 0 to 1.
+
+    The other arguments are those of `isophote.apply`.
+    """
 def warp_sharpen(
     image: Any,
     /,

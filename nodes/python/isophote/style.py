@@ -250,6 +250,9 @@ def apply(
     motion: Any = None,
     motion_forward: Any = None,
     rest_position: Any = None,
+    albedo: Any = None,
+    diffuse: Any = None,
+    specular: Any = None,
     out: Any = None,
     frame: int = 0,
     color_space: str = "srgb",
@@ -285,6 +288,9 @@ def apply(
     - `motion`: pixels from where points are to where they were in the frame before.
     - `motion_forward`: pixels from where points are to where they will be in the next frame.
     - `rest_position`: points of the undeformed objects.
+    - `albedo`: colours of surfaces without light, in the picture's space.
+    - `diffuse`: light that surfaces reflect in all directions, in their colours and the picture's space.
+    - `specular`: light that surfaces mirror: highlights and reflections, in the picture's space.
 
     Normals have 3 or 4 channels of floats, rest positions 32 bits a channel, and motion goes x right and y down.
 
@@ -327,6 +333,9 @@ def apply(
         motion=motion,
         motion_forward=motion_forward,
         rest_position=rest_position,
+        albedo=albedo,
+        diffuse=diffuse,
+        specular=specular,
     )
 
 

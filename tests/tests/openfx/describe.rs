@@ -78,6 +78,9 @@ pub fn clips_are_source_and_output_and_in_general_a_mask_and_guides(binary: &Bin
         ("rest_position", "RestPosition"),
         ("object_id", "ObjectId"),
         ("flow", "Flow"),
+        ("albedo", "Albedo"),
+        ("diffuse", "Diffuse"),
+        ("specular", "Specular"),
     ] {
         general.extend(takes(port).then_some(clip));
     }

@@ -299,7 +299,10 @@ pub fn the_effect_for_looks_shows_all_that_ships(binary: &Binary) {
             "MotionForward",
             "RestPosition",
             "ObjectId",
-            "Flow"
+            "Flow",
+            "Albedo",
+            "Diffuse",
+            "Specular"
         ]
     );
     let instance = in_host(&host, binary, LOOK_EFFECT, CONTEXTS[0]);

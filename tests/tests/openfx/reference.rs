@@ -270,6 +270,10 @@ pub fn guided<'h>(host: &'h Host, binary: &Binary, effect: Expected) -> Option<I
         return None;
     }
     plain(&instance);
+    if instance.has("rim") {
+        instance.set("rim", 1.0);
+        instance.set("rim_width", 0.9);
+    }
     if instance.has("guide_weight") {
         instance.set("guide_weight", 1.0);
     }

@@ -201,10 +201,12 @@ pub fn guides_enter_in_the_general_context(binary: &Binary, effect: Expected) {
     instance.connect("Depth", Picture::packed_in(depth_layout, WIDTH, HEIGHT, &depths));
     let got = instance.render(layout, SIZE).packed();
     let mut graph = effect.graph(false);
-    if let Ok(node) = graph.find("n")
-        && graph.value(node, "guide_weight").is_ok()
-    {
-        graph.set_text(node, "guide_weight", "1").unwrap();
+    for (id, value) in [("guide_weight", "1"), ("rim", "1"), ("rim_width", "0.9")] {
+        if let Ok(node) = graph.find("n")
+            && graph.value(node, id).is_ok()
+        {
+            graph.set_text(node, id, value).unwrap();
+        }
     }
     if let Ok(tensor) = graph.find("t") {
         graph.set_text(tensor, "guide_weight", "1").unwrap();
@@ -258,6 +260,19 @@ pub fn object_numbers_and_painted_flow_enter_in_the_general_context(binary: &Bin
         graph.connect_input(GraphInput::Flow, first, "flow").unwrap();
         inputs.push(("flow", &flow, layout));
     }
+    // Colours of surfaces and their light: half of the picture's, and a third.
+    let share = |share: f32| -> Vec<u8> {
+        let dimmed = values(&color, &layout).into_iter().map(|v| v * share);
+        dimmed.flat_map(f32::to_ne_bytes).collect()
+    };
+    let layers = [("Albedo", share(0.9)), ("Diffuse", share(0.5)), ("Specular", share(0.3))];
+    let has_layers = names.contains(&"Albedo".to_owned());
+    for (name, layer) in layers.iter().filter(|_| has_layers) {
+        let input = GraphInput::from_id(&name.to_ascii_lowercase()).unwrap();
+        instance.connect(name, Picture::packed_in(layout, WIDTH, HEIGHT, layer));
+        graph.connect_input(input, first, input.id()).unwrap();
+        inputs.push((input.id(), layer, layout));
+    }
     let got = instance.render(layout, SIZE).packed();
     let wanted = Through {
         graph: &graph,
@@ -269,6 +284,7 @@ pub fn object_numbers_and_painted_flow_enter_in_the_general_context(binary: &Bin
     }
     .c(&inputs, layout);
     assert!(got == wanted, "{}", effect.plugin(binary).identifier());
+    assert!(!has_layers || got != through(&graph, &source, layout, ColourSpace::Srgb), "layers count");
     let follows_flow = ["oil_paint", "painting", "coherent", "line_integral_convolution", "flow_bilateral"];
     if follows_flow.contains(&effect.node.id) {
         let without = through(&graph, &source, layout, ColourSpace::Srgb);

@@ -167,7 +167,8 @@ impl Layer {
         request.reference_height = style.lengths.reference_height();
         let frames = library.frames(&style.graph)?;
         let mask = self.input.and_then(|mask| Some(("mask", picture.masks.get(mask)?.as_ref()?)));
-        let guides = picture.guides.iter().map(|(name, pixels)| (*name, pixels)).chain(mask);
+        let own = |(name, _): &(&'static str, Pixels)| Some((*name, window.own.guide(at, name, there)?));
+        let guides = picture.guides.iter().filter_map(own).chain(mask);
         let inputs = guides.map(|(name, pixels)| Input { name, pixels });
         if frames == [0, 0] {
             let mut all = vec![Input { name: "color", pixels: color }];

@@ -4,7 +4,7 @@ use std::sync::{Arc, Mutex, OnceLock, PoisonError};
 
 use super::memory::Share;
 use isophote_pictures::convert::Conversion;
-use isophote_pictures::exr::{ExrFile, Picture};
+use isophote_pictures::exr::{ExrFile, Guide, Picture};
 use isophote_pictures::pixels::Pixels;
 use isophote_pictures::read::Source;
 
@@ -19,6 +19,8 @@ pub struct CachedFrame<'a> {
     exr: Mutex<Option<ExrFile>>,
     /// The pictures in their working space, where that is another.
     changed: Vec<OnceLock<(Pixels, u64)>>,
+    /// Layers of colours of the pictures, likewise.
+    layers: Vec<OnceLock<Vec<(&'static str, Pixels)>>>,
     /// Given back when the frame is needed no more.
     _share: Share<'a>,
 }
@@ -28,7 +30,8 @@ impl<'a> CachedFrame<'a> {
     pub fn new(number: Option<i64>, mut source: Source, is_written: bool, share: Share<'a>) -> Self {
         let exr = source.exr.take().filter(|_| is_written);
         let changed = source.pictures.iter().map(|_| OnceLock::new()).collect();
-        Self { number, source, exr: Mutex::new(exr), changed, _share: share }
+        let layers = source.pictures.iter().map(|_| OnceLock::new()).collect();
+        Self { number, source, exr: Mutex::new(exr), changed, layers, _share: share }
     }
 
     /// The file that the result goes into; once.
@@ -43,6 +46,27 @@ impl<'a> CachedFrame<'a> {
         let (pixels, replaced) = self.changed.get(at)?.get_or_init(|| change.apply(&picture.pixels));
         Some((pixels, *replaced))
     }
+
+    /// A guide of a picture: layers of colours in its working space, data as it is.
+    pub fn guide(&self, at: usize, name: &str, change: Option<&Conversion>) -> Option<&Pixels> {
+        let named = |list: &'_ [(&'static str, Pixels)]| list.iter().position(|(known, _)| *known == name);
+        let guides = &self.source.pictures.get(at)?.guides;
+        if let Some(change) = change {
+            let layers = self.layers.get(at)?.get_or_init(|| {
+                let layers = guides.iter().filter(|(name, _)| is_colour(name));
+                layers.map(|(name, pixels)| (*name, change.apply(pixels).0)).collect()
+            });
+            if let Some(found) = named(layers) {
+                return Some(&layers[found].1);
+            }
+        }
+        named(guides).map(|found| &guides[found].1)
+    }
+}
+
+/// True for a guide whose numbers are colours.
+fn is_colour(name: &str) -> bool {
+    Guide::ALL.into_iter().any(|guide| guide.id() == name && guide.is_colour())
 }
 
 /// The frames that a frame depends on and that there are, with itself.
@@ -58,10 +82,10 @@ impl Window<'_> {
     /// Image for an input of picture `at` in a frame, if that is like the frame itself; `change` leads to the working
     /// space.
     pub fn image(&self, at: usize, input: &str, frame: i64, change: Option<&Conversion>) -> Option<&Pixels> {
-        let (cached, picture) = self.alike(at, frame)?;
+        let (cached, _) = self.alike(at, frame)?;
         match input {
             "color" => cached.working(at, change).map(|(pixels, _)| pixels),
-            _ => picture.guides.iter().find(|(name, _)| *name == input).map(|(_, pixels)| pixels),
+            _ => cached.guide(at, input, change),
         }
     }
 

@@ -5,6 +5,7 @@ use std::path::Path;
 use isophote_exr_edit::{File, Sample};
 use isophote_motion::{Convention, Way};
 
+use super::colour_layers;
 use super::cryptomatte::MatteChoice;
 use super::fault::Fault;
 use super::guide_list::Guide;
@@ -76,7 +77,7 @@ impl Chosen {
     /// The parts of which it reads, some of them several times.
     pub fn parts(&self) -> impl Iterator<Item = usize> {
         let masks = self.masks.iter().flatten().flat_map(|mask| &mask.layers);
-        let guides = self.guides.iter().map(|guide| guide.part);
+        let guides = self.guides.iter().flat_map(GuideSource::sources).map(|(part, _)| part);
         guides.chain(masks.map(|layer| layer.part)).chain([self.group.part])
     }
 }
@@ -269,6 +270,7 @@ fn sources(
         let found = match (guide.is_motion(), name) {
             (true, _) => near.iter().find_map(|g| vectors(exr, g, guide, name, selection.convention)),
             (false, Some(name)) => near.iter().find_map(|g| guides::named(exr, g, guide, name)),
+            (false, None) if guide.is_colour() => colour_layers::found(&near, guide),
             (false, None) => guides::found(&near, guide),
         };
         let found = found.or_else(|| listed(exr, picture.part, guide, name?, selection.convention));
@@ -277,7 +279,13 @@ fn sources(
             (guide == Guide::Depth && name.is_none() && has_camera).then_some(())?;
             near.iter().find_map(|group| {
                 let channels = positions(group)?;
-                Some(GuideSource { guide, part: group.part, channels, meaning: Meaning::Position })
+                Some(GuideSource {
+                    guide,
+                    part: group.part,
+                    channels,
+                    meaning: Meaning::Position,
+                    light: Vec::new(),
+                })
             })
         });
         let found = found.or_else(|| {
@@ -292,7 +300,7 @@ fn sources(
         }
     }
     // Channels with fewer samples than pixels guide nothing.
-    sources.retain(|s| s.channels.iter().all(|c| exr.parts()[s.part].channels[*c].sampling == (1, 1)));
+    sources.retain(|source| source.is_full(exr));
     sources.extend(other_way(&sources, selection));
     Ok(sources)
 }
@@ -318,8 +326,11 @@ fn other_way(sources: &[GuideSource], selection: &Selection) -> Option<GuideSour
 /// Error of a file that lacks the layer or channel that was asked for as a guide.
 fn no_guide(guide: Guide, name: &str) -> Fault {
     let id = guide.id();
-    let channels =
-        if guide.is_of_surfaces() { format!(", its channels by --guide {id}=A,B,C") } else { String::new() };
+    let channels = if guide.is_of_surfaces() || guide.is_colour() {
+        format!(", its channels by --guide {id}=A,B,C")
+    } else {
+        String::new()
+    };
     Fault::Choice {
         problem: format!("has no layer or channel '{name}' that could be the {id}"),
         fix: format!("name another by --guide {id}=LAYER{channels}, or none"),
@@ -340,7 +351,7 @@ fn listed(
         true => Meaning::Vectors(convention.unwrap_or(Convention::OWN).rule(way)),
         false => Meaning::Same,
     };
-    Some(GuideSource { guide, part, channels, meaning })
+    Some(GuideSource { guide, part, channels, meaning, light: Vec::new() })
 }
 
 /// The ids in front, of a Cryptomatte or of the one of objects.
@@ -349,7 +360,7 @@ fn hashes(exr: &File, groups: &[Group], picture: &Group, matte: Option<&str>) ->
     let ranks = pick(&mattes, matte)?.ranks(exr, groups, picture)?;
     let Ranks { part, channels } = &ranks[0];
     let (channels, meaning) = (vec![channels[0]], Meaning::Hashes);
-    Ok(GuideSource { guide: Guide::ObjectId, part: *part, channels, meaning })
+    Ok(GuideSource { guide: Guide::ObjectId, part: *part, channels, meaning, light: Vec::new() })
 }
 
 /// Motion vectors in a file of their own, where they may lie in its main layer.
@@ -375,7 +386,7 @@ pub fn motion(exr: &File, selection: &Selection) -> Result<Vec<GuideSource>, Fau
         // Known layers of the other way say that there is none of this.
         found.extend(known.or_else(|| if found.is_empty() { main() } else { None }));
     }
-    found.retain(|s| s.channels.iter().all(|c| exr.parts()[s.part].channels[*c].sampling == (1, 1)));
+    found.retain(|source| source.is_full(exr));
     if found.is_empty() {
         return Err(Fault::Choice {
             problem: "has no layer that could be motion vectors".into(),
@@ -387,7 +398,7 @@ pub fn motion(exr: &File, selection: &Selection) -> Result<Vec<GuideSource>, Fau
 }
 
 fn of_vectors(group: &Group, guide: Guide, motion::Found { channels, rule }: motion::Found) -> GuideSource {
-    GuideSource { guide, part: group.part, channels, meaning: Meaning::Vectors(rule) }
+    GuideSource { guide, part: group.part, channels, meaning: Meaning::Vectors(rule), light: Vec::new() }
 }
 
 /// Motion vectors in a group; `name` is the layer that was asked for.

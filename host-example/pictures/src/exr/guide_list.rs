@@ -63,6 +63,12 @@ guides! {
     MotionForward "motion_forward" "Motion forward" Motion ISOPHOTE_GUIDE_MOTION_FORWARD,
     /// Points of the undeformed objects.
     RestPosition "rest_position" "Rest position" Position ISOPHOTE_GUIDE_REST_POSITION,
+    /// Colours of surfaces without light, in the picture's space.
+    Albedo "albedo" "Albedo" Color ISOPHOTE_GUIDE_ALBEDO,
+    /// Light that surfaces reflect in all directions, in their colours and the picture's space.
+    Diffuse "diffuse" "Diffuse light" Color ISOPHOTE_GUIDE_DIFFUSE,
+    /// Light that surfaces mirror: highlights and reflections, in the picture's space.
+    Specular "specular" "Specular light" Color ISOPHOTE_GUIDE_SPECULAR,
     /// A painted flow map: x and y in red and green, 0.5 for none, and its strength in alpha.
     Flow "flow" "Flow" Flow ISOPHOTE_GUIDE_FLOW,
     // end of guides
@@ -72,6 +78,11 @@ impl Guide {
     /// True for motion.
     pub fn is_motion(self) -> bool {
         self.kind() == Kind::Motion
+    }
+
+    /// True where its numbers are colours of the picture's space, multiplied by alpha where those are.
+    pub fn is_colour(self) -> bool {
+        self.kind() == Kind::Color
     }
 
     /// True where it has three components, of which all are 0 where there is no surface.

@@ -77,9 +77,10 @@ pub fn is_guide(key: &str) -> bool {
     normal || DEPTHS.contains(&key) || IDS.contains(&key) || POSITIONS.contains(&key) || is_other
 }
 
-/// Guides whose layers have names of their own in renderers, which are listed here and in [`super::motion`]. All others are found
+/// Guides whose layers have names of their own in renderers, which are listed here, in [`super::motion`] and in
+/// [`super::colour_layers`]. All others are found
 /// by their ids.
-const NAMED: [Guide; 7] = [
+const NAMED: [Guide; 10] = [
     Guide::Normal,
     Guide::Depth,
     Guide::ObjectId,
@@ -87,6 +88,9 @@ const NAMED: [Guide; 7] = [
     Guide::MotionForward,
     Guide::RestPosition,
     Guide::Flow,
+    Guide::Albedo,
+    Guide::Diffuse,
+    Guide::Specular,
 ];
 
 /// True where a layer is called as a guide that has no other names.
@@ -132,6 +136,23 @@ pub struct GuideSource {
     pub channels: Vec<usize>,
     /// Meaning of the channels.
     pub meaning: Meaning,
+    /// Parts and channels of light by whose sum its colours are multiplied; none where they are it.
+    pub light: Vec<(usize, Vec<usize>)>,
+}
+
+impl GuideSource {
+    /// Its channels in each of the parts that it is made of.
+    pub fn sources(&self) -> impl Iterator<Item = (usize, &[usize])> {
+        let light = self.light.iter().map(|(part, channels)| (*part, channels.as_slice()));
+        std::iter::once((self.part, self.channels.as_slice())).chain(light)
+    }
+
+    /// True where each channel has as many samples as pixels.
+    pub fn is_full(&self, exr: &File) -> bool {
+        self.sources().all(|(part, channels)| {
+            channels.iter().all(|c| exr.parts()[part].channels[*c].sampling == (1, 1))
+        })
+    }
 }
 
 /// Meaning of the channels of a guide.
@@ -185,7 +206,9 @@ pub fn listed(exr: &File, near: usize, guide: Guide, names: &str) -> Option<(usi
     let count = match guide.kind() {
         Kind::Normal | Kind::Position => 3,
         Kind::Motion => 2,
-        Kind::Color | Kind::Flow => 4,
+        Kind::Flow => 4,
+        Kind::Color if names.len() == 3 => 3,
+        Kind::Color => 4,
         _ => 1,
     };
     if names.len() != count || count == 1 {
@@ -205,7 +228,7 @@ pub fn found(near: &[&Group], guide: Guide) -> Option<GuideSource> {
     (0..tiers).find_map(|tier| {
         near.iter().find_map(|group| {
             let channels = unnamed(group, guide, tier)?;
-            Some(GuideSource { guide, part: group.part, channels, meaning: Meaning::Same })
+            Some(GuideSource { guide, part: group.part, channels, meaning: Meaning::Same, light: Vec::new() })
         })
     })
 }
@@ -267,7 +290,8 @@ fn of_kind(group: &Group, kind: Kind) -> Option<Vec<usize>> {
         Kind::ObjectId | Kind::Scalar => {
             single(group, &["id", "object_id", "Y", "R"]).map(|channel| vec![channel])
         }
-        Kind::Color | Kind::Flow => rgba(group),
+        Kind::Color => group.colours(true),
+        Kind::Flow => rgba(group),
         // Vectors have conventions.
         _ => None,
     }
@@ -276,9 +300,16 @@ fn of_kind(group: &Group, kind: Kind) -> Option<Vec<usize>> {
 /// The channels of a guide in a group that has or is the layer or channel that was asked for.
 pub fn named(exr: &File, group: &Group, guide: Guide, name: &str) -> Option<GuideSource> {
     let part = &exr.parts()[group.part];
-    let found = |channels| GuideSource { guide, part: group.part, channels, meaning: Meaning::Same };
+    let found = |channels| GuideSource {
+        guide,
+        part: group.part,
+        channels,
+        meaning: Meaning::Same,
+        light: Vec::new(),
+    };
     let channel = group.members.iter().find(|(_, at)| part.channels[*at].name == name).map(|m| m.1);
-    if !guide.is_of_surfaces() && guide.kind() != Kind::Flow && channel.is_some() {
+    let is_single = !guide.is_of_surfaces() && !matches!(guide.kind(), Kind::Flow | Kind::Color);
+    if is_single && channel.is_some() {
         return channel.map(|c| found(vec![c]));
     }
     if !is_named(exr, group, name) {

@@ -4,6 +4,7 @@
 //! writes the result, and keeps every other byte of the file.
 
 mod choose;
+mod colour_layers;
 mod cryptomatte;
 mod fault;
 mod file;

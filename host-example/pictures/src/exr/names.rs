@@ -54,6 +54,12 @@ impl Group {
         components.iter().map(|c| self.member(c)).collect()
     }
 
+    /// The channels of red, green and blue, and of alpha where there is one and it is wanted.
+    pub fn colours(&self, with_alpha: bool) -> Option<Vec<usize>> {
+        let rgba = self.all(["R", "G", "B", "A"]).filter(|_| with_alpha);
+        rgba.or_else(|| self.all(["R", "G", "B"]))
+    }
+
     /// The last word of the layer's name, in lower case.
     pub fn word(&self) -> String {
         self.layer.rsplit('.').next().unwrap_or_default().to_ascii_lowercase()

@@ -57,8 +57,10 @@ pub fn offers(exr: &File, chosen: &[Chosen]) -> Offers {
             .guides
             .iter()
             .map(|guide| {
-                let channels = &exr.parts()[guide.part].channels;
-                (guide.guide, guide.channels.iter().map(|c| channels[*c].name.clone()).collect())
+                let name = |part: usize, channel: usize| exr.parts()[part].channels[channel].name.clone();
+                let sources = guide.sources();
+                let names = sources.flat_map(|(part, of)| of.iter().map(move |c| name(part, *c)));
+                (guide.guide, names.collect())
             })
             .collect();
     }

@@ -88,9 +88,14 @@ pub fn read(
     }
     let mut guides = Vec::with_capacity(chosen.guides.len());
     for source in &chosen.guides {
-        if let Some(pixels) = guide(exr, decoded, source, part.window, part.world_to_camera)? {
-            guides.push((source.guide.id(), pixels));
-        }
+        let pixels = guide(exr, decoded, source, part.window, part.world_to_camera)?;
+        // Colours are multiplied as the picture is.
+        let alpha = || chosen.alpha.map(|alpha| data.plane(alpha)).transpose();
+        let pixels = match pixels {
+            Some(colours) if source.guide.is_colour() => with_alpha(colours, alpha()?.as_ref()),
+            data => data,
+        };
+        guides.extend(pixels.map(|pixels| (source.guide.id(), pixels)));
     }
     let mut masks = Vec::with_capacity(chosen.masks.len());
     let mut refused = None;
@@ -214,37 +219,27 @@ pub fn guide(
     window: Window,
     world_to_camera: Option<[f32; 16]>,
 ) -> Result<Option<Pixels>, ExrError> {
-    let part = &exr.parts()[source.part];
-    let Some(data) = decoded[source.part].as_ref() else { return Ok(None) };
     let numbers = match source.meaning {
         GuideMeaning::Hashes => hashes,
         _ => numbers,
     };
-    let plane = |channel: &usize| Ok::<_, ExrError>(numbers(&data.plane(*channel)?));
-    let planes: Vec<Vec<f32>> = source.channels.iter().map(plane).collect::<Result<_, _>>()?;
-    let count = planes.len();
     // What a motion does not tell is unknown.
     let nothing = if source.guide.is_motion() { f32::NAN } else { 0.0 };
-    let mut all = vec![nothing; window.width * window.height * count];
-    for y in 0..window.height {
-        let from_y = window.y as i64 + y as i64 - part.window.y as i64;
-        if !(0..part.window.height as i64).contains(&from_y) {
-            continue;
+    let over = |(part, channels): (usize, &[usize])| {
+        let Some(data) = decoded[part].as_ref() else { return Ok(None) };
+        let plane = |channel: &usize| Ok::<_, ExrError>(numbers(&data.plane(*channel)?));
+        let planes: Vec<Vec<f32>> = channels.iter().map(plane).collect::<Result<_, _>>()?;
+        Ok::<_, ExrError>(Some(over(window, &planes, exr.parts()[part].window, nothing)))
+    };
+    let count = source.channels.len();
+    let Some(mut all) = over((source.part, &source.channels))? else { return Ok(None) };
+    if !source.light.is_empty() {
+        let mut sum = vec![0.0; all.len()];
+        for (part, channels) in &source.light {
+            let Some(light) = over((*part, channels))? else { continue };
+            sum.iter_mut().zip(light).for_each(|(sum, light)| *sum += light);
         }
-        for x in 0..window.width {
-            let from_x = window.x as i64 + x as i64 - part.window.x as i64;
-            if !(0..part.window.width as i64).contains(&from_x) {
-                continue;
-            }
-            let from = from_y as usize * part.window.width + from_x as usize;
-            let to = &mut all[(y * window.width + x) * count..][..count];
-            for (to, plane) in to.iter_mut().zip(&planes) {
-                *to = plane[from];
-            }
-            if to.iter().any(|v| !v.is_finite()) {
-                to.fill(nothing);
-            }
-        }
+        all.iter_mut().zip(sum).for_each(|(colour, light)| *colour *= light);
     }
     let size = (window.width as u32, window.height as u32);
     if let GuideMeaning::Vectors(rule) = source.meaning {
@@ -266,6 +261,49 @@ pub fn guide(
         return Ok(Pixels::new(size.0, size.1, 4, Samples::F32(vectors)));
     }
     Ok(Pixels::new(size.0, size.1, count as u32, Samples::F32(all)))
+}
+
+/// Planes of a part of this window, pixel by pixel over a picture's; `nothing` where one has no pixel or no number.
+fn over(window: Window, planes: &[Vec<f32>], part: Window, nothing: f32) -> Vec<f32> {
+    let count = planes.len();
+    let mut all = vec![nothing; window.width * window.height * count];
+    for y in 0..window.height {
+        let from_y = window.y as i64 + y as i64 - part.y as i64;
+        if !(0..part.height as i64).contains(&from_y) {
+            continue;
+        }
+        for x in 0..window.width {
+            let from_x = window.x as i64 + x as i64 - part.x as i64;
+            if !(0..part.width as i64).contains(&from_x) {
+                continue;
+            }
+            let from = from_y as usize * part.width + from_x as usize;
+            let to = &mut all[(y * window.width + x) * count..][..count];
+            for (to, plane) in to.iter_mut().zip(planes) {
+                *to = plane[from];
+            }
+            if to.iter().any(|v| !v.is_finite()) {
+                to.fill(nothing);
+            }
+        }
+    }
+    all
+}
+
+/// Colours with an alpha: their own, or that of the picture.
+fn with_alpha(colours: Pixels, alpha: Option<&Plane>) -> Option<Pixels> {
+    if colours.channels() == 4 {
+        return Some(colours);
+    }
+    let numbers = colours.to_f32();
+    let alphas = alpha.map(Plane::to_f32);
+    let pixels = numbers.as_chunks::<3>().0.iter().enumerate();
+    let pixel = |(at, [r, g, b]): (usize, &[f32; 3])| {
+        let alpha = alphas.as_ref().and_then(|alphas| alphas.get(at)).copied().unwrap_or(1.0);
+        [*r, *g, *b, alpha]
+    };
+    let joined = pixels.flat_map(pixel).collect();
+    Pixels::new(colours.width(), colours.height(), 4, Samples::F32(joined))
 }
 
 /// As floats; integers that floats do not tell apart are folded into those that they do.

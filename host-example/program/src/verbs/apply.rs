@@ -136,9 +136,9 @@ pub struct ApplyArgs {
     #[arg(long, value_name = "NEWLAYER")]
     pub into: Option<String>,
     /// The layer of an EXR file that guides the filter: normal=LAYER, depth=LAYER, object_id=LAYER, motion=LAYER,
-    /// motion_forward=LAYER, rest_position=LAYER or flow=LAYER, or none instead of a layer; normal=A,B,C names its channels.
-    /// Without it guides are found by the names that renderers give them, such as N, normal, Z, depth, P, id, IndexOB, backward,
-    /// Vector, velocity, Pref, rest and flow_map; where there is no id, the Cryptomatte of objects stands for it, which is
+    /// motion_forward=LAYER, rest_position=LAYER, albedo=LAYER, diffuse=LAYER, specular=LAYER or flow=LAYER, or none instead of
+    /// a layer; normal=A,B,C names its channels. Without it guides are found by the names that renderers give them, such as N, Z,
+    /// depth, P, id, IndexOB, Vector, velocity, Pref, albedo, DiffCol, diffuse, specular and flow_map; where there is no id, the Cryptomatte of objects stands for it, which is
     /// object_id=cryptomatte, or `object_id=cryptomatte[LAYER]` for another. May be repeated.
     #[arg(long, value_name = "GUIDE=LAYER")]
     pub guide: Vec<GuideChoice>,

@@ -34,7 +34,7 @@ pub struct RenderArgs {
     scene: SceneArgs,
     #[command(flatten)]
     staging: StagingArgs,
-    /// The picture: .png; or .exr with the scene-linear colour, normals, depth, object numbers, motion and rest
+    /// The picture: .png; or .exr with the scene-linear colour and its light, normals, depth, object numbers, motion and rest
     /// positions. out.####.exr, out.@@@@.exr or out.%04d.exr for a sequence; .#### is added where it lacks. A video that
     /// ffmpeg writes, such as .mp4, .mov, .mkv or .webm, on black where the background is transparent. A folder, such as
     /// out/, gets a .png file with the scene's name.
@@ -311,6 +311,8 @@ impl RenderArgs {
             fps: self.fps,
             scene_referred: is_exr && !self.tone_mapped,
             rest_positions: is_exr,
+            // They are light of the scene.
+            layers: is_exr && !self.tone_mapped,
             backend: self.backend,
         })
     }
@@ -319,12 +321,20 @@ impl RenderArgs {
 /// Guide, which the renderer knows of a pixel beside its colour: target, names of channels, precision.
 type Guide = (fn(&Targets) -> Option<&Target>, &'static [&'static str], Precision);
 
+/// Channels of colours of surfaces and of their light.
+const ALBEDO: [&str; 4] = ["albedo.R", "albedo.G", "albedo.B", "albedo.A"];
+const DIFFUSE: [&str; 4] = ["diffuse.R", "diffuse.G", "diffuse.B", "diffuse.A"];
+const SPECULAR: [&str; 4] = ["specular.R", "specular.G", "specular.B", "specular.A"];
+
 /// Named as compositors and `apply` know them.
-const GUIDES: [Guide; 4] = [
+const GUIDES: [Guide; 7] = [
     (|targets| Some(&targets.normal), &["N.X", "N.Y", "N.Z"], Precision::Half),
     (|targets| Some(&targets.depth), &["Z"], Precision::Float),
     (|targets| Some(&targets.object_id), &["id"], Precision::Float),
     (|targets| targets.rest.as_ref(), &["Pref.X", "Pref.Y", "Pref.Z"], Precision::Float),
+    (|targets| Some(&targets.layers.as_ref()?.albedo), &ALBEDO, Precision::Half),
+    (|targets| Some(&targets.layers.as_ref()?.diffuse), &DIFFUSE, Precision::Half),
+    (|targets| Some(&targets.layers.as_ref()?.specular), &SPECULAR, Precision::Half),
 ];
 
 /// Motion from the frame before and to the frame that follows.

@@ -229,8 +229,5 @@ fn light_of(
 fn graph_input(builder: &mut PlanBuilder, input: GraphInput, request: &Request) -> ImageId {
     let kind = input.kind();
     let image = builder.input(input.id(), kind.channels(), kind.class());
-    match input {
-        GraphInput::Color => colour_import::pass(builder, image, request.encoding()),
-        _ => image,
-    }
+    if input.is_colour() { colour_import::pass(builder, image, request.encoding()) } else { image }
 }

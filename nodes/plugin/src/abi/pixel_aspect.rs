@@ -80,7 +80,7 @@ unsafe extern "C" fn to_square(
         // SAFETY: the host promised that the image's memory may be read.
         let (mut pixels, bad) = unsafe { image.read(window, input, threads.threads())? };
         if let Some(square) = square {
-            let is_straight = input == GraphInput::Color && alpha == ISOPHOTE_ALPHA_STRAIGHT;
+            let is_straight = input.is_colour() && alpha == ISOPHOTE_ALPHA_STRAIGHT;
             if is_straight {
                 multiply(&mut pixels);
             }

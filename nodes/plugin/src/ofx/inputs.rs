@@ -14,7 +14,7 @@ use super::image::{Alpha, Beyond, Clip, Fetched};
 use super::prepared::Prepared;
 use super::stop::Stop;
 use super::threads::FrameThreads;
-use crate::pixel_aspect::multiply;
+use crate::pixel_aspect::{divide, multiply};
 use crate::pool;
 use isophote::Error;
 use isophote::engine::cpu::Threads;
@@ -212,8 +212,12 @@ impl<'h> Inputs<'h> {
             Pixels::OfNeighbour(image, beyond) if input == GraphInput::Color => {
                 self.read_colour(&image, host, beyond)?
             }
+            Pixels::OfNeighbour(image, _) if input.is_colour() => self.read_layer(&image, host)?,
             Pixels::OfNeighbour(image, _) => self.read_guide(input, &image, host)?,
             Pixels::OfFrame => match self.image(input) {
+                Some(image) if input != GraphInput::Color && input.is_colour() => {
+                    self.read_layer(image, host)?
+                }
                 Some(image) if input != GraphInput::Color => self.read_guide(input, image, host)?,
                 _ => self.read(host)?,
             },
@@ -267,11 +271,11 @@ impl<'h> Inputs<'h> {
         if std::mem::replace(&mut read.is_ready, true) {
             return Ok(());
         }
-        if read.input == GraphInput::Color {
+        if read.input.is_colour() {
             self.colours.enter(&mut read.pixels, threads);
         }
         if let Some(square) = prepared.square {
-            if read.input == GraphInput::Color && self.is_straight() {
+            if read.input.is_colour() && self.is_straight() {
                 multiply(&mut read.pixels);
             }
             let pixels = std::mem::take(&mut read.pixels);
@@ -320,6 +324,17 @@ impl<'h> Inputs<'h> {
         })?;
         if image.alpha == Alpha::Opaque && !self.identity {
             pixels.data_mut().chunks_exact_mut(4).for_each(|p| p[3] = 1.0);
+        }
+        Ok(pixels)
+    }
+
+    /// A layer of colours, multiplied by its alpha where the source is.
+    fn read_layer(&self, image: &Fetched<'_>, window: Rect) -> Outcome<Image> {
+        let mut pixels = self.read_colour(image, window, Beyond::Edge)?;
+        match (self.is_straight(), image.alpha) {
+            (true, Alpha::Premultiplied) => divide(&mut pixels),
+            (false, Alpha::Unpremultiplied) => multiply(&mut pixels),
+            _ => {}
         }
         Ok(pixels)
     }

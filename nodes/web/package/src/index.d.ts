@@ -101,7 +101,10 @@ export type Guide =
   | "flow"
   | "motion"
   | "motion_forward"
-  | "rest_position";
+  | "rest_position"
+  | "albedo"
+  | "diffuse"
+  | "specular";
 // end of guides
 
 /** A picture: anything that `GPUQueue.copyExternalImageToTexture` takes, or a texture of the same device. */

@@ -42,8 +42,8 @@ pub struct Frame {
 pub struct GuideImage {
     /// The guide; its id names the graph's input.
     pub guide: Guide,
-    /// Numbers a pixel: 4 of normals and rest positions, of which the last is 0 where there is no surface, 2 of motion, which
-    /// is no number where it is unknown, else 1.
+    /// Numbers a pixel: 4 of colours, and of normals and rest positions, of which the last is 0 where there is no surface, 2 of
+    /// motion, which is no number where it is unknown, else 1.
     pub channels: u32,
     /// The numbers, rows from the top.
     pub data: Vec<f32>,
@@ -67,6 +67,8 @@ impl Frame {
         let (color, replaced) = colors(pixels);
         let named = guides.into_iter().filter_map(|(name, pixels)| {
             let guide = Guide::ALL.into_iter().find(|guide| guide.id() == name)?;
+            let there = working.there.as_ref().filter(|_| guide.is_colour());
+            let pixels = there.map_or(pixels.clone(), |there| there.apply(&pixels).0);
             Some(GuideImage { guide, channels: pixels.channels(), data: pixels.to_f32() })
         });
         Ok(Self {

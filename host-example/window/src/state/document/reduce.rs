@@ -24,7 +24,7 @@ pub fn reduced(frame: &Frame, size: (u32, u32), [first, last]: Part) -> Frame {
     let mut color = vec![[0.0; 4]; columns.len() * rows.len()];
     color.par_chunks_mut(columns.len().max(1)).zip(&rows).for_each(|(line, row)| {
         for (pixel, column) in line.iter_mut().zip(&columns) {
-            *pixel = average(frame, column, row, straight);
+            *pixel = average((&frame.color, frame.width), column, row, straight);
         }
     });
     Frame {
@@ -51,8 +51,8 @@ fn spans(before: u32, after: u32, first: i32, last: i32) -> Vec<Span> {
     (first..last).map(span).collect()
 }
 
-fn average(frame: &Frame, column: &Span, row: &Span, straight: bool) -> [f32; 4] {
-    let at = |x: usize, y: usize| frame.color[y * frame.width as usize + x];
+fn average((colors, width): (&[[f32; 4]], u32), column: &Span, row: &Span, straight: bool) -> [f32; 4] {
+    let at = |x: usize, y: usize| colors[y * width as usize + x];
     if let ([_], [_]) = (&column.shares[..], &row.shares[..]) {
         return at(column.first, row.first);
     }
@@ -73,6 +73,12 @@ fn average(frame: &Frame, column: &Span, row: &Span, straight: bool) -> [f32; 4]
 }
 
 fn picked(frame: &Frame, image: &GuideImage, columns: &[Span], rows: &[Span]) -> GuideImage {
+    if let (true, (colors, [])) = (image.guide.is_colour(), image.data.as_chunks::<4>()) {
+        let (colors, straight) = ((colors, frame.width), !frame.is_premultiplied());
+        let cells = rows.iter().flat_map(|row| columns.iter().map(move |column| (column, row)));
+        let data = cells.flat_map(|(column, row)| average(colors, column, row, straight)).collect();
+        return GuideImage { data, ..*image };
+    }
     let channels = image.channels as usize;
     let middle = |span: &Span| span.first + span.shares.len() / 2;
     let cells = rows.iter().flat_map(|row| columns.iter().map(move |column| (middle(column), middle(row))));
