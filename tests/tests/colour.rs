@@ -122,6 +122,7 @@ const RECOLOURING: &[(&str, &str)] = &[
     ("blueprint", "the picture is drawn in one colour on paper of another"),
     ("ink", "tones become ink or paper"),
     ("watercolor", "pigment and paper have tones of their own"),
+    ("halftone", "tones become ink or paper"),
 ];
 
 /// Filters that give a flat picture a texture.
@@ -129,6 +130,7 @@ const TEXTURED: &[(&str, &str)] = &[
     ("blueprint", "paper and grid are part of the style"),
     ("ink", "paper is part of the style"),
     ("watercolor", "granulation is part of the style"),
+    ("halftone", "screens are the style"),
     ("oil_paint", "brush strokes begin with noise"),
 ];
 

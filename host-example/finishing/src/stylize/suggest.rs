@@ -7,11 +7,12 @@ use isophote_loader::catalogue::Node;
 use isophote_loader::preset::LOOK;
 
 /// Words of artists and of other programs, with the style, the look or the medium that comes nearest.
-pub const WORDS: [(&str, &str); 63] = [
+pub const WORDS: [(&str, &str); 69] = [
     ("abstract", "painting"),
     ("acrylic", "painting"),
     ("anime", "cartoon"),
     ("aquarelle", "watercolor"),
+    ("ben_day", "halftone"),
     ("blur", "gaussian"),
     ("canny", "edge_detector"),
     ("cel", "cartoon"),
@@ -20,6 +21,7 @@ pub const WORDS: [(&str, &str); 63] = [
     ("chalk", "pastel"),
     ("comic", "cartoon"),
     ("comics", "cartoon"),
+    ("cmyk", "halftone"),
     ("contour", "flow_dog"),
     ("contours", "flow_dog"),
     ("crayon", "pastel"),
@@ -28,6 +30,7 @@ pub const WORDS: [(&str, &str); 63] = [
     ("denoise", "bilateral"),
     ("dog", "difference_of_gaussians"),
     ("drawing", "pencil"),
+    ("dots", "halftone"),
     ("edges", "edge_detector"),
     ("engraving", "look:copperplate"),
     ("etching", "look:copperplate"),
@@ -59,6 +62,9 @@ pub const WORDS: [(&str, &str); 63] = [
     ("pen", "ink"),
     ("poster", "cartoon"),
     ("posterize", "quantize_luminance"),
+    ("riso", "look:two_colour_riso"),
+    ("screen_print", "halftone"),
+    ("screentone", "halftone"),
     ("sharpen", "warp_sharpen"),
     ("sketch", "pencil"),
     ("smooth", "gaussian"),
