@@ -2,8 +2,8 @@
 //! about a pixel wide, found from the shape of the dots, so that no screen beats with the pixels; the mean over a cell is
 //! the share that the plate asks for. Inks and paper mix as linear light, as they do for an eye that is far away.
 //!
-//! Lines, rings and squares are filtered exactly by a triangle along each axis of the screen (box twice; its zeros lie at
-//! the frequencies that the grid of pixels would fold to 0). Dots compare the share with a spot function, the sum of two
+//! Lines, rings and squares are filtered by a triangle two pixels wide along each axis of the screen: exactly, but for the
+//! bend of rings. Dots compare the share with a spot function, the sum of two
 //! cosines (`CosineDot` of PDF, ISO 32000-1, 10.5.3), whose values are replaced by their rank, so that a ramp of
 //! them has a known mean; four places in a pixel are averaged.
 //!
