@@ -170,7 +170,7 @@ fn print<S: Simd>(simd: S, pass: &CpuPass<'_>, params: &Params, band: &mut Band<
                 for channel in 0..3 {
                     let change =
                         light[channel] * (params.keeps[plate][channel] - 1.0) + params.adds[plate][channel];
-                    light[channel] = light[channel] + ink * change;
+                    light[channel] += ink * change;
                 }
             }
             let [r, g, b] = srgb_encode(light);
@@ -290,7 +290,7 @@ fn dot<S: Simd>(params: &Params, [u, v]: [f32x8<S>; 2], share: f32x8<S>, turned:
     for [du, dv] in [[px, py], [-py, px], [-px, -py], [py, -px]] {
         let t = threshold(u + du, v + dv);
         let t = dark.select(one - t, t);
-        sum = sum + ((middle - t) * inverse + 0.5).within(zero, one);
+        sum += ((middle - t) * inverse + 0.5).within(zero, one);
     }
     let mean = sum * 0.25;
     dark.select(one - mean, mean)

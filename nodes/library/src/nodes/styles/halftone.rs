@@ -146,11 +146,14 @@ pub static NODE: NodeSpec = NodeSpec {
 
 fn build(scope: &mut Scope<'_>) -> ImageId {
     let by = Agreement::lab(COLOUR_AGREEMENT);
+    let guide_weight = scope.float(lines::GUIDE_WEIGHT.id);
     if scope.float(lines::LINE_AMOUNT.id) <= 0.0 {
-        let [smooth] = steadied(scope, by, |scope| [smoothed(scope, &Guides::default()).0]);
+        let [smooth] = steadied(scope, by, |scope| {
+            let guides = flow_dog::guides(scope, guide_weight);
+            [smoothed(scope, &guides).0]
+        });
         return printed(scope, smooth);
     }
-    let guide_weight = scope.float(lines::GUIDE_WEIGHT.id);
     let flow = lines::flow_dog(scope, guide_weight);
     let n_e = scope.int(lines::N_E.id);
     let [smooth, edges] = steadied(scope, by, |scope| {
