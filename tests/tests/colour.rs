@@ -123,6 +123,7 @@ const RECOLOURING: &[(&str, &str)] = &[
     ("ink", "tones become ink or paper"),
     ("watercolor", "pigment and paper have tones of their own"),
     ("toon_shading", "steps of light have tones of their own"),
+    ("halftone", "tones become ink or paper"),
 ];
 
 /// Filters that give a flat picture a texture.
@@ -130,6 +131,7 @@ const TEXTURED: &[(&str, &str)] = &[
     ("blueprint", "paper and grid are part of the style"),
     ("ink", "paper is part of the style"),
     ("watercolor", "granulation is part of the style"),
+    ("halftone", "screens are the style"),
     ("oil_paint", "brush strokes begin with noise"),
 ];
 

@@ -27,6 +27,7 @@ const DIRECTED: &[(&str, &str, &str)] = &[
     ("watercolor", "abstraction=xy", "the separable filter runs along x first (§ 3.3)"),
     ("flow_dilation", "", "noise belongs to the place"),
     ("ink", "", "paper and strokes belong to the place"),
+    ("halftone", "", "screens belong to the place"),
     ("oil_paint", "abstraction=xy", "the separable filter runs along x first (§ 3.3)"),
     ("toon_shading", "abstraction=xy", "the separable filter runs along x first (§ 3.3)"),
     ("blueprint", "abstraction=xy", "the separable filter runs along x first (§ 3.3)"),

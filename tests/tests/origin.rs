@@ -15,7 +15,8 @@ const WHOLE: [u32; 2] = [208, 176];
 const BOX: [i32; 4] = [18, 10, 194, 160];
 const MARGIN: i32 = 56;
 /// Nodes that draw marks of their own.
-const MARKS: [&str; 6] = ["blueprint", "flow_dilation", "ink", "oil_paint", "tensor_view", "watercolor"];
+const MARKS: [&str; 7] =
+    ["blueprint", "flow_dilation", "halftone", "ink", "oil_paint", "tensor_view", "watercolor"];
 
 fn main() -> ExitCode {
     let mut trials = Trials::new();

@@ -22,6 +22,7 @@ nodes! {
         oil_paint,
         watercolor,
         ink,
+        halftone,
         painting,
     }
     structure {

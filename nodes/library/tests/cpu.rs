@@ -12,6 +12,8 @@ mod edge_tangent_flow;
 mod flow_map;
 #[path = "cpu/gradient_tensor.rs"]
 mod gradient_tensor;
+#[path = "cpu/halftone.rs"]
+mod halftone;
 #[path = "cpu/jacobi_step.rs"]
 mod jacobi_step;
 #[path = "cpu/noise.rs"]

@@ -899,6 +899,197 @@ def ink(
 
     The other arguments are those of `isophote.apply`.
     """
+def halftone(
+    image: Any,
+    /,
+    *,
+    normal: Any = None,
+    depth: Any = None,
+    object_id: Any = None,
+    mask: Any = None,
+    flow: Any = None,
+    motion: Any = None,
+    motion_forward: Any = None,
+    shape: Literal['dots', 'lines', 'rings', 'squares'] = 'dots',
+    inks: Literal['one', 'cmyk', 'two_spots', 'three_spots'] = 'cmyk',
+    cell: float = 8.0,
+    angle: float = 0.0,
+    softness: float = 0.0,
+    misregistration: float = 0.0,
+    overprint: float = 1.0,
+    ink_color: Color = (0.09, 0.085, 0.1, 1.0),
+    spot_1: Color = (0.11, 0.15, 0.36, 1.0),
+    spot_2: Color = (0.93, 0.32, 0.27, 1.0),
+    spot_3: Color = (0.99, 0.81, 0.2, 1.0),
+    paper_color: Color = (0.965, 0.95, 0.91, 1.0),
+    paper_texture: float = 0.06,
+    detail: float = 0.5,
+    saturation: float = 1.0,
+    lights: float = 0.0,
+    darks: float = 0.0,
+    cover: bool = False,
+    line_width: float = 2.0,
+    line_amount: float = 0.0,
+    suppress_small: float = 0.0,
+    outline_width: float = 1.0,
+    crease_width: float = 1.0,
+    texture_lines: float = 1.0,
+    line_color: Color = (0.09, 0.085, 0.1, 1.0),
+    abstraction: Literal['oriented', 'flow', 'full', 'xy'] = 'oriented',
+    n_a: int = 1,
+    sigma_d: float = 3.0,
+    sigma_r: float = 4.25,
+    grey_replacement: float = 0.7,
+    center_x: float = 960.0,
+    center_y: float = 540.0,
+    n_e: int = 1,
+    sigma_e: float = 1.0,
+    k: float = 1.6,
+    sigma_m: float = 3.0,
+    tau: float = 0.975,
+    epsilon: float = 0.0,
+    phi: float = 2.0,
+    line_iterations: int = 1,
+    guide_weight: float = 1.0,
+    local_contrast: float = 1.0,
+    inhibition: float = 1.0,
+    colour_edges: float = 0.5,
+    steadiness: float = 0.0,
+    window: int = 2,
+    mix: float = 1.0,
+    out: Any = None,
+    frame: int = 0,
+    **picture: Unpack[Picture],
+) -> Array:
+    """Halftone. Printed dots, lines, rings or squares in one ink, four process inks or spot colours.
+    Printed tones: the smoothed picture is separated into plates, and each is printed through a
+    screen. Ink covers the share of the paper that gives, seen from afar, the light of the picture
+    against that of the paper, so white stays paper and black is solid; light mixes linearly, not as
+    encoded values. Tones are those of each pixel, not of each cell, so that small things cut
+    through dots. Lines, where asked for, are printed solid over the screens, and outlines, creases
+    and borders of objects follow normals, depth and object ids. (thesis § 1.2)
+
+    Inputs:
+        image: The picture.
+        normal: View-space normals; creases draw lines.
+        depth: Distance from the camera; jumps draw lines, relative to the distance and never on
+            planes.
+        object_id: Object numbers; borders between objects draw lines.
+        mask: How much of the result is used, 0..=1, times `mix`; all of it when open.
+        flow: A flow map (see `flow_map`) that bends the orientation which the node follows, if it
+            follows any.
+        motion: Pixels from where a point is to where it was in the frame before; without it the
+            frames before count for nothing.
+        motion_forward: Pixels from where a point is to where it will be in the next frame; without
+            it the frames that follow count for nothing.
+
+    Parameters:
+        shape: What tones are printed as: dots, lines, rings around a point, or squares. Dots and
+            squares grow until they meet; from half the paper on dots are round holes in the ink.
+        inks: What is printed with: one ink, four process inks, or two or three colours of your own.
+            One ink prints lightness; where it is lighter than the paper it prints the lights. Four
+            process inks print all colours. Two or three spot colours are fitted to each pixel's
+            light by least squares, luminance above all: a dark one takes the shadows, the others
+            what hue they share with the picture. Separation takes inks for transparent.
+        cell: Distance from one dot or line to the next. Where the rendered size leaves it less than
+            two pixels, the screen fades to flat tones. 2 to 256 px.
+        angle: Turns the screens, counterclockwise: at 0 each ink has the angle that printers give
+            it. One ink and spot 1 lie at 45 degrees, as black does; cyan and spot 3 at 15, magenta
+            and spot 2 at 75, yellow at 0. Rings have no angle. -360 to 360 deg.
+        softness: How soft dots are: 0 is crisp, 1 runs from paper to ink. 0 to 1.
+        misregistration: How far the plates of colours are printed beside the place where they
+            belong. Each plate moves in a direction of its own; black, spot 1 and a single ink stay.
+            0 to 64 px.
+        overprint: How inks lie over each other: 1 lets them shine through, 0 lets the later one
+            cover. Transparent inks multiply the light of what lies below. The order is yellow,
+            magenta, cyan, black, and spot 3, 2, 1. 0 to 1.
+        ink_color: Colour of the only ink, and of the black one of four.
+        spot_1: The first colour of your own, as it looks on the paper: a dark one, for shadows.
+        spot_2: The second colour of your own, as it looks on the paper.
+        spot_3: The third colour of your own, as it looks on the paper, where there are three.
+        paper_color: Colour of the paper.
+        paper_texture: How rough the paper looks. 0 to 1.
+        detail: How much of the picture's detail stays: low values give flat areas, high ones keep
+            small things. Scales `sigma_r` from 3 to 1/3 times and `sigma_d` from 2 to 1/2. 0 to 1.
+        saturation: Strength of the colours: 0 is grey, 1 leaves them as they are. Factor on the
+            colour axes of CIELAB. 0 to 4.
+        lights: Brightens the light tones above 0, and darkens them below. -1 to 1.
+        darks: Brightens the dark tones above 0, and darkens them below. -1 to 1.
+        cover: Puts paper also where the picture is transparent. The result is then opaque.
+        line_width: How thick lines are. Wide lines also run longer, so that they do not break.
+            Scales `sigma_e` by width / 2 and, above 2, `sigma_m` by its root. None is narrower than
+            a pixel of the picture: it is lighter instead. 0.2 to 40 px.
+        line_amount: How many solid lines are printed over the dots: 0 prints none and costs
+            nothing, 1 draws faint edges too. Scales 1 - `tau`. 0 to 1.
+        suppress_small: Leaves out short and weak lines. Lengthens `sigma_m` by up to 0.8 of it and
+            lowers `epsilon` by up to 0.75. 0 to 1.
+        outline_width: Width of outlines of objects against other lines; 0 draws none. Needs depth,
+            object ids or normals. 0 to 8.
+        crease_width: Width of lines where a surface folds against other lines; 0 draws none. Needs
+            normals. 0 to 8.
+        texture_lines: How many lines come from the picture itself: 0 leaves outlines and creases
+            alone. 0 to 1.
+        line_color: Colour and opacity of the lines.
+        abstraction: How colours are flattened: along the edges, along flowing lines, or in all
+            directions alike. Bilateral filter: across and along the local orientation (3.4), or
+            along stream lines (3.5), whose own scales then grow with `sigma_d` / 3 and `sigma_r` /
+            4.25; or without regard to it, by the full window (3.2) or along rows and then columns
+            (3.3).
+        n_a: How often the colours are smoothed: more rounds give flatter areas. Bilateral
+            iterations (n_a). 0 to 16.
+        sigma_d: How far colours are smoothed over what is around them. Spatial standard deviation
+            of the bilateral filter. 0.1 to 20 px.
+        sigma_r: How different colours may be and still be smoothed into one. Standard deviation of
+            the bilateral filter in range, CIELAB units. 0.1 to 200.
+        grey_replacement: How much of the grey that coloured inks would mix is printed by black
+            instead. Grey-component replacement, of four process inks: the share of 1 - max(R, G, B)
+            of linear light. 0 to 1.
+        center_x: Where the middle of the rings lies, from the left edge. -32768 to 32768 px.
+        center_y: Where the middle of the rings lies, from the top edge. -32768 to 32768 px.
+        n_e: How often the picture is smoothed before lines are looked for, which keeps noise out of
+            them. Bilateral iterations (n_e). 0 to 16.
+        sigma_e: Size of the edges that become lines, which sets how wide the lines are. Standard
+            deviation of the narrower Gaussian; sets the width of lines (4.5). Half a pixel of the
+            picture at least: lines that are to be narrower are lighter instead. 0.1 to 20 px.
+        k: How much wider the second blur is than the first: higher values give broader lines. Ratio
+            of the two standard deviations (4.5); 1.6 after Marr and Hildreth. 1.01 to 4.
+        sigma_m: How far lines are smoothed along themselves: more gives longer lines and less
+            noise. Standard deviation of the smoothing along the edges. 0 to 60 px.
+        tau: How faint an edge may be and still draw a line; small changes near 1 do much. Weight of
+            the wider Gaussian (4.7); the nearer to 1, the weaker the edges that draw a line. 0 to
+            1.
+        epsilon: Where lines begin: higher values draw more and darker lines. Response, in units of
+            L, from which on there is no line (4.8). -100 to 100.
+        phi: How suddenly paper turns to line: low values are soft, high ones crisp. Steepness of
+            the ramp from paper to line, per unit of L (4.8). 0 to 1000.
+        line_iterations: How often lines are looked for, each time on top of those found, which
+            closes gaps. Times the line filter runs, each on the lightness times the lines found so
+            far. 1 to 16.
+        guide_weight: Strength of the lines that normals, depth and object ids draw; 0 leaves these
+            out. Strength of lines where normal, depth or object id break; 0 leaves the guides
+            unread. 0 to 16.
+        local_contrast: Judges edges against what is around them, so that soft light has lines and
+            hard light is not black. Share by which the response is divided by the local deviation
+            of lightness, in a window of about 16 pixels with a floor (Heeger 1992); 0 leaves it as
+            the thesis has it. 0 to 1.
+        inhibition: Leaves out lines where there are many, as in grass, hair and cloth; single ones
+            stay. Strength of surround inhibition (Grigorescu, Petkov, Westenberg 2003): the
+            threshold rises with the lines in a neighbourhood of about 60 pixels around, those along
+            the own orientation counting less, and not where lines stand alone. 0 to 1.
+        colour_edges: Draws lines between colours that are equally light, such as red on blue.
+            Weight of a and b against L in the difference across an edge, which is found in CIELAB;
+            0 is lightness alone. 0 to 1.
+        steadiness: How calm moving pictures are: neighbouring frames are averaged along the motion.
+            0 is off, 0.5 suits most shots. How much neighbouring frames count, carried here along
+            the motion of things: 0 leaves each frame alone, 0.5 is for sequences, 1 lets all frames
+            of the window count alike. 0 to 1.
+        window: Neighbouring frames that count, to each side. They count as far as they and the
+            motion from them are known. 0 to 8.
+        mix: Blends the result with the picture: 0 leaves the picture as it was, 1 shows the result
+            alone. 0 to 1.
+
+    The other arguments are those of `isophote.apply`.
+    """
 def painting(
     image: Any,
     /,

@@ -37,7 +37,7 @@ pub fn drafts_look_like_the_frame_and_their_tiles_are_parts_of_them(binary: &Bin
     // There is no edge in it that is as hard as some effects want one.
     let is_plain = full.iter().all(|value| *value == full[0]);
     assert!(is_plain || full != half, "{id} is no draft");
-    let has_marks = ["ink", "tensor_view"].contains(&effect.node.id);
+    let has_marks = ["halftone", "ink", "tensor_view"].contains(&effect.node.id);
     assert!(psnr >= if has_marks { LEAST_OF_MARKS } else { LEAST }, "{id}: {psnr:.1} dB");
     // From what the regions of interest ask for alone.
     let tile = [60, 30, 126, 97];

@@ -17,6 +17,9 @@ const LEAST: f64 = 40.0;
 const LEAST_OF_LINES: f64 = 32.0;
 /// By strokes of a pen and hatches, whose edges are as crisp as pixels.
 const LEAST_OF_MARKS: f64 = 26.0;
+/// Of screens, whose borders are a pixel wide at every size, and mix as light does, not as the means of encoded values that
+/// they are compared with.
+const LEAST_OF_SCREENS: f64 = 21.0;
 
 /// A photo-like picture: soft shading and forms with edges as wide as a lens makes them.
 pub fn photo() -> Vec<f32> {
@@ -75,6 +78,7 @@ pub fn half_size_looks_like_full_size_made_smaller(binary: &Binary, effect: Expe
     let psnr = -10.0 * (square / got.len() as f64).log10();
     println!("{}: {psnr:.1} dB", effect.plugin(binary).identifier());
     let least = match effect.node.id {
+        "halftone" => LEAST_OF_SCREENS,
         "ink" => LEAST_OF_MARKS,
         "blueprint" | "oil_paint" | "coherent" => LEAST_OF_LINES,
         _ => LEAST,

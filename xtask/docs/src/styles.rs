@@ -8,12 +8,23 @@ use isophote::value::Value;
 use std::fmt::Write as _;
 
 /// Parameter that is set as well where a control does nothing by itself: node and control, then parameter and value.
-const TOGETHER: [(&str, &str, &str, &str); 4] = [
+const TOGETHER: [(&str, &str, &str, &str); 14] = [
     ("cartoon", "posterize_smooth", "posterize", "6"),
     ("coherent", "posterize_smooth", "posterize", "6"),
     ("coherent", "steps", "posterize", "6"),
     // Ink itself is of one colour.
     ("ink", "saturation", "style", "pastel"),
+    // Lines are off, and four process inks are printed.
+    ("halftone", "line_width", "line_amount", "0.5"),
+    ("halftone", "suppress_small", "line_amount", "0.5"),
+    ("halftone", "outline_width", "line_amount", "0.5"),
+    ("halftone", "crease_width", "line_amount", "0.5"),
+    ("halftone", "texture_lines", "line_amount", "0.5"),
+    ("halftone", "line_color", "line_amount", "0.5"),
+    ("halftone", "ink_color", "inks", "one"),
+    ("halftone", "spot_1", "inks", "three_spots"),
+    ("halftone", "spot_2", "inks", "three_spots"),
+    ("halftone", "spot_3", "inks", "three_spots"),
 ];
 
 /// Colours that controls of colours are shown in, beside the default.

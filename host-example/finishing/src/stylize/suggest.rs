@@ -7,17 +7,19 @@ use isophote_loader::catalogue::Node;
 use isophote_loader::preset::LOOK;
 
 /// Words of artists and of other programs, with the style, the look or the medium that comes nearest.
-pub const WORDS: [(&str, &str); 63] = [
+pub const WORDS: [(&str, &str); 69] = [
     ("abstract", "painting"),
     ("acrylic", "painting"),
     ("anime", "cartoon"),
     ("aquarelle", "watercolor"),
+    ("ben_day", "halftone"),
     ("blur", "gaussian"),
     ("canny", "edge_detector"),
     ("cel", "cartoon"),
     ("cel_shading", "cartoon"),
     ("cell_shading", "cartoon"),
     ("chalk", "pastel"),
+    ("cmyk", "halftone"),
     ("comic", "cartoon"),
     ("comics", "cartoon"),
     ("contour", "flow_dog"),
@@ -27,6 +29,7 @@ pub const WORDS: [(&str, &str); 63] = [
     ("cyanotype", "blueprint"),
     ("denoise", "bilateral"),
     ("dog", "difference_of_gaussians"),
+    ("dots", "halftone"),
     ("drawing", "pencil"),
     ("edges", "edge_detector"),
     ("engraving", "look:copperplate"),
@@ -59,6 +62,9 @@ pub const WORDS: [(&str, &str); 63] = [
     ("pen", "ink"),
     ("poster", "cartoon"),
     ("posterize", "quantize_luminance"),
+    ("riso", "look:two_colour_riso"),
+    ("screen_print", "halftone"),
+    ("screentone", "halftone"),
     ("sharpen", "warp_sharpen"),
     ("sketch", "pencil"),
     ("smooth", "gaussian"),

@@ -147,8 +147,9 @@ pub fn lab_to_linear<S: Simd>([l, a, b]: Rgb<S>) -> Rgb<S> {
     transform(&XYZ_TO_LINEAR, xyz)
 }
 
+/// The reverse of [`lab_curve`].
 #[inline(always)]
-fn lab_curve_inverse<S: Simd>(f: f32x8<S>) -> f32x8<S> {
+pub fn lab_curve_inverse<S: Simd>(f: f32x8<S>) -> f32x8<S> {
     f.simd_le(6.0 / 29.0).select((f - 16.0 / 116.0) * (1.0 / SLOPE_LAB), f * f * f)
 }
 
