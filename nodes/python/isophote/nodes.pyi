@@ -51,6 +51,7 @@ def blueprint(
     local_contrast: float = 1.0,
     inhibition: float = 1.0,
     colour_edges: float = 0.0,
+    show: Literal['picture', 'lines'] = 'picture',
     mix: float = 1.0,
     out: Any = None,
     frame: int = 0,
@@ -144,6 +145,8 @@ def blueprint(
         colour_edges: Draws lines between colours that are equally light, such as red on blue.
             Weight of a and b against L in the difference across an edge, which is found in CIELAB;
             0 is lightness alone. 0 to 1.
+        show: Shows the picture, or the lines alone on nothing, to be laid over pictures elsewhere.
+            `mix` and the mask lay lines alone over the picture, as they do all results.
         mix: Blends the result with the picture: 0 leaves the picture as it was, 1 shows the result
             alone. 0 to 1.
 
@@ -203,6 +206,7 @@ def cartoon(
     inhibition: float = 1.0,
     colour_edges: float = 0.5,
     line_on_dark: Literal['off', 'light'] = 'off',
+    show: Literal['picture', 'lines'] = 'picture',
     mix: float = 1.0,
     out: Any = None,
     frame: int = 0,
@@ -335,6 +339,8 @@ def cartoon(
             black car or coat. The mean lightness around a line decides, in a window of about 12
             pixels: 25 units of L above the line's own where normals, depth or object ids are known,
             14 where they are not. Lines that are light or of a strong colour stay.
+        show: Shows the picture, or the lines alone on nothing, to be laid over pictures elsewhere.
+            `mix` and the mask lay lines alone over the picture, as they do all results.
         mix: Blends the result with the picture: 0 leaves the picture as it was, 1 shows the result
             alone. 0 to 1.
 
@@ -777,6 +783,7 @@ def ink(
     colour_edges: float = 0.5,
     line_on_dark: Literal['off', 'light', 'open'] = 'off',
     hatch_bend: float = 1.0,
+    show: Literal['picture', 'lines'] = 'picture',
     mix: float = 1.0,
     out: Any = None,
     frame: int = 0,
@@ -894,6 +901,8 @@ def ink(
             the picture's own colours has no solid masses.
         hatch_bend: How far regular hatching bends over the form: 1 is the medium's own, 0 is
             straight. Factor on the distance that hatches move aside per unit of L. 0 to 4.
+        show: Shows the picture, or the lines alone on nothing, to be laid over pictures elsewhere.
+            `mix` and the mask lay lines alone over the picture, as they do all results.
         mix: Blends the result with the picture: 0 leaves the picture as it was, 1 shows the result
             alone. 0 to 1.
 

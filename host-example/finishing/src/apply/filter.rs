@@ -16,7 +16,7 @@ use isophote_loader::catalogue::Kind;
 use isophote_loader::plan::Texture;
 use isophote_loader::{Control, Device, Input, Library, Sequence};
 use isophote_pictures::convert::Conversion;
-use isophote_pictures::exr::{ExrFile, Guide};
+use isophote_pictures::exr::{ExrFile, Guide, Picture};
 use isophote_pictures::meaning::Meaning;
 use isophote_pictures::mix::{self, Encoding};
 use isophote_pictures::pixels::{Pixels, Precision};
@@ -277,18 +277,12 @@ impl Filter {
             self.check_output_space()?;
         }
         let to = format.state(source.state());
-        let scalar = self.layers.iter().all(|layer| layer.look.style.kind != Kind::Color);
-        let is_bare = self.layers.iter().any(|layer| layer.is_bare);
+        let scalar = self.is_scalar();
         let mut filtered =
             Filtered { results: Vec::with_capacity(count), meaning: Meaning::usual(to), replaced: 0 };
         for (at, picture) in source.pictures.iter().take(count).enumerate() {
-            let channels = match in_place {
-                Some(exr) => exr.result_channels(at, scalar, is_bare),
-                None if scalar => 1,
-                None if is_bare => 4,
-                None => picture.pixels.channels().max(3),
-            };
-            let working = WorkingSpace::of(self.space, picture).with_alpha(is_bare);
+            let channels = self.channels((at, picture), in_place);
+            let working = WorkingSpace::of(self.space, picture).with_alpha(self.is_bare());
             let there = working.there.as_ref();
             let (color, bad) = own.working(at, there).unwrap_or((&picture.pixels, 0));
             filtered.replaced += bad;
@@ -320,6 +314,26 @@ impl Filter {
             filtered.results.push(result);
         }
         Ok(filtered)
+    }
+
+    /// True where results have one channel.
+    fn is_scalar(&self) -> bool {
+        self.layers.iter().all(|layer| layer.look.style.kind != Kind::Color)
+    }
+
+    /// True where results have alpha, whether or not pictures have.
+    fn is_bare(&self) -> bool {
+        self.layers.iter().any(|layer| layer.is_bare)
+    }
+
+    /// Samples a pixel of the result of a picture, which goes back into a file or not.
+    fn channels(&self, (at, picture): (usize, &Picture), in_place: Option<&ExrFile>) -> u32 {
+        match in_place {
+            Some(exr) => exr.result_channels(at, self.is_scalar(), self.is_bare()),
+            None if self.is_scalar() => 1,
+            None if self.is_bare() => 4,
+            None => picture.pixels.channels().max(3),
+        }
     }
 
     /// Refuses a space of results that go back into the file that they came from.

@@ -7,7 +7,7 @@ use isophote_loader::catalogue::Node;
 use isophote_loader::preset::LOOK;
 
 /// Words of artists and of other programs, with the style, the look or the medium that comes nearest.
-pub const WORDS: [(&str, &str); 69] = [
+pub const WORDS: [(&str, &str); 68] = [
     ("abstract", "painting"),
     ("acrylic", "painting"),
     ("anime", "cartoon"),
@@ -72,7 +72,6 @@ pub const WORDS: [(&str, &str); 69] = [
     ("stabilize", "steady"),
     ("technical_drawing", "blueprint"),
     ("toon", "cartoon"),
-    ("toon_shading", "cartoon"),
     ("van_gogh", "look:swirling_sky"),
     ("wash", "watercolor"),
     ("wood_engraving", "woodcut"),
