@@ -1,7 +1,8 @@
 //! Experiment 16: how steady the styles are over time, from colour and motion alone: on the demo scene along its camera's
 //! path, on a running fox and on a static shot with noise, without and with `steadiness`.
 //!
-//! `ISOPHOTE_STYLES=cartoon,ink` runs those styles alone, `ISOPHOTE_PICTURES=FOLDER` writes what they draw.
+//! `ISOPHOTE_STYLES=cartoon,ink` runs those styles alone, `ISOPHOTE_PICTURES=FOLDER` writes what they draw. With
+//! `ISOPHOTE_TABLES`, which `cargo xtask experiments` sets, they are measured by frames on both sides and by estimated motion, too.
 
 use isophote_tests::device::device;
 use isophote_tests::steadiness::{Entry, Row, Shot, Style, rendered_shots, table};
@@ -33,34 +34,43 @@ struct Pair {
     name: &'static str,
     still: Row,
     steady: Row,
+    more: Option<More>,
+}
+
+/// What is measured for the tables alone.
+struct More {
     /// By frames before and after.
     both_ways: Row,
     /// By motion that is estimated.
     estimated: Row,
 }
 
+/// The most pixels of styles of lines that jump by frames before and after.
+const MOST_JUMPS: f64 = 0.003;
+
 fn measured(shot: &Shot) -> Vec<Pair> {
     let chosen = std::env::var("ISOPHOTE_STYLES").ok();
     let is_chosen =
         |name: &str| chosen.as_ref().is_none_or(|all| all.split(',').any(|one| one.trim() == name));
+    let has_tables = std::env::var_os("ISOPHOTE_TABLES").is_some();
     let styles = STYLES.into_iter().filter(|name| is_chosen(name));
     styles
         .map(|name| {
             let steady = || Style::new(name, &[STEADINESS]).without_guides();
-            let rows = table(
-                shot,
-                vec![
-                    Entry::new(name, Style::new(name, &[]).without_guides().play(shot, AROUND)),
-                    Entry::new(format!("{name} steady"), steady().play(shot, AROUND)).against(name),
-                    Entry::new(format!("{name} both ways"), steady().play(shot, BOTH_WAYS)).against(name),
-                    Entry::new(format!("{name} estimated"), steady().estimating().play(shot, AROUND))
-                        .against(name),
-                ],
-            );
-            let Ok([still, steady, both_ways, estimated]) = <[Row; 4]>::try_from(rows) else {
-                panic!("four rows")
+            let still = Entry::new(name, Style::new(name, &[]).without_guides().play(shot, AROUND));
+            let entry = |kind: &str, style: Style, around| {
+                Entry::new(format!("{name} {kind}"), style.play(shot, around)).against(name)
             };
-            Pair { name, still, steady, both_ways, estimated }
+            let mut entries = vec![still, entry("steady", steady(), AROUND)];
+            if has_tables {
+                entries.push(entry("both ways", steady(), BOTH_WAYS));
+                entries.push(entry("estimated", steady().estimating(), AROUND));
+            }
+            let mut rows = table(shot, entries).into_iter();
+            let (Some(still), Some(steady)) = (rows.next(), rows.next()) else { panic!("two rows") };
+            let more =
+                rows.next().zip(rows.next()).map(|(both_ways, estimated)| More { both_ways, estimated });
+            Pair { name, still, steady, more }
         })
         .collect()
 }
@@ -74,23 +84,24 @@ fn print(title: &str, pairs: &[Pair]) {
         "steady by optical flow",
         "steady, a contrast",
         "jumps, % of pixels",
-        "both ways, a contrast",
+        "frames on both sides, a contrast",
         "jumps",
-        "energy",
+        "energy kept",
     ];
     let mut table = Table::new(16, "steadiness over time", title, &columns);
-    for Pair { name, still, steady, both_ways, estimated } in pairs {
+    for Pair { name, still, steady, more } in pairs {
+        let of = |measure: fn(&More) -> String| more.as_ref().map_or_else(|| "–".into(), measure);
         table.row(&[
             (*name).to_owned(),
             format!("{:.2}", still.steadiness.ratio),
             format!("{:.2}", steady.steadiness.ratio),
             format!("{:.3}", steady.steadiness.energy_of_still),
-            format!("{:.2}", estimated.steadiness.ratio),
+            of(|more| format!("{:.2}", more.estimated.steadiness.ratio)),
             format!("{:.2}", steady.steadiness.a_contrast()),
             format!("{:.2}", 100.0 * steady.steadiness.jumps),
-            format!("{:.2}", both_ways.steadiness.a_contrast()),
-            format!("{:.2}", 100.0 * both_ways.steadiness.jumps),
-            format!("{:.3}", both_ways.steadiness.energy_of_still),
+            of(|more| format!("{:.2}", more.both_ways.steadiness.a_contrast())),
+            of(|more| format!("{:.2}", 100.0 * more.both_ways.steadiness.jumps)),
+            of(|more| format!("{:.3}", more.both_ways.steadiness.energy_of_still)),
         ]);
     }
     table.print();
@@ -110,6 +121,7 @@ fn steady_styles_exaggerate_less_along_the_path_of_the_camera() {
         let kept = steady.steadiness.energy_of_still;
         assert!(kept >= LEAST_ENERGY, "{name} keeps {kept:.3} of its energy");
     }
+    assert_few_jumps(&pairs);
 }
 
 #[test]
@@ -125,6 +137,17 @@ fn steady_styles_exaggerate_less_on_a_running_fox() {
         let [before, after] = [still.steadiness.ratio, steady.steadiness.ratio];
         // What is drawn on the paper stays there while the fox runs.
         assert!(after < before, "{name}: {before:.3} -> {after:.3}");
+    }
+    assert_few_jumps(&pairs);
+}
+
+/// Lines fade by frames on both sides, where these are measured.
+fn assert_few_jumps(pairs: &[Pair]) {
+    for Pair { name, more, .. } in pairs {
+        let Some(More { both_ways, .. }) = more else { continue };
+        let jumps = both_ways.steadiness.jumps;
+        let has_lines = ["cartoon", "ink", "blueprint"].contains(name);
+        assert!(!has_lines || jumps <= MOST_JUMPS, "{name}: {:.2} % of pixels jump", 100.0 * jumps);
     }
 }
 

@@ -27,6 +27,8 @@ text beside the figure says; these are the numbers that it prints. `cargo xtask 
 pub fn run(options: &Options) -> Result<()> {
     let mut command = cargo_command(&["test", "--quiet", "--workspace", "--test", "experiments_*"]);
     command.args(["--", "--nocapture", "--test-threads=1"]).stderr(Stdio::inherit());
+    // What is measured for the tables alone.
+    command.env("ISOPHOTE_TABLES", "1");
     let output = command.output().context(|| "cannot run cargo".into())?;
     let printed = String::from_utf8_lossy(&output.stdout);
     if !output.status.success() {
