@@ -16,7 +16,11 @@ crate::kernel!(lines_alone {
         alone(&params, block.read(simd, &pass.inputs[0]), block.read(simd, &pass.inputs[1]), edge)
     },
     cost: |_| 14.0,
-    tolerance: Tolerance::of_rounding(2e-3, 1e-5, "the share of faint lines magnifies the rounding of a difference"),
+    tolerance: Tolerance::of_rounding(
+        2e-3,
+        1e-5,
+        "the share of faint lines magnifies the rounding of a difference"
+    ),
 });
 
 /// Share of a pixel below which the colour of what covers it is lost in rounding.

@@ -44,10 +44,8 @@ pub fn pass(plan: &mut PlanBuilder, layers: &Layers, gain: f32) -> ImageId {
     let Layers { color, lit, albedo, specular, normal, is_diffuse } = *layers;
     let bit = |is_there: bool, bit: u32| if is_there { bit } else { 0 };
     let replaces = is_diffuse && albedo.is_some() && specular.is_some();
-    let given = bit(albedo.is_some(), 1)
-        | bit(specular.is_some(), 2)
-        | bit(replaces, 4)
-        | bit(normal.is_some(), 8);
+    let given =
+        bit(albedo.is_some(), 1) | bit(specular.is_some(), 2) | bit(replaces, 4) | bit(normal.is_some(), 8);
     let inputs = [color, lit, albedo.unwrap_or(color), specular.unwrap_or(color), normal.unwrap_or(color)];
     plan.pass(&KERNEL, &inputs, &Params { given, gain }, Class::Field, Support::Pixels(0))
 }

@@ -7,7 +7,7 @@ pub use crate::kernels::shaders::toon_ramp::Params;
 use crate::kernels::shared::colour::{LUMINANCE, Rgb, srgb_decode, srgb_encode};
 use crate::kernels::simd::neighbours::{Neighbours, each};
 use isophote_engine::fearless_simd::{Simd, f32x8, prelude::*};
-use isophote_engine::{CpuPass, Class, ImageId, PlanBuilder, Support, Tolerance};
+use isophote_engine::{Class, CpuPass, ImageId, PlanBuilder, Support, Tolerance};
 
 crate::kernel!(toon_ramp {
     cpu: |simd, pass, params, band| each(
@@ -93,19 +93,18 @@ const CRISPEST: f32 = 0.75;
 const GREY: f32 = 0.01;
 
 #[inline(always)]
-fn shaded<S: Simd>(
-    simd: S,
-    pass: &CpuPass<'_>,
-    params: &Params,
-    around: Neighbours<'_, S>,
-) -> [f32x8<S>; 4] {
+fn shaded<S: Simd>(simd: S, pass: &CpuPass<'_>, params: &Params, around: Neighbours<'_, S>) -> [f32x8<S>; 4] {
     let alpha = around.centre(3);
     let (light, slope) = (around.centre(0), slope_of(&around, 0));
     let [a, b, c, d] = params.softness;
     let softness = [a, b, c, d, params.last_softness[0], params.last_softness[1]];
     let mut tints = flat(simd, params.steps[0]);
     for step in 1..STEPS {
-        tints = mix(tints, flat(simd, params.steps[step]), above(light, params.steps[step][3], softness[step], slope));
+        tints = mix(
+            tints,
+            flat(simd, params.steps[step]),
+            above(light, params.steps[step][3], softness[step], slope),
+        );
     }
     let [r, g, b, covered]: [f32x8<S>; 4] = around.block.read(simd, &pass.inputs[1]);
     let mut colour = srgb_decode([r, g, b]);

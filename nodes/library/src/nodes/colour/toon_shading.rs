@@ -154,7 +154,9 @@ const fn soft(step: usize) -> Param {
     Param::float(id, label, 0.0, [0.0, 1.0])
         .slider(0.0, 0.5)
         .group(ADVANCED)
-        .hint("Softness of the border where this step begins, beside that of all. No effect with fewer steps.")
+        .hint(
+            "Softness of the border where this step begins, beside that of all. No effect with fewer steps.",
+        )
         .doc("Width of the border in light, added to `softness`.")
 }
 
@@ -183,13 +185,16 @@ const RIM_SOFTNESS: Param = Param::float("rim_softness", "Rim softness", 0.08, [
     .slider(0.0, 0.5)
     .group(ADVANCED)
     .hint("Softness of the inner border of the band.");
-const RIM_COLOR: Param =
-    Param::color("rim_color", "Rim colour", [1.0, 0.97, 0.9, 1.0]).group(LOOK).hint("Colour and opacity of the band.");
+const RIM_COLOR: Param = Param::color("rim_color", "Rim colour", [1.0, 0.97, 0.9, 1.0])
+    .group(LOOK)
+    .hint("Colour and opacity of the band.");
 const SIGMA_A: Param = Param::length("sigma_a", "Edge smoothing", 4.0, [0.0, 20.0])
     .slider(0.0, 10.0)
     .structural()
     .group(ADVANCED)
-    .hint("How far shapes of light are smoothed along their borders where they are found in the picture alone.")
+    .hint(
+        "How far shapes of light are smoothed along their borders where they are found in the picture alone.",
+    )
     .doc("Standard deviation of the smoothing along stream lines.");
 
 /// Lightness of mirrored light above which highlights of size 0 are.
