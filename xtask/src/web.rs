@@ -49,7 +49,7 @@ const PROCESSOR: Module = Module {
 };
 
 /// Most bytes of the page, a third of them the module of the processor: what someone waits for before the first picture.
-const MOST: u64 = 4 << 20;
+const MOST: u64 = 9 << 19;
 
 /// Options of `cargo xtask web`.
 #[derive(clap::Args)]

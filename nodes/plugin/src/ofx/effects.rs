@@ -310,7 +310,7 @@ impl Effect {
         for (index, node) in self.nodes.clone().into_iter().enumerate() {
             for param in node.params() {
                 let target = Target::Param(index, param);
-                if param.id == MIX.id {
+                if param.group == MIX.group && node.has_mix() {
                     continue;
                 }
                 let hint = hint(param);
@@ -361,8 +361,8 @@ impl Effect {
         self.add(MASK_FROM, "Mask from", MASK_FROM_HINT, "output", Target::MaskFrom);
         self.add(MASK_INVERT, "Invert mask", MASK_INVERT_HINT, "output", Target::MaskInvert);
         for (index, node) in self.nodes.clone().into_iter().enumerate().filter(|(_, node)| node.has_mix()) {
-            let name = if index == 0 { MIX.id.to_owned() } else { format!("lines_{}", MIX.id) };
-            if let Some((_, param)) = node.param(MIX.id) {
+            for param in node.params().filter(|param| param.group == MIX.group) {
+                let name = if index == 0 { param.id.to_owned() } else { format!("lines_{}", param.id) };
                 self.add(&name, param.label, &hint(param), param.group, Target::Param(index, param));
             }
         }
