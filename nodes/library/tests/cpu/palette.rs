@@ -86,8 +86,8 @@ fn apart(a: [f64; 3], b: [f64; 3]) -> f64 {
 
 /// Sixteen colours, not in the order of anything.
 const SIXTEEN: [&str; 16] = [
-    "#08080a", "#f0f4f0", "#b02030", "#20a040", "#2030c0", "#e0d020", "#d060c0", "#30c0d0", "#704018", "#f0a070",
-    "#606468", "#a8acb0", "#183020", "#f8d0d8", "#88b030", "#502878",
+    "#08080a", "#f0f4f0", "#b02030", "#20a040", "#2030c0", "#e0d020", "#d060c0", "#30c0d0", "#704018",
+    "#f0a070", "#606468", "#a8acb0", "#183020", "#f8d0d8", "#88b030", "#502878",
 ];
 
 #[test]
@@ -133,7 +133,11 @@ fn palettes_that_ship_have_as_many_colours_as_they_say() {
         for dither in DITHERS {
             let settings = [("palette", palette), ("dither", dither), ("fit", "1")];
             let found = colours(&painted(&settings, request(&medley), &medley));
-            assert!(found.len() <= size && 5 * found.len() > 3 * size, "{palette}, {dither}: {}", found.len());
+            assert!(
+                found.len() <= size && 5 * found.len() > 3 * size,
+                "{palette}, {dither}: {}",
+                found.len()
+            );
             for value in found.iter().flatten().map(|bits| f32::from_bits(*bits)) {
                 assert_eq!(value, (value * 255.0).round() / 255.0, "{palette}, {dither}");
             }
@@ -187,11 +191,15 @@ fn dither_keeps_the_means_of_a_ramp_of_greys() {
     for greys in [&["#000000", "#ffffff"][..], &["#ffffff", "#303030", "#909090", "#000000", "#c8c8c8"]] {
         let count = greys.len().to_string();
         for dither in ["bayer", "noise"] {
-            let settings = [own(greys, &ids, &count), vec![("dither", dither), ("dither_size", "1")]].concat();
+            let settings =
+                [own(greys, &ids, &count), vec![("dither", dither), ("dither_size", "1")]].concat();
             let out = painted(&settings, request(&ramp), &ramp);
             for x in (0..512).step_by(32) {
                 let (found, wanted) = (lightness(&out, x, 0), lightness(&ramp, x, 0));
-                assert!((found - wanted).abs() < 1.5, "{greys:?}, {dither}: {found:.2} for {wanted:.2} at {x}");
+                assert!(
+                    (found - wanted).abs() < 1.5,
+                    "{greys:?}, {dither}: {found:.2} for {wanted:.2} at {x}"
+                );
             }
         }
     }
@@ -278,7 +286,8 @@ fn tones_are_fitted_to_those_of_the_palette() {
     let ids = ids();
     let dark = picture([64, 64], |_, _| [0.1, 0.1, 0.1, 1.0]);
     let at = |fit: &str| {
-        let settings = [own(&["#505050", "#a0a0a0"], &ids, "2"), vec![("dither", "noise"), ("fit", fit)]].concat();
+        let settings =
+            [own(&["#505050", "#a0a0a0"], &ids, "2"), vec![("dither", "noise"), ("fit", fit)]].concat();
         lightness(&painted(&settings, request(&dark), &dark), 0, 0)
     };
     // Darker than the palette is its darkest colour; fitted, it is as far from that as from black before.

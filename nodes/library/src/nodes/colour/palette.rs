@@ -14,7 +14,7 @@ use crate::kernels::colour::rgb_to_lab;
 use crate::stages::abstraction::{self, Abstraction};
 use crate::stages::steady::{Agreement, COLOUR_AGREEMENT, steadied};
 use crate::stages::tensor_options::TensorOptions;
-use crate::stages::{ADVANCED, LOOK};
+use crate::stages::LOOK;
 use isophote_engine::ImageId;
 
 /// The node.
