@@ -154,12 +154,7 @@ fn nearest<S: Simd>(simd: S, labs: &[[f32; 4]], wanted: Rgb<S>) -> Found<S> {
 /// The colours to which the lines from the nearest ones lead past what is wanted, and the share of the way; the nearest
 /// ones where no line leads there.
 #[inline(always)]
-fn second<S: Simd>(
-    simd: S,
-    labs: &[[f32; 4]],
-    wanted: Rgb<S>,
-    nearest: &Found<S>,
-) -> (Found<S>, f32x8<S>) {
+fn second<S: Simd>(simd: S, labs: &[[f32; 4]], wanted: Rgb<S>, nearest: &Found<S>) -> (Found<S>, f32x8<S>) {
     let zero = f32x8::splat(simd, 0.0);
     let d = difference(wanted, nearest.lab);
     let (mut found, mut share, mut best) = (*nearest, zero, f32x8::splat(simd, -1e30));

@@ -11,10 +11,10 @@ use crate::declare::spec::{NodeSpec, Param, STEADINESS, Scope, WINDOW};
 use crate::declare::value::Value;
 use crate::kernels::colour::palette_colours::{self, MOST, Options};
 use crate::kernels::colour::rgb_to_lab;
+use crate::stages::LOOK;
 use crate::stages::abstraction::{self, Abstraction};
 use crate::stages::steady::{Agreement, COLOUR_AGREEMENT, steadied};
 use crate::stages::tensor_options::TensorOptions;
-use crate::stages::LOOK;
 use isophote_engine::ImageId;
 
 /// The node.

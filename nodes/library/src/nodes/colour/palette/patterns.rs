@@ -167,7 +167,10 @@ mod tests {
             }
         }
         // The matrix of two by two is in the first columns and rows.
-        assert_eq!([bayer(0, 0), bayer(1, 0), bayer(0, 1), bayer(1, 1)].map(|v| (4.0 * v) as u32), [0, 2, 3, 1]);
+        assert_eq!(
+            [bayer(0, 0), bayer(1, 0), bayer(0, 1), bayer(1, 1)].map(|v| (4.0 * v) as u32),
+            [0, 2, 3, 1]
+        );
     }
 
     /// Variance of the means of `side` x `side` cells against that of as many independent ones.
