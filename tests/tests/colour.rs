@@ -123,6 +123,7 @@ const RECOLOURING: &[(&str, &str)] = &[
     ("ink", "tones become ink or paper"),
     ("watercolor", "pigment and paper have tones of their own"),
     ("toon_shading", "steps of light have tones of their own"),
+    ("palette", "colours become those of a palette"),
     ("halftone", "tones become ink or paper"),
 ];
 

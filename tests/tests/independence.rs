@@ -29,6 +29,9 @@ const DIRECTED: &[(&str, &str, &str)] = &[
     ("ink", "", "paper and strokes belong to the place"),
     ("halftone", "", "screens belong to the place"),
     ("oil_paint", "abstraction=xy", "the separable filter runs along x first (§ 3.3)"),
+    ("palette", "abstraction=xy", "the separable filter runs along x first (§ 3.3)"),
+    ("palette", "dither=bayer", "patterns belong to the place"),
+    ("palette", "dither=noise", "patterns belong to the place"),
     ("toon_shading", "abstraction=xy", "the separable filter runs along x first (§ 3.3)"),
     ("blueprint", "abstraction=xy", "the separable filter runs along x first (§ 3.3)"),
 ];

@@ -2,6 +2,7 @@
 
 mod support;
 
+use std::collections::BTreeSet;
 use std::fs;
 use std::path::Path;
 use std::process::Command;
@@ -40,6 +41,19 @@ fn drawn(folder: &Path, name: &str) -> Option<RgbaImage> {
             eprintln!("\n*** SKIPPED: drawing curves needs rsvg-convert ***\n");
             None
         }
+    }
+}
+
+#[test]
+fn pictures_of_a_palette_have_its_colours_to_the_byte() {
+    let folder = folder();
+    let own = ["palette=own", "count=3", "color_1=#102030", "color_2=#f0e8d8", "color_3=#b04028"];
+    for dither in ["dither=none", "dither=bayer", "dither=noise"] {
+        let more: Vec<&str> = own.iter().chain([&dither]).flat_map(|setting| ["--set", setting]).collect();
+        apply(folder.path(), "palette", &scene(), "three.png", &[&more[..], &["--force"]].concat());
+        let found: BTreeSet<[u8; 4]> = read(folder.path(), "three.png").pixels().map(|p| p.0).collect();
+        let wanted = [[0x10, 0x20, 0x30, 255], [0xf0, 0xe8, 0xd8, 255], [0xb0, 0x40, 0x28, 255]];
+        assert_eq!(found, BTreeSet::from(wanted), "{dither}");
     }
 }
 

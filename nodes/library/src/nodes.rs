@@ -38,6 +38,7 @@ nodes! {
     }
     colour {
         composite_lines,
+        palette,
         quantize_luminance,
         toon_shading,
         warp_sharpen,

@@ -20,6 +20,8 @@ mod jacobi_step;
 mod noise;
 #[path = "cpu/oversampled_tensor.rs"]
 mod oversampled_tensor;
+#[path = "cpu/palette.rs"]
+mod palette;
 #[path = "cpu/rest_footprint.rs"]
 mod rest_footprint;
 #[path = "cpu/structure_tensor.rs"]

@@ -1591,6 +1591,143 @@ def composite_lines(
 
     The other arguments are those of `isophote.apply`.
     """
+def palette(
+    image: Any,
+    /,
+    *,
+    mask: Any = None,
+    flow: Any = None,
+    motion: Any = None,
+    motion_forward: Any = None,
+    depth: Any = None,
+    object_id: Any = None,
+    palette: Literal['comic', 'gouache', 'handheld', 'home_computer', 'four_colours', 'graphics_card', 'terminal', 'blueprint', 'ink_and_paper', 'sepia', 'silver', 'pastel', 'sunset', 'forest', 'night_city', 'riso', 'own'] = 'comic',
+    count: int = 8,
+    color_1: Color = (0.0902, 0.0784, 0.1137, 1.0),
+    color_2: Color = (0.9843, 0.9686, 0.9255, 1.0),
+    color_3: Color = (0.7882, 0.1882, 0.1725, 1.0),
+    color_4: Color = (0.9569, 0.7725, 0.2588, 1.0),
+    color_5: Color = (0.1765, 0.3725, 0.6588, 1.0),
+    color_6: Color = (0.2471, 0.5412, 0.302, 1.0),
+    color_7: Color = (0.9176, 0.702, 0.5412, 1.0),
+    color_8: Color = (0.4784, 0.2902, 0.2, 1.0),
+    color_9: Color = (0.9412, 0.498, 0.2353, 1.0),
+    color_10: Color = (0.549, 0.7843, 0.9098, 1.0),
+    color_11: Color = (0.1216, 0.1647, 0.3529, 1.0),
+    color_12: Color = (0.1294, 0.3216, 0.2196, 1.0),
+    color_13: Color = (0.7529, 0.4863, 0.3451, 1.0),
+    color_14: Color = (0.4824, 0.2902, 0.5608, 1.0),
+    color_15: Color = (0.5529, 0.5765, 0.6078, 1.0),
+    color_16: Color = (0.9686, 0.8627, 0.7529, 1.0),
+    fit: float = 0.5,
+    dither: Literal['none', 'bayer', 'noise'] = 'none',
+    dither_size: float = 2.0,
+    spread: float = 1.0,
+    smoothing: float = 0.5,
+    abstraction: Literal['oriented', 'flow', 'full', 'xy'] = 'oriented',
+    n_a: int = 2,
+    sigma_d: float = 3.0,
+    sigma_r: float = 4.25,
+    steadiness: float = 0.0,
+    window: int = 2,
+    mix: float = 1.0,
+    out: Any = None,
+    frame: int = 0,
+    **picture: Unpack[Picture],
+) -> Array:
+    """Palette. Draws the picture in the colours of a palette and no others, with or without dither.
+    Pictures in the exact colours of a palette. The picture is smoothed by the bilateral filter
+    along the local structure, so that photographs give areas, and each pixel takes the colour that
+    is nearest in CIELAB (D65). With dither it takes that or a second colour: of the lines from the
+    nearest colour to the others, the one that leads nearest to what is wanted says which, and the
+    share of the way, against a threshold that belongs to the place, says where. Shares are those of
+    CIELAB, so that means of lightness and colour are kept, not of light. Colours are copied, gamma-
+    encoded, and never computed: a `mix` of 1 without a mask gives no others. Alpha stays. (thesis §
+    4.6)
+
+    Inputs:
+        image: The picture.
+        mask: How much of the result is used, 0..=1, times `mix`; all of it when open.
+        flow: A flow map (see `flow_map`) that bends the orientation which the node follows, if it
+            follows any.
+        motion: Pixels from where a point is to where it was in the frame before; without it the
+            frames before count for nothing.
+        motion_forward: Pixels from where a point is to where it will be in the next frame; without
+            it the frames that follow count for nothing.
+        depth: Distance from the camera: neighbouring frames count where it agrees.
+        object_id: Object numbers: neighbouring frames count where they agree.
+
+    Parameters:
+        palette: The colours that the picture is drawn in: a set that ships, or your own. One's own
+            has up to sixteen colours; sets of more are among those that ship.
+        count: How many of your own colours are used, from the first on. No effect on palettes that
+            ship. 2 to 16.
+        color_1: A colour of your own palette. No effect with another palette, or with fewer
+            colours. Its opacity is not used.
+        color_2: A colour of your own palette. No effect with another palette, or with fewer
+            colours. Its opacity is not used.
+        color_3: A colour of your own palette. No effect with another palette, or with fewer
+            colours. Its opacity is not used.
+        color_4: A colour of your own palette. No effect with another palette, or with fewer
+            colours. Its opacity is not used.
+        color_5: A colour of your own palette. No effect with another palette, or with fewer
+            colours. Its opacity is not used.
+        color_6: A colour of your own palette. No effect with another palette, or with fewer
+            colours. Its opacity is not used.
+        color_7: A colour of your own palette. No effect with another palette, or with fewer
+            colours. Its opacity is not used.
+        color_8: A colour of your own palette. No effect with another palette, or with fewer
+            colours. Its opacity is not used.
+        color_9: A colour of your own palette. No effect with another palette, or with fewer
+            colours. Its opacity is not used.
+        color_10: A colour of your own palette. No effect with another palette, or with fewer
+            colours. Its opacity is not used.
+        color_11: A colour of your own palette. No effect with another palette, or with fewer
+            colours. Its opacity is not used.
+        color_12: A colour of your own palette. No effect with another palette, or with fewer
+            colours. Its opacity is not used.
+        color_13: A colour of your own palette. No effect with another palette, or with fewer
+            colours. Its opacity is not used.
+        color_14: A colour of your own palette. No effect with another palette, or with fewer
+            colours. Its opacity is not used.
+        color_15: A colour of your own palette. No effect with another palette, or with fewer
+            colours. Its opacity is not used.
+        color_16: A colour of your own palette. No effect with another palette, or with fewer
+            colours. Its opacity is not used.
+        fit: Brings black and white to the darkest and lightest colour of the palette: 0 leaves
+            tones as they are. Share of the way from lightness 0..100 to that of the palette. 0 to
+            1.
+        dither: How tones between two colours are drawn: as flat areas, in a woven pattern, or as
+            even grain. Bayer's matrix of 8 x 8 (1973), or blue noise of 32 x 32 by void and cluster
+            (Ulichney 1993). The pattern stays on the screen.
+        dither_size: Size of the dots of the dither. A pixel of what is rendered at least. 1 to 64
+            px.
+        spread: How far dither reaches from where two colours meet: 1 mixes all tones, 0 leaves hard
+            borders. Factor on the thresholds about their middle. 0 to 1.
+        smoothing: How much the picture is smoothed before, so that areas are clean: 0 leaves all of
+            its grain. 1 less the `detail` of other styles; 0 smooths nothing, at no cost. 0 to 1.
+        abstraction: How colours are flattened: along the edges, along flowing lines, or in all
+            directions alike. Bilateral filter: across and along the local orientation (3.4), or
+            along stream lines (3.5), whose own scales then grow with `sigma_d` / 3 and `sigma_r` /
+            4.25; or without regard to it, by the full window (3.2) or along rows and then columns
+            (3.3).
+        n_a: How often the colours are smoothed: more rounds give flatter areas. Bilateral
+            iterations (n_a). 0 to 16.
+        sigma_d: How far colours are smoothed over what is around them. Spatial standard deviation
+            of the bilateral filter. 0.1 to 20 px.
+        sigma_r: How different colours may be and still be smoothed into one. Standard deviation of
+            the bilateral filter in range, CIELAB units. 0.1 to 200.
+        steadiness: How calm moving pictures are: neighbouring frames are averaged along the motion.
+            0 is off, 0.5 suits most shots. How much neighbouring frames count, carried here along
+            the motion of things: 0 leaves each frame alone, 0.5 is for sequences, 1 lets all frames
+            of the window count alike. 0 to 1.
+        window: Neighbouring frames that count, to each side. They count as far as they and the
+            motion from them are known. 0 to 8.
+        mix: Blends the result with the picture: 0 leaves the picture as it was, 1 shows the result
+            alone. 0 to 1.
+
+    The other arguments are those of `isophote.apply`.
+    """
 def quantize_luminance(
     image: Any,
     /,

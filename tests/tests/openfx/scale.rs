@@ -12,8 +12,8 @@ use isophote_tests::ofx::state::Behaviour;
 pub const SIDE: i32 = 192;
 /// Least agreement of a proxy, in decibels.
 const LEAST: f64 = 40.0;
-/// By lines alone, which stand and fall with what is around them, by strokes of a brush with borders that are lines, and by
-/// shocks, which decide for one side of an edge.
+/// By lines alone, which stand and fall with what is around them, by strokes of a brush with borders that are lines, by
+/// shocks, which decide for one side of an edge, and by areas of a palette, whose borders are as crisp as pixels.
 const LEAST_OF_LINES: f64 = 32.0;
 /// By strokes of a pen and hatches, whose edges are as crisp as pixels.
 const LEAST_OF_MARKS: f64 = 26.0;
@@ -80,7 +80,7 @@ pub fn half_size_looks_like_full_size_made_smaller(binary: &Binary, effect: Expe
     let least = match effect.node.id {
         "halftone" => LEAST_OF_SCREENS,
         "ink" => LEAST_OF_MARKS,
-        "blueprint" | "oil_paint" | "coherent" => LEAST_OF_LINES,
+        "blueprint" | "oil_paint" | "coherent" | "palette" => LEAST_OF_LINES,
         _ => LEAST,
     };
     assert!(psnr >= least, "{psnr:.1} dB");

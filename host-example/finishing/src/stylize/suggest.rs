@@ -7,11 +7,12 @@ use isophote_loader::catalogue::Node;
 use isophote_loader::preset::LOOK;
 
 /// Words of artists and of other programs, with the style, the look or the medium that comes nearest.
-pub const WORDS: [(&str, &str); 68] = [
+pub const WORDS: [(&str, &str); 75] = [
     ("abstract", "painting"),
     ("acrylic", "painting"),
     ("anime", "cartoon"),
     ("aquarelle", "watercolor"),
+    ("bayer", "palette"),
     ("ben_day", "halftone"),
     ("blur", "gaussian"),
     ("canny", "edge_detector"),
@@ -28,6 +29,8 @@ pub const WORDS: [(&str, &str); 68] = [
     ("cross_hatching", "ink"),
     ("cyanotype", "blueprint"),
     ("denoise", "bilateral"),
+    ("dither", "palette"),
+    ("dithering", "palette"),
     ("dog", "difference_of_gaussians"),
     ("dots", "halftone"),
     ("drawing", "pencil"),
@@ -40,6 +43,7 @@ pub const WORDS: [(&str, &str); 68] = [
     ("hatching", "ink"),
     ("impressionism", "painting"),
     ("impressionist", "painting"),
+    ("indexed", "palette"),
     ("lic", "line_integral_convolution"),
     ("line_art", "ink"),
     ("line_drawing", "ink"),
@@ -60,8 +64,11 @@ pub const WORDS: [(&str, &str); 68] = [
     ("paint", "painting"),
     ("painterly", "painting"),
     ("pen", "ink"),
+    ("pixel_art", "palette"),
+    ("pixelart", "palette"),
     ("poster", "cartoon"),
     ("posterize", "quantize_luminance"),
+    ("retro", "palette"),
     ("riso", "look:two_colour_riso"),
     ("screen_print", "halftone"),
     ("screentone", "halftone"),

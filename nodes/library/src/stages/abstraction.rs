@@ -78,7 +78,16 @@ impl Abstraction {
 
     /// The same with a `sigma_r` of `tolerance` times that.
     fn tolerant(scope: &Scope<'_>, tolerance: f32) -> Self {
-        let [d, r] = detail_factors(scope.float("detail"));
+        Self::scaled(scope, scope.float(DETAIL.id), tolerance)
+    }
+
+    /// The values of `advanced`, scaled by a detail of 0..=1 that is no parameter.
+    pub(crate) fn with_detail(scope: &Scope<'_>, detail: f32) -> Self {
+        Self::scaled(scope, detail, 1.0)
+    }
+
+    fn scaled(scope: &Scope<'_>, detail: f32, tolerance: f32) -> Self {
+        let [d, r] = detail_factors(detail);
         let (sigma_d, sigma_r) = (scope.float("sigma_d") * d, scope.float("sigma_r") * r * tolerance);
         let isotropic = |kernel| {
             let options = Options { sigma_d, sigma_r, cutoff: bilateral::CUTOFF.default_float() };
@@ -134,6 +143,15 @@ pub(crate) fn steady_regions(scope: &mut Scope<'_>, options: &TensorOptions) -> 
 /// The same of the frame by itself, where `sigma_r` is `tolerance` times what the parameters say.
 pub(crate) fn regions(scope: &mut Scope<'_>, options: &TensorOptions, tolerance: f32) -> [ImageId; 2] {
     let abstraction = Abstraction::tolerant(scope, tolerance);
+    regions_by(scope, options, &abstraction)
+}
+
+/// The same by a filter of its own.
+pub(crate) fn regions_by(
+    scope: &mut Scope<'_>,
+    options: &TensorOptions,
+    abstraction: &Abstraction,
+) -> [ImageId; 2] {
     let n_a = scope.int(N_A.id);
     let color = scope.required("color");
     let tensors = structure_tensor::of_color(scope.plan, color, options);
