@@ -96,7 +96,9 @@ fn whatever_follows_an_orientation_is_bent() {
     let mut bent = 0;
     for spec in isophote::registry::nodes().iter().filter(|n| n.has_mix() && n.reads_colour_alone()) {
         let mut graph = Graph::single(spec.id).unwrap();
-        let follows = spec.inputs.iter().any(|p| p.id == "tensor") || spec.group == "styles";
+        // Those that smooth the picture along its structure do, too.
+        let smooths = ["palette", "toon_shading"].contains(&spec.id);
+        let follows = smooths || spec.inputs.iter().any(|p| p.id == "tensor") || spec.group == "styles";
         if spec.id == "mean_curvature_flow" {
             graph.set_text(graph.node(0).unwrap(), "constraint", "1").unwrap();
         }

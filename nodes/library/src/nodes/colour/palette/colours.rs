@@ -80,7 +80,7 @@ const GRAPHICS_CARD: [u32; MOST] = {
     let mut at = 0;
     while at < MOST {
         let bits = at as u32;
-        colours[at] = ((bits >> 4) * 0x55) << 16 | ((bits >> 2 & 3) * 0x55) << 8 | (bits & 3) * 0x55;
+        colours[at] = (((bits >> 4) * 0x55) << 16) | (((bits >> 2 & 3) * 0x55) << 8) | ((bits & 3) * 0x55);
         at += 1;
     }
     colours
