@@ -341,20 +341,31 @@ impl Renderer {
         }
     }
 
+    /// Begins a pass over the scene from the camera, whose depth nothing reads afterwards.
+    fn begin<'e>(
+        &self,
+        encoder: &'e mut wgpu::CommandEncoder,
+        label: &str,
+        colors: &[Option<wgpu::RenderPassColorAttachment<'_>>],
+        depth: &Target,
+    ) -> wgpu::RenderPass<'e> {
+        let mut pass = encoder.begin_render_pass(&wgpu::RenderPassDescriptor {
+            label: Some(label),
+            color_attachments: colors,
+            depth_stencil_attachment: Some(layouts::depth(&depth.view, 0.0, wgpu::StoreOp::Discard)),
+            ..Default::default()
+        });
+        pass.set_bind_group(0, &self.buffers.bind_group, &[]);
+        pass.set_bind_group(3, &self.shadow_maps.group, &[]);
+        pass
+    }
+
     fn surface_pass(&self, encoder: &mut wgpu::CommandEncoder, scene: &Scene) {
         let targets = &self.targets;
         let mut color = layouts::cleared(&targets.multisampled.view, self.backdrop.clear);
         color.resolve_target = Some(&targets.radiance.view);
         color.ops.store = wgpu::StoreOp::Discard;
-        let depth = layouts::depth(&targets.multisampled_depth.view, 0.0, wgpu::StoreOp::Discard);
-        let mut pass = encoder.begin_render_pass(&wgpu::RenderPassDescriptor {
-            label: Some("surface"),
-            color_attachments: &[Some(color)],
-            depth_stencil_attachment: Some(depth),
-            ..Default::default()
-        });
-        pass.set_bind_group(0, &self.buffers.bind_group, &[]);
-        pass.set_bind_group(3, &self.shadow_maps.group, &[]);
+        let mut pass = self.begin(encoder, "surface", &[Some(color)], &targets.multisampled_depth);
         for &(_, index) in &self.visible.solid {
             let material = &scene.materials[scene.primitive(&scene.draws[index]).material];
             if material.alpha_mode == AlphaMode::Opaque {
@@ -375,16 +386,8 @@ impl Renderer {
 
     /// Colours of surfaces and their light, by samples as [`Renderer::surface_pass`] has them.
     fn layers_pass(&self, encoder: &mut wgpu::CommandEncoder, scene: &Scene, layers: &Layers) {
-        let attachments = layers.attachments();
-        let depth = layouts::depth(&self.targets.multisampled_depth.view, 0.0, wgpu::StoreOp::Discard);
-        let mut pass = encoder.begin_render_pass(&wgpu::RenderPassDescriptor {
-            label: Some("layers"),
-            color_attachments: &attachments,
-            depth_stencil_attachment: Some(depth),
-            ..Default::default()
-        });
-        pass.set_bind_group(0, &self.buffers.bind_group, &[]);
-        pass.set_bind_group(3, &self.shadow_maps.group, &[]);
+        let depth = &self.targets.multisampled_depth;
+        let mut pass = self.begin(encoder, "layers", &layers.attachments(), depth);
         for &(_, index) in self.visible.solid.iter().chain(&self.visible.blended) {
             self.draw(&mut pass, scene, index, Pass::Layers);
         }
@@ -407,15 +410,7 @@ impl Renderer {
     ) {
         let attachments: Vec<_> =
             targets.iter().map(|t| Some(layouts::cleared(&t.view, wgpu::Color::TRANSPARENT))).collect();
-        let depth = layouts::depth(&self.targets.geometry_depth.view, 0.0, wgpu::StoreOp::Discard);
-        let mut pass = encoder.begin_render_pass(&wgpu::RenderPassDescriptor {
-            label: Some("geometry"),
-            color_attachments: &attachments,
-            depth_stencil_attachment: Some(depth),
-            ..Default::default()
-        });
-        pass.set_bind_group(0, &self.buffers.bind_group, &[]);
-        pass.set_bind_group(3, &self.shadow_maps.group, &[]);
+        let mut pass = self.begin(encoder, "geometry", &attachments, &self.targets.geometry_depth);
         for &(_, index) in self.visible.solid.iter().chain(&self.visible.blended) {
             self.draw(&mut pass, scene, index, kind);
         }

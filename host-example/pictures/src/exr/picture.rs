@@ -225,18 +225,18 @@ pub fn guide(
     };
     // What a motion does not tell is unknown.
     let nothing = if source.guide.is_motion() { f32::NAN } else { 0.0 };
-    let over = |(part, channels): (usize, &[usize])| {
+    let layer = |(part, channels): (usize, &[usize])| {
         let Some(data) = decoded[part].as_ref() else { return Ok(None) };
         let plane = |channel: &usize| Ok::<_, ExrError>(numbers(&data.plane(*channel)?));
         let planes: Vec<Vec<f32>> = channels.iter().map(plane).collect::<Result<_, _>>()?;
         Ok::<_, ExrError>(Some(over(window, &planes, exr.parts()[part].window, nothing)))
     };
     let count = source.channels.len();
-    let Some(mut all) = over((source.part, &source.channels))? else { return Ok(None) };
+    let Some(mut all) = layer((source.part, &source.channels))? else { return Ok(None) };
     if !source.light.is_empty() {
         let mut sum = vec![0.0; all.len()];
         for (part, channels) in &source.light {
-            let Some(light) = over((*part, channels))? else { continue };
+            let Some(light) = layer((*part, channels))? else { continue };
             sum.iter_mut().zip(light).for_each(|(sum, light)| *sum += light);
         }
         all.iter_mut().zip(sum).for_each(|(colour, light)| *colour *= light);

@@ -68,7 +68,10 @@ impl Frame {
         let named = guides.into_iter().filter_map(|(name, pixels)| {
             let guide = Guide::ALL.into_iter().find(|guide| guide.id() == name)?;
             let there = working.there.as_ref().filter(|_| guide.is_colour());
-            let pixels = there.map_or(pixels.clone(), |there| there.apply(&pixels).0);
+            let pixels = match there {
+                Some(there) => there.apply(&pixels).0,
+                None => pixels,
+            };
             Some(GuideImage { guide, channels: pixels.channels(), data: pixels.to_f32() })
         });
         Ok(Self {

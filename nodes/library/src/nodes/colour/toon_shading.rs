@@ -48,11 +48,11 @@ pub static NODE: NodeSpec = NodeSpec {
         COLORS[3],
         COLORS[4],
         COLORS[5],
+        FROM[0],
         FROM[1],
         FROM[2],
         FROM[3],
         FROM[4],
-        FROM[5],
         HIGHLIGHT,
         HIGHLIGHT_SIZE,
         HIGHLIGHT_SOFTNESS,
@@ -62,11 +62,11 @@ pub static NODE: NodeSpec = NodeSpec {
         RIM_SOFTNESS,
         RIM_COLOR,
         abstraction::DETAIL,
+        SOFTNESS[0],
         SOFTNESS[1],
         SOFTNESS[2],
         SOFTNESS[3],
         SOFTNESS[4],
-        SOFTNESS[5],
         abstraction::ABSTRACTION,
         abstraction::N_A,
         abstraction::SIGMA_D,
@@ -104,14 +104,26 @@ const NORMAL: Port = Port {
     doc: "View-space normals, by which the rim is drawn.",
 };
 
-/// Ids and labels of the steps: colour, place and softness.
-const NAMES: [[[&str; 2]; 3]; STEPS] = [
-    [["color_1", "Step 1 colour"], ["at_1", ""], ["softness_1", ""]],
-    [["color_2", "Step 2 colour"], ["at_2", "Step 2 from"], ["softness_2", "Step 2 softness"]],
-    [["color_3", "Step 3 colour"], ["at_3", "Step 3 from"], ["softness_3", "Step 3 softness"]],
-    [["color_4", "Step 4 colour"], ["at_4", "Step 4 from"], ["softness_4", "Step 4 softness"]],
-    [["color_5", "Step 5 colour"], ["at_5", "Step 5 from"], ["softness_5", "Step 5 softness"]],
-    [["color_6", "Step 6 colour"], ["at_6", "Step 6 from"], ["softness_6", "Step 6 softness"]],
+/// Ids and labels of the colours of the steps.
+const COLOR_NAMES: [[&str; 2]; STEPS] = [
+    ["color_1", "Step 1 colour"],
+    ["color_2", "Step 2 colour"],
+    ["color_3", "Step 3 colour"],
+    ["color_4", "Step 4 colour"],
+    ["color_5", "Step 5 colour"],
+    ["color_6", "Step 6 colour"],
+];
+
+/// Borders between steps.
+const BORDERS: usize = STEPS - 1;
+
+/// Ids and labels of the borders: place and softness of the step above.
+const BORDER_NAMES: [[[&str; 2]; 2]; BORDERS] = [
+    [["at_2", "Step 2 from"], ["softness_2", "Step 2 softness"]],
+    [["at_3", "Step 3 from"], ["softness_3", "Step 3 softness"]],
+    [["at_4", "Step 4 from"], ["softness_4", "Step 4 softness"]],
+    [["at_5", "Step 5 from"], ["softness_5", "Step 5 softness"]],
+    [["at_6", "Step 6 from"], ["softness_6", "Step 6 softness"]],
 ];
 
 /// A cool shadow, a mid tone and a warm light; further steps are lights within the light.
@@ -123,34 +135,34 @@ const TINTS: [[f32; 4]; STEPS] = [
     [1.0, 1.0, 1.0, 1.0],
     [1.0, 1.0, 1.0, 1.0],
 ];
-const PLACES: [f32; STEPS] = [0.0, 0.55, 0.88, 1.0, 1.1, 1.2];
+const PLACES: [f32; BORDERS] = [0.55, 0.88, 1.0, 1.1, 1.2];
 
 /// Colours of the steps.
 const COLORS: [Param; STEPS] = [color(0), color(1), color(2), color(3), color(4), color(5)];
-/// Places of the steps; the first is wherever no other is.
-const FROM: [Param; STEPS] = [place(0), place(1), place(2), place(3), place(4), place(5)];
+/// Places of the borders: the first step is wherever no other is.
+const FROM: [Param; BORDERS] = [place(0), place(1), place(2), place(3), place(4)];
 /// Softness of each border beside that of all.
-const SOFTNESS: [Param; STEPS] = [soft(0), soft(1), soft(2), soft(3), soft(4), soft(5)];
+const SOFTNESS: [Param; BORDERS] = [soft(0), soft(1), soft(2), soft(3), soft(4)];
 
 const fn color(step: usize) -> Param {
-    let [id, label] = NAMES[step][0];
+    let [id, label] = COLOR_NAMES[step];
     Param::color(id, label, TINTS[step])
         .group(LOOK)
         .hint("Colour of this step; white leaves surfaces as they are. No effect with fewer steps.")
         .doc("Its opacity is not used.")
 }
 
-const fn place(step: usize) -> Param {
-    let [id, label] = NAMES[step][1];
-    Param::float(id, label, PLACES[step], [0.0, 2.0])
+const fn place(border: usize) -> Param {
+    let [id, label] = BORDER_NAMES[border][0];
+    Param::float(id, label, PLACES[border], [0.0, 2.0])
         .slider(0.0, 1.5)
         .group(LOOK)
         .hint("Light from which on this step is: 0 is none, 1 shows surfaces in their own colours. No effect with fewer steps.")
         .doc("CIELAB lightness over 100. A step that begins below the one before it covers that.")
 }
 
-const fn soft(step: usize) -> Param {
-    let [id, label] = NAMES[step][2];
+const fn soft(border: usize) -> Param {
+    let [id, label] = BORDER_NAMES[border][1];
     Param::float(id, label, 0.0, [0.0, 1.0])
         .slider(0.0, 0.5)
         .group(ADVANCED)
@@ -249,9 +261,9 @@ fn shading(scope: &Scope<'_>, has_albedo: bool) -> Shading {
     for (at, step) in steps.iter_mut().enumerate() {
         let [r, g, b, _] = scope.color(COLORS[at].id);
         step.tint = [r, g, b];
-        if at > 0 {
-            step.from = if at < count { scope.float(FROM[at].id) } else { NOWHERE };
-            step.softness = all + scope.float(SOFTNESS[at].id);
+        if let Some(border) = at.checked_sub(1) {
+            step.from = if at < count { scope.float(FROM[border].id) } else { NOWHERE };
+            step.softness = all + scope.float(SOFTNESS[border].id);
         }
     }
     if !has_albedo {
