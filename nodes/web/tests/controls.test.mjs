@@ -65,7 +65,9 @@ test("the Tab key comes to the controls first, and once to the cards, in their o
     const file = await readFile(new URL(`../../library/looks/${id}.json`, import.meta.url), "utf8");
     return JSON.parse(file).style;
   })))].filter((style) => typeof style === "string");
-  assert.deepEqual(cards.slice(looks.length, looks.length + styles.length), styles.map((style) => `style-${style}`));
+  // What a style draws with has a card behind the style's, so that not all cards between are styles.
+  const plain = styles.map((style) => `style-${style}`);
+  assert.deepEqual(cards.slice(looks.length).filter((card) => plain.includes(card)), plain);
   await page.close();
 });
 

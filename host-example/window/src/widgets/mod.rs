@@ -117,8 +117,10 @@ fn in_front(context: &Context, session: &mut Session) {
     help::show(context, session);
     session.follow_saving();
     leaving::show(context, session);
-    dialog::end(context);
+    // Looking for the control of the ring takes the focus from it where the pointer was pressed elsewhere in this pass: what gets
+    // the focus back comes after it.
     keyboard::ring(context);
+    dialog::end(context);
     drop::show(context, session);
 }
 
