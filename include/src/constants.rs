@@ -67,6 +67,9 @@ pub const ISOPHOTE_KIND_MOTION: u32 = 7;
 /// A point x, y, z of the undeformed object in the scene's units, and 1 where there is something: 4 channels; of 3, all
 /// but 0, 0, 0 is something.
 pub const ISOPHOTE_KIND_POSITION: u32 = 8;
+/// A control map: what an artist wants of places, 0.5 for no change; detail, width of lines, their amount, and strength of
+/// the medium. Its values are data, which no colour space changes.
+pub const ISOPHOTE_KIND_CONTROL: u32 = 9;
 
 /// Type of a parameter. One of `ISOPHOTE_PARAM_...`.
 pub type IsophoteParamKind = u32;

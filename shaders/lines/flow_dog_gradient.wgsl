@@ -20,13 +20,18 @@ struct Params {
     base: f32,
     /// Weight of the difference of Gaussians.
     edge: f32,
+    /// 1: the fourth channel of the field is a factor on both standard deviations and the cut-off.
+    scaled: u32,
 }
 
 #params
 #input lightness
-// (E - G, F), see orientation_field.
+// (E - G, F), see orientation_field, or with a factor, see control_field.
 #input field
 #output target_image rg32float
+
+// Longest reach, pixels.
+const MOST_REACH: f32 = 1024.0;
 
 // The interpolated sample k steps along the line.
 fn sample(line: Line, k: i32, inside: bool) -> vec2f {
@@ -41,12 +46,12 @@ struct Sums {
     wide: vec2f,
 }
 
-// Both Gaussians along the line, of which the pixel itself holds `middle`.
-fn gather(line: Line, middle: vec2f, inside: bool) -> Sums {
+// Both Gaussians along the line, of which the pixel itself holds `middle`, `factor` times as wide.
+fn gather(line: Line, middle: vec2f, factor: f32, inside: bool) -> Sums {
     let ds = sqrt(1.0 + line.slope * line.slope);
     // Loops take no parameter from memory that they can hold.
-    let rates = vec2f(params.narrow, params.wide);
-    let halfwidth = params.halfwidth;
+    let rates = vec2f(params.narrow, params.wide) / (factor * factor);
+    let halfwidth = min(params.halfwidth * factor, MOST_REACH);
     var sums = Sums(middle, middle);
     for (var k = 1; f32(k) * ds <= halfwidth; k++) {
         let d = f32(k) * ds;
@@ -63,16 +68,18 @@ fn main(@builtin(global_invocation_id) id: vec3u) {
     }
     covered_begin(lightness);
     let p = pixel(id);
-    let t = tensor_tangent(fetch(field, 1u, p));
+    let orientation = fetch(field, 1u, p);
+    let t = tensor_tangent(orientation);
+    let factor = select(1.0, orientation.w, params.scaled != 0u);
     // The gradient is (t.y, -t.x); its sign means nothing.
     let upright = abs(t.x) > abs(t.y);
     let line = line_through(p, 0u, !upright, select(-t.x / t.y, -t.y / t.x, upright));
     let middle = fetch(lightness, 0u, p).xy;
     var sums: Sums;
-    if line_inside(line, 0u, i32(params.halfwidth)) {
-        sums = gather(line, middle, true);
+    if line_inside(line, 0u, i32(min(params.halfwidth * factor, MOST_REACH))) {
+        sums = gather(line, middle, factor, true);
     } else {
-        sums = gather(line, middle, false);
+        sums = gather(line, middle, factor, false);
     }
     let u = dog_of_sums(sums.narrow, sums.wide, params.base, params.edge);
     textureStore(target_image, vec2i(id.xy), vec4f(u * middle.y, middle.y, 0.0, 0.0));

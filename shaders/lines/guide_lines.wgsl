@@ -24,11 +24,13 @@ struct Params {
     steps: i32,
     /// Bit 0: normal, bit 1: depth, bit 2: object id are there.
     guides: u32,
+    /// 1: the fourth channel of the field is a factor on the widths.
+    scaled: u32,
 }
 
 #params
 #input response
-// (E - G, F), see orientation_field.
+// (E - G, F), see orientation_field, or with a factor, see control_field.
 #input field
 #input normal, depth, object_id
 #output target_image rg32float
@@ -101,13 +103,17 @@ fn main(@builtin(global_invocation_id) id: vec3u) {
         return;
     }
     let p = pixel(id);
-    let t = tensor_tangent(fetch(field, 1u, p));
+    let orientation = fetch(field, 1u, p);
+    let t = tensor_tangent(orientation);
+    let factor = select(1.0, orientation.w, params.scaled != 0u);
     let upright = abs(t.x) > abs(t.y);
     let slope = select(-t.x / t.y, -t.y / t.x, upright);
     let ds = sqrt(1.0 + slope * slope);
 
     // Breaks between pixels k and k + 1 along the line; depth looks one further on either side.
-    let first = -params.steps;
+    let halfwidth = max(params.halfwidth.x, params.halfwidth.y);
+    let steps = select(params.steps, min(i32(halfwidth * factor + 0.5), params.steps), params.scaled != 0u);
+    let first = -steps;
     let start = place(p, upright, first, slope);
     var normal_here = vec3f(0.0);
     var id_here = 0.0;
@@ -130,7 +136,7 @@ fn main(@builtin(global_invocation_id) id: vec3u) {
     var wide = vec4f(0.0);
     var narrow_weights = vec2f(0.0);
     var wide_weights = vec2f(0.0);
-    for (var k = first; k < params.steps; k++) {
+    for (var k = first; k < steps; k++) {
         let next = place(p, upright, k + 1, slope);
         var found = vec4f(0.0);
         if (params.guides & 1u) != 0u {
@@ -153,7 +159,7 @@ fn main(@builtin(global_invocation_id) id: vec3u) {
             found.w = select(0.0, 1.0, id_next != id_here);
             id_here = id_next;
         }
-        let d = (f32(k) + 0.5) * ds;
+        let d = (f32(k) + 0.5) * ds / factor;
         let near = abs(vec2f(d)) <= params.halfwidth;
         let n = select(vec2f(0.0), exp(params.narrow * d * d), near);
         let w = select(vec2f(0.0), exp(params.wide * d * d), near);
@@ -164,7 +170,9 @@ fn main(@builtin(global_invocation_id) id: vec3u) {
     }
     let ridge = max(narrow / narrow_weights.xyyy - wide / wide_weights.xyyy, vec4f(0.0));
     let outline = max(max(ridge.y, ridge.z), ridge.w);
-    let strength = max(params.amount.x * ridge.x, params.amount.y * outline);
+    // A lone break is the fainter the wider it is smoothed.
+    let evened = select(sqrt(factor), factor, factor >= 1.0);
+    let strength = evened * max(params.amount.x * ridge.x, params.amount.y * outline);
     let v = fetch(response, 0u, p).xy;
     textureStore(target_image, vec2i(id.xy), vec4f(v.x - strength * v.y, v.y, 0.0, 0.0));
 }

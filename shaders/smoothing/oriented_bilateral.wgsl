@@ -18,6 +18,8 @@ struct Params {
     tangential: u32,
     /// Range weights, 0: after the interpolation; 1: before it (3.9); 2: of the nearest pixel.
     sampling: u32,
+    /// 1: the fourth channel of the tensors is a factor on `sigma_r`.
+    scaled: u32,
 }
 
 #params
@@ -90,11 +92,12 @@ fn main(@builtin(global_invocation_id) id: vec3u) {
     let steps = i32((params.cutoff * scale + 1e-3) * abs(major));
 
     let sigma_d = params.sigma_d * scale * abs(major);
+    let sigma_r = params.sigma_r * select(1.0, tensor.w, params.scaled != 0u);
     let origin = fetch(source, 0u, p);
     let w = Weighting(
         origin.rgb,
         -0.72134752 / max(sigma_d * sigma_d, 1e-6),
-        -0.72134752 / max(params.sigma_r * params.sigma_r, 1e-6),
+        -0.72134752 / max(sigma_r * sigma_r, 1e-6),
         params.sampling,
     );
     let first = premultiply(origin);

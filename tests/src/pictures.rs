@@ -194,6 +194,11 @@ pub fn field(kind: ImageKind, width: u32, height: u32) -> Image {
             let strength = if empty(x, y) { 0.0 } else { random.unit() as f32 };
             [random.unit() as f32, random.unit() as f32, 0.0, strength]
         }),
+        // Some places that nobody has touched.
+        ImageKind::Control => from_fn(width, height, |x, y| {
+            let mut v = || if empty(x, y) { 0.5 } else { random.unit() as f32 };
+            [v(), v(), v(), v()]
+        }),
         ImageKind::ObjectId => {
             from_fn(width, height, |x, y| [if empty(x, y) { 0.0 } else { (1 + x / 13 + 7 * (y / 9)) as f32 }])
         }

@@ -126,6 +126,8 @@ guides! {
     Diffuse diffuse ("Diffuse light", Color, 9, Some(8)),
     /// Light that surfaces mirror: highlights and reflections, in the picture's space.
     Specular specular ("Specular light", Color, 10, Some(9)),
+    /// A control map, 0.5 for no change: detail, width of lines, their amount, and strength of the medium.
+    Control control ("Control", Control, 11, Some(10)),
 }
 
 impl GraphInput {

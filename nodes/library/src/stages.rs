@@ -10,6 +10,7 @@ pub(crate) mod abstraction;
 pub(crate) mod anisotropic_kuwahara;
 pub(crate) mod bilateral;
 pub(crate) mod coherence_enhancing;
+pub(crate) mod control;
 pub(crate) mod difference_of_gaussians;
 pub(crate) mod flow_bilateral;
 pub(crate) mod flow_dog;

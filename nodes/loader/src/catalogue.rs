@@ -72,6 +72,8 @@ pub enum Kind {
     Motion,
     /// Points in space.
     Position,
+    /// What an artist wants of places.
+    Control,
     /// Something that this program does not know.
     Other,
 }
@@ -88,6 +90,7 @@ impl Kind {
             c::ISOPHOTE_KIND_FLOW => Self::Flow,
             c::ISOPHOTE_KIND_MOTION => Self::Motion,
             c::ISOPHOTE_KIND_POSITION => Self::Position,
+            c::ISOPHOTE_KIND_CONTROL => Self::Control,
             _ => Self::Other,
         }
     }
@@ -109,6 +112,7 @@ impl Kind {
             Self::Flow => "flow map",
             Self::Motion => "motion",
             Self::Position => "position",
+            Self::Control => "control map",
             Self::Other => "something unknown",
         }
     }

@@ -224,6 +224,7 @@ impl By {
             | ImageKind::Normal
             | ImageKind::Scalar
             | ImageKind::Tensor
+            | ImageKind::Control
             | ImageKind::Flow => Self::Mean,
         }
     }

@@ -33,6 +33,9 @@ pub enum ImageKind {
     Motion,
     /// Point x, y, z of the undeformed object, scene units, and validity.
     Position,
+    /// What an artist wants of places, 0.5 in each channel for no change. Its values are data, which no colour space changes
+    /// and nothing multiplies.
+    Control,
 }
 
 impl ImageKind {
@@ -45,6 +48,7 @@ impl ImageKind {
             Self::Normal => "normal",
             Self::Depth => "depth",
             Self::ObjectId => "object_id",
+            Self::Control => "control",
             Self::Flow => "flow",
             Self::Motion => "motion",
             Self::Position => "rest_position",
@@ -54,7 +58,7 @@ impl ImageKind {
     /// Values a pixel.
     pub const fn channels(self) -> u32 {
         match self {
-            Self::Color | Self::Tensor | Self::Normal | Self::Flow | Self::Position => 4,
+            Self::Color | Self::Tensor | Self::Normal | Self::Control | Self::Flow | Self::Position => 4,
             Self::Motion => 2,
             Self::Scalar | Self::Depth | Self::ObjectId => 1,
         }
@@ -127,6 +131,15 @@ pub const FLOW: Port = Port {
     doc: "A flow map (see `flow_map`) that bends the orientation which the node follows, if it follows any.",
 };
 
+/// Map by which an artist directs places of a picture; every style has it, and nodes that list it.
+pub const CONTROL: Port = Port {
+    id: "control",
+    kind: ImageKind::Control,
+    optional: true,
+    doc: "A control map, of which 0.5 changes nothing: red is detail, green the width of lines, blue their amount, 0 for none, \
+          and alpha the strength of marks and paint, as far as the node has any. Each is a factor of 1/4 to 4.",
+};
+
 /// Knowledge that a node which is steady over time has of its frames.
 const TIME_PORTS: [Port; 4] = [
     Port {
@@ -178,7 +191,7 @@ impl NodeSpec {
         self.own_params.iter().chain(common)
     }
 
-    /// All inputs: the node's own, then `mask` and `flow` and those of the group `time` where they apply.
+    /// All inputs: the node's own, then `mask`, `flow`, those of the group `time`, and `control`, where they apply.
     pub fn ports(&self) -> impl Iterator<Item = &'static Port> + use<> {
         static COMMON: [Port; 2] = [MASK, FLOW];
         static TIME: [Port; 4] = TIME_PORTS;
@@ -186,7 +199,9 @@ impl NodeSpec {
         let time: &'static [Port] = if self.is_steady() { &TIME } else { &[] };
         let own = self.inputs;
         let new = move |port: &&Port| own.iter().all(|p| p.id != port.id);
-        own.iter().chain(common).chain(time.iter().filter(new))
+        static DIRECTION: [Port; 1] = [CONTROL];
+        let direction: &'static [Port] = if self.group == "styles" { &DIRECTION } else { &[] };
+        own.iter().chain(common).chain(time.iter().filter(new)).chain(direction)
     }
 
     /// True for nodes that carry what they have found from frame to frame.

@@ -6,6 +6,7 @@ use crate::kernels::colour::rgb_to_lab;
 use crate::kernels::smoothing::bilateral::Options;
 use crate::kernels::structure::orientation_field;
 use crate::stages::bilateral::{self, Kernel};
+use crate::stages::control::{Control, Directed};
 use crate::stages::steady::{Agreement, COLOUR_AGREEMENT, steadied};
 use crate::stages::tensor_options::TensorOptions;
 use crate::stages::{ADVANCED, LOOK, flow_bilateral, flow_map, oriented_bilateral, structure_tensor};
@@ -115,19 +116,20 @@ impl Abstraction {
         }
     }
 
-    /// A Lab image after `iterations`.
+    /// A Lab image after `iterations`, with more or less detail along the edges where `control` says so.
     pub(crate) fn apply(
         &self,
         plan: &mut PlanBuilder,
-        lab: ImageId,
-        tensor: ImageId,
+        [lab, tensor]: [ImageId; 2],
+        control: Control,
         iterations: i32,
     ) -> ImageId {
         (0..iterations).fold(lab, |lab, _| match self {
             Self::Oriented(passes) => {
                 // Nothing is elongated.
                 let field = orientation_field::pass(plan, tensor);
-                oriented_bilateral::iteration(plan, lab, field, passes)
+                let Directed { field, scaled } = control.detailed(plan, field);
+                oriented_bilateral::iteration(plan, lab, field, &passes.scaled(scaled))
             }
             Self::Flow(passes) => flow_bilateral::iteration(plan, lab, tensor, passes),
             Self::Isotropic(passes) => bilateral::iteration(plan, lab, passes),
@@ -157,7 +159,8 @@ pub(crate) fn regions_by(
     let tensors = structure_tensor::of_color(scope.plan, color, options);
     let tensors = flow_map::bent(scope, tensors);
     let lab = rgb_to_lab::pass(scope.plan, color, 1.0);
-    [abstraction.apply(scope.plan, lab, tensors, n_a), tensors]
+    let control = Control::of(scope);
+    [abstraction.apply(scope.plan, [lab, tensors], control, n_a), tensors]
 }
 
 /// Factors on (`sigma_d`, `sigma_r`) for `detail` 0..=1, 1 at the default.

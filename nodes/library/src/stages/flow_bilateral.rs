@@ -74,6 +74,7 @@ impl Default for Passes {
                 sigma_r: SIGMA_RG.default_float(),
                 sampling,
                 elongation: 0.0,
+                scaled: false,
             },
             flow: flow_bilateral::Options {
                 sigma_d: SIGMA_DT.default_float(),

@@ -9,6 +9,7 @@ use crate::kernels::lines::{
 };
 use crate::kernels::shared::edge_threshold::{Threshold, Xdog};
 use crate::kernels::structure::orientation_field;
+use crate::stages::control::{Control, Directed};
 use crate::stages::line_context::{Ground, LineContext};
 use crate::stages::line_width;
 use crate::stages::structure_tensor::of_color_and_guides;
@@ -79,6 +80,8 @@ pub(crate) struct Seen {
     pub lightness: ImageId,
     /// The same picture in CIELAB, where colours count.
     pub lab: Option<ImageId>,
+    /// Width and amount of lines by place; they count in the separable filter.
+    pub control: Control,
 }
 
 /// Kind of lines that guides draw.
@@ -133,10 +136,12 @@ impl FlowDog {
             Kernel::Separable => {
                 let seen = Seen { lightness: source, ..seen };
                 let response = self.across(plan, seen, field, guides, xdog);
+                let response = seen.control.numbered(plan, [response, source], xdog.base);
                 self.along(plan, response, field, &xdog)
             }
             Kernel::TwoDimensional => {
-                let marked = self.with_guides(plan, source, field, guides);
+                let directed = Directed { field, scaled: false };
+                let marked = self.with_guides(plan, source, directed, guides);
                 let options = flow_dog_two_dimensional::Options {
                     sigma_e: self.sigma_e,
                     k: self.k,
@@ -166,12 +171,18 @@ impl FlowDog {
             // Lightness is added to what the differences come to.
             own.base = 0.0;
         }
-        let options = flow_dog_gradient::Options { sigma: self.sigma_e, k: self.k, xdog: own };
-        let mut response = flow_dog_gradient::pass(plan, seen.lightness, field, &options);
+        let directed = seen.control.widened(plan, field, line_width::drawable(0.0) / self.sigma_e.max(1e-6));
+        let options = flow_dog_gradient::Options {
+            sigma: self.sigma_e,
+            k: self.k,
+            xdog: own,
+            scaled: directed.scaled,
+        };
+        let mut response = flow_dog_gradient::pass(plan, seen.lightness, directed.field, &options);
         if let Some(lab) = lab {
             let [a, b] = [0, 1].map(|axis| {
                 let channel = lab_channel::pass(plan, lab, axis);
-                flow_dog_gradient::pass(plan, channel, field, &options)
+                flow_dog_gradient::pass(plan, channel, directed.field, &options)
             });
             let params = colour_edges::Params { weight: self.colour };
             response = colour_edges::pass(plan, [response, a, b], &params);
@@ -180,7 +191,7 @@ impl FlowDog {
             let ground = Ground { lightness: seen.lightness, field, base, edge };
             response = self.context.weighed(plan, response, &ground);
         }
-        self.with_guides(plan, response, field, guides)
+        self.with_guides(plan, response, directed, guides)
     }
 
     /// Thresholds that give an edge image, which alone can darken the input of the next iteration; its lines are not faint.
@@ -223,7 +234,7 @@ impl FlowDog {
         &self,
         plan: &mut PlanBuilder,
         response: ImageId,
-        field: ImageId,
+        Directed { field, scaled }: Directed,
         guides: &Guides,
     ) -> ImageId {
         let guides = [guides.normal, guides.depth, guides.object_id];
@@ -234,6 +245,7 @@ impl FlowDog {
             sigmas: self.guided.map(|kind| kind.sigma),
             weights: self.guided.map(|kind| self.guide_weight * kind.strength),
             edge: self.xdog.edge,
+            scaled,
         };
         guide_lines::pass(plan, response, field, guides, &options)
     }

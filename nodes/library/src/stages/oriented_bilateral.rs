@@ -59,8 +59,17 @@ impl Default for Passes {
             sigma_r: range.default_float(),
             sampling: SAMPLING.default_option(),
             elongation: ANISOTROPY.default_float(),
+            scaled: false,
         };
         Self { gradient: pass(SIGMA_DG, SIGMA_RG), tangent: pass(SIGMA_DT, SIGMA_RT) }
+    }
+}
+
+impl Passes {
+    /// The same along fields whose fourth channel is a factor on `sigma_r`, where `scaled` says so.
+    pub(crate) fn scaled(mut self, scaled: bool) -> Self {
+        (self.gradient.scaled, self.tangent.scaled) = (scaled, scaled);
+        self
     }
 }
 

@@ -7,6 +7,7 @@ use crate::kernels::strokes::stroke_fade;
 use crate::kernels::strokes::stroke_paint::{self, Paint};
 use crate::kernels::strokes::stroke_points::{self, Anchor, Points};
 use crate::kernels::strokes::stroke_seeds::{self, Inputs, Strokes};
+use crate::stages::control::Control;
 use crate::stages::marks;
 use isophote_engine::ImageId;
 use std::f32::consts::PI;
@@ -130,12 +131,14 @@ fn layer(
     let apart = (4.0 * half_width * half_length / (PI * density)).sqrt();
     let seed = brush.seed.wrapping_add(number as u32 * 0x51ed_270b);
     let points = stroke_points::pass(scope.plan, subject.picture, anchor, &Points { apart, origin, seed });
+    let control = Control::of(scope);
+    let coarse = below.map(|(_, coarse)| control.contrasted(scope.plan, [subject.picture, coarse]));
     let inputs = Inputs {
         points,
         tensors: subject.tensors,
         picture: subject.picture,
         smooth,
-        coarse: below.map(|(_, coarse)| coarse),
+        coarse,
         ids: subject.ids,
     };
     let strokes = Strokes {

@@ -158,7 +158,7 @@ fn clips(effect: &Effect, general: bool) -> Vec<Described> {
             let components: &[&CStr] = match guide.kind() {
                 // One channel holds no vector, and three have no place for its strength.
                 ImageKind::Motion | ImageKind::Position => &COMPONENTS[..2],
-                ImageKind::Flow => &COMPONENTS[..1],
+                ImageKind::Control | ImageKind::Flow => &COMPONENTS[..1],
                 ImageKind::Color
                 | ImageKind::Scalar
                 | ImageKind::Tensor

@@ -321,8 +321,8 @@ impl<'h> Fetched<'h> {
         match input.kind() {
             ImageKind::Normal => self.channels >= 3,
             ImageKind::Position => self.channels >= 3 && is_float,
-            // Its strength is in alpha.
-            ImageKind::Flow => self.channels == 4,
+            // Strengths are in alpha.
+            ImageKind::Control | ImageKind::Flow => self.channels == 4,
             ImageKind::Color
             | ImageKind::Depth
             | ImageKind::ObjectId

@@ -12,7 +12,7 @@ use crate::kernels::simd::line_taps::{LineTaps, strips};
 use crate::kernels::simd::pixels::{BLOCK, Block, write};
 use isophote_engine::fearless_simd::{Simd, f32x8, i32x8, mask32x8, prelude::*};
 use isophote_engine::math::Elementary;
-use isophote_engine::{Band, Class, CpuPass, ImageId, PlanBuilder, Support, Tolerance};
+use isophote_engine::{Band, Class, CpuPass, ImageId, PlanBuilder, Support, Tolerance, View};
 
 crate::kernel!(flow_dog_gradient {
     cpu: |simd, pass, params, band| gradient(simd, pass, &params, band),
@@ -40,12 +40,17 @@ pub struct Options {
     pub k: f32,
     /// Weights.
     pub xdog: Xdog,
+    /// The fourth channel of the field is a factor on `sigma`, [`MOST`] at the most.
+    pub scaled: bool,
 }
 
-/// Response across the orientations of `field` (E - G, F) of (L alpha, alpha), as (u alpha, alpha), for standard
-/// deviations `sigma` and `k` `sigma` pixels.
+/// Largest factor of a [control map](super::super::structure::control_field).
+pub const MOST: f32 = 4.0;
+
+/// Response across the orientations of `field` (E - G, F), or (E - G, F, 0, factor), of (L alpha, alpha), as (u alpha,
+/// alpha), for standard deviations `sigma` and `k` `sigma` pixels.
 pub fn pass(plan: &mut PlanBuilder, lightness: ImageId, field: ImageId, options: &Options) -> ImageId {
-    let Options { sigma, k, xdog } = *options;
+    let Options { sigma, k, xdog, scaled } = *options;
     let halfwidth = halfwidth(sigma, k);
     let falloff = |sigma: f32| -0.5 / (sigma * sigma).max(1e-6);
     let params = Params {
@@ -54,16 +59,25 @@ pub fn pass(plan: &mut PlanBuilder, lightness: ImageId, field: ImageId, options:
         halfwidth,
         base: xdog.base,
         edge: xdog.edge,
+        scaled: scaled.into(),
     };
     // A step is at least one pixel long, and a sample reaches one pixel further across.
-    let support = Support::Pixels(halfwidth as u32 + 1);
+    let support = Support::Pixels(reach(&params) as u32 + 1);
     plan.pass(&KERNEL, &[lightness, field], &params, Class::Colour, support)
+}
+
+/// The most pixels that a step lies away.
+fn reach(params: &Params) -> i32 {
+    (params.halfwidth * if params.scaled != 0 { MOST } else { 1.0 }).min(MOST_REACH) as i32
 }
 
 /// Reach of the first pass, in pixels.
 pub fn halfwidth(sigma: f32, k: f32) -> f32 {
-    (PRECISION * k * sigma).min(1024.0)
+    (PRECISION * k * sigma).min(MOST_REACH)
 }
+
+/// Longest reach, pixels.
+const MOST_REACH: f32 = 1024.0;
 
 /// The line across the tangent through eight pixels.
 #[derive(Clone, Copy)]
@@ -103,8 +117,8 @@ impl<S: Simd> Across<S> {
 
     /// Steps to the cut-off: the last `k` for which `k` times the length of a step does not exceed it.
     #[inline(always)]
-    fn steps(&self, halfwidth: f32) -> f32x8<S> {
-        let (one, halfwidth) = (f32x8::splat(self.step.simd, 1.0), f32x8::splat(self.step.simd, halfwidth));
+    fn steps(&self, halfwidth: f32x8<S>) -> f32x8<S> {
+        let one = f32x8::splat(self.step.simd, 1.0);
         // The quotient is rounded.
         let steps = (halfwidth / self.step).floor() + one;
         let steps = (steps * self.step).simd_le(halfwidth).select(steps, steps - one);
@@ -125,7 +139,7 @@ struct Falloff<S: Simd> {
 impl<S: Simd> Falloff<S> {
     /// For steps of length `step` and the Gaussian exp(`exponent` d^2).
     #[inline(always)]
-    fn new(step: f32x8<S>, exponent: f32) -> Self {
+    fn new(step: f32x8<S>, exponent: f32x8<S>) -> Self {
         let exponent = step * step * exponent;
         let ratio = exponent.exp();
         Self { exponent, value: f32x8::splat(step.simd, 1.0), ratio, growth: ratio * ratio }
@@ -148,7 +162,7 @@ impl<S: Simd> Falloff<S> {
 
 #[inline(always)]
 fn gradient<S: Simd>(simd: S, pass: &CpuPass<'_>, params: &Params, band: &mut Band<'_>) {
-    let (radius, left) = (params.halfwidth as i32, band.window.x0);
+    let (radius, left) = (reach(params), band.window.x0);
     let mut lightness = LineTaps::default();
     for strip in strips(band, radius) {
         lightness.load2(simd, &pass.inputs[0], strip, radius);
@@ -157,12 +171,12 @@ fn gradient<S: Simd>(simd: S, pass: &CpuPass<'_>, params: &Params, band: &mut Ba
             let mut x = strip.x0;
             while x < strip.x1 {
                 let block = Block { x, y, len: BLOCK.min((strip.x1 - x) as usize) };
-                let orientation = block.read(simd, &pass.inputs[1]);
+                let (orientation, factor) = directed(simd, &block, &pass.inputs[1], params.scaled != 0);
                 let line = Across::new(simd, &block, orientation);
                 let response = if lightness.is_opaque() {
-                    differences::<S, true>(simd, &lightness, params, &block, &line)
+                    differences::<S, true>(&lightness, params, &block, &line, factor)
                 } else {
-                    differences::<S, false>(simd, &lightness, params, &block, &line)
+                    differences::<S, false>(&lightness, params, &block, &line, factor)
                 };
                 let at = 2 * (x - strip.x0) as usize;
                 write(response, &mut target[at..at + 2 * block.len]);
@@ -172,27 +186,40 @@ fn gradient<S: Simd>(simd: S, pass: &CpuPass<'_>, params: &Params, band: &mut Ba
     }
 }
 
+/// The orientations (E - G, F) of a block, and the factor on standard deviations, which is 1 where the field has none.
+#[inline(always)]
+pub fn directed<S: Simd>(simd: S, block: &Block, field: &View<'_>, scaled: bool) -> ([f32x8<S>; 2], f32x8<S>) {
+    if !scaled {
+        return (block.read(simd, field), f32x8::splat(simd, 1.0));
+    }
+    let [difference, f, _, factor] = block.read(simd, field);
+    ([difference, f], factor)
+}
+
 /// The responses of a block, and its coverage, which is 1 everywhere when `OPAQUE`.
 #[inline(always)]
 fn differences<S: Simd, const OPAQUE: bool>(
-    simd: S,
     lightness: &LineTaps,
     params: &Params,
     block: &Block,
     line: &Across<S>,
+    factor: f32x8<S>,
 ) -> [f32x8<S>; 2] {
+    let simd = factor.simd;
     let (zero, one) = (f32x8::splat(simd, 0.0), f32x8::splat(simd, 1.0));
     let at = [block.x, block.y];
     let [middle, alpha] = lightness.centres(simd, at);
     let (mut narrow, mut narrow_alpha, mut wide, mut wide_alpha) = (middle, alpha, middle, alpha);
-    let steps = line.steps(params.halfwidth);
+    let steps = line.steps((factor * params.halfwidth).at_most(MOST_REACH));
+    let squared = factor * factor;
+    let rates = [params.narrow, params.wide].map(|rate| f32x8::splat(simd, rate) / squared);
     // Lines along the other axis have no samples in a turn.
     for is_x in [true, false] {
         let along = if is_x { !line.upright } else { line.upright };
         if !along.any_true() {
             continue;
         }
-        let mut falloff = [Falloff::new(line.step, params.narrow), Falloff::new(line.step, params.wide)];
+        let mut falloff = [Falloff::new(line.step, rates[0]), Falloff::new(line.step, rates[1])];
         let mut k = 0;
         lightness.lines(at, is_x, along, line.slope, steps).for_steps(
             #[inline(always)]

@@ -13,7 +13,7 @@
 //!
 //! Cost: per step (12 sigma_e of them) up to three reads and two exponentials; four where the widths differ.
 
-use crate::kernels::lines::flow_dog_gradient::Across;
+use crate::kernels::lines::flow_dog_gradient::{Across, MOST, directed};
 pub use crate::kernels::shaders::guide_lines::Params;
 use crate::kernels::simd::pixels::{fetch1, fetch4, for_blocks, offsets, write};
 use isophote_engine::fearless_simd::{Simd, f32x8, i32x8, mask32x8, prelude::*};
@@ -55,6 +55,8 @@ pub struct Options {
     pub weights: [f32; 2],
     /// Weight of the difference of Gaussians in the response, tau or p.
     pub edge: f32,
+    /// The fourth channel of the field is a factor on `sigmas`, [`MOST`] at the most.
+    pub scaled: bool,
 }
 
 /// `response` (u alpha, alpha) with lines of strength `weights` where the guides, that is normal, depth
@@ -67,14 +69,15 @@ pub fn pass(
     guides: [Option<ImageId>; 3],
     options: &Options,
 ) -> ImageId {
-    let Options { sigmas, weights, edge } = *options;
+    let Options { sigmas, weights, edge, scaled } = *options;
     // A lone break is the fainter the wider it is smoothed.
     let evened = |sigma: f32| if sigma < 1.0 { sigma.sqrt() } else { sigma };
     let sigmas = sigmas.map(|sigma| sigma.min(100.0));
     let amount = [0, 1].map(|kind| AMOUNT * weights[kind] * edge * evened(sigmas[kind]));
     let falloff = |factor: f32| sigmas.map(|sigma| -0.5 / (factor * sigma * factor * sigma));
     let halfwidth = sigmas.map(|sigma| PRECISION * WIDE * sigma);
-    let steps = (halfwidth[0].max(halfwidth[1]) + 0.5) as i32;
+    let most = if scaled { MOST } else { 1.0 };
+    let steps = (halfwidth[0].max(halfwidth[1]) * most + 0.5) as i32;
     let params = Params {
         narrow: falloff(NARROW),
         wide: falloff(WIDE),
@@ -82,6 +85,8 @@ pub fn pass(
         amount,
         steps,
         guides: (0..3).map(|i| u32::from(guides[i].is_some()) << i).sum(),
+        scaled: scaled.into(),
+        padding: Default::default(),
     };
     // A guide that is not there is not read; any image may stand in for it.
     let [normal, depth, id] = guides.map(|guide| guide.unwrap_or(response));
@@ -97,8 +102,9 @@ fn breaks<S: Simd>(simd: S, pass: &CpuPass<'_>, params: &Params, band: &mut Band
         band,
         #[inline(always)]
         |block, target| {
-            let line = Across::new(simd, &block, block.read(simd, field));
-            let strength = strength(simd, [normal, depth, object_id], params, &line);
+            let (orientation, factor) = directed(simd, &block, field, params.scaled != 0);
+            let line = Across::new(simd, &block, orientation);
+            let strength = strength(simd, [normal, depth, object_id], params, &line, factor);
             let [u, alpha] = block.read(simd, response);
             write([u - strength * alpha, alpha], target);
         },
@@ -112,10 +118,18 @@ fn strength<S: Simd>(
     [normal, depth, object_id]: [&View<'_>; 3],
     params: &Params,
     line: &Across<S>,
+    factor: f32x8<S>,
 ) -> f32x8<S> {
     let (zero, one) = (f32x8::splat(simd, 0.0), f32x8::splat(simd, 1.0));
     let has = |bit: u32| params.guides & bit != 0;
-    let first = -params.steps;
+    let steps = if params.scaled == 0 {
+        params.steps
+    } else {
+        // Beyond the cut-off of a pixel weights are 0.
+        let halfwidth = params.halfwidth[0].max(params.halfwidth[1]);
+        ((factor.reduce_max() * halfwidth + 0.5) as i32).min(params.steps)
+    };
+    let first = -steps;
     let start = line.nearest(first);
     let mut normal_here = if has(1) { normals(simd, normal, start) } else { [zero; 3] };
     let mut id_here = if has(4) { ids(simd, object_id, start) } else { zero };
@@ -127,7 +141,7 @@ fn strength<S: Simd>(
     }
     let mut sums = [GuideSums::new(simd), GuideSums::new(simd)];
     let is_uniform = params.halfwidth[0] == params.halfwidth[1];
-    for k in first..params.steps {
+    for k in first..steps {
         let next = line.nearest(k + 1);
         let mut found = [zero; 4];
         if has(1) {
@@ -146,14 +160,16 @@ fn strength<S: Simd>(
             found[3] = id_next.simd_eq(id_here).select(zero, one);
             id_here = id_next;
         }
-        let d = line.step * (k as f32 + 0.5);
+        let d = line.step * (k as f32 + 0.5) / factor;
         let weights = weights(d, params, 0);
         let others = if is_uniform { weights } else { self::weights(d, params, 1) };
         sums[0].add([found[0], zero, zero], weights);
         sums[1].add([found[1], found[2], found[3]], others);
     }
     let [creases, outlines] = sums.map(GuideSums::ridge);
-    (creases * params.amount[0]).at_least(outlines * params.amount[1])
+    // A lone break is the fainter the wider it is smoothed.
+    let evened = factor.simd_ge(1.0).select(factor, factor.sqrt());
+    (creases * params.amount[0]).at_least(outlines * params.amount[1]) * evened
 }
 
 /// Weights of the narrower and of the wider Gaussian at a distance, of creases or outlines.

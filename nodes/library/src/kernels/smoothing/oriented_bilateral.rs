@@ -63,6 +63,8 @@ pub struct Options {
     pub sampling: Sampling,
     /// Elongation per unit of anisotropy; 0 for none.
     pub elongation: f32,
+    /// The fourth channel of the tensors is a factor on `sigma_r`.
+    pub scaled: bool,
 }
 
 /// Lines are cut at ceil(3 sigma_d) pixels (§ 3.4).
@@ -84,6 +86,7 @@ pub fn pass(
         elongation: options.elongation,
         tangential: direction as u32,
         sampling: options.sampling as u32,
+        scaled: options.scaled.into(),
     };
     plan.pass(&KERNEL, &[color, tensors], &params, Class::Colour, Support::Pixels(reach(&params) as u32))
 }
@@ -161,7 +164,7 @@ struct Row<'a> {
 #[derive(Clone, Copy)]
 struct Weights<S: Simd> {
     origin: [f32x8<S>; 4],
-    range: f32,
+    range: f32x8<S>,
     domain: f32x8<S>,
 }
 
@@ -217,7 +220,7 @@ impl Row<'_> {
         };
         let weights = Weights {
             origin,
-            range: -0.721_347_52 / (params.sigma_r * params.sigma_r).max(1e-6),
+            range: self.range(simd, i),
             domain: f32x8::splat(simd, -0.721_347_52)
                 / (sigma_d * sigma_d).at_least(f32x8::splat(simd, 1e-6)),
         };
@@ -239,6 +242,19 @@ impl Row<'_> {
             seen.select(sum[2] * n, origin[2]),
             alpha,
         ]
+    }
+
+    /// Exponents of the range weight per squared distance, of eight pixels.
+    #[inline(always)]
+    fn range<S: Simd>(&self, simd: S, i: usize) -> f32x8<S> {
+        const EXPONENT: f32 = -0.721_347_52;
+        let sigma = self.params.sigma_r;
+        if self.params.scaled == 0 {
+            return f32x8::splat(simd, EXPONENT / (sigma * sigma).max(1e-6));
+        }
+        let [.., factor] = read::<S, 4>(simd, &self.tensors[4 * i..]);
+        let sigma = factor * sigma;
+        f32x8::splat(simd, EXPONENT) / (sigma * sigma).at_least(1e-6)
     }
 
     /// Adds the taps of `lines` to the sums of colours and weights.
@@ -306,7 +322,7 @@ impl<S: Simd> Weights<S> {
             let [r, g, b] = colours[i];
             let (r, g, b) = (r - self.origin[0], g - self.origin[1], b - self.origin[2]);
             let square = b.mul_add(b, g.mul_add(g, r * r));
-            exponents[i] = square.mul_add(f32x8::splat(r.simd, self.range), domain);
+            exponents[i] = square.mul_add(self.range, domain);
         }
         exponents
     }

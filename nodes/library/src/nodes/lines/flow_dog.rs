@@ -3,10 +3,11 @@
 
 use crate::declare::choice::choice;
 use crate::declare::ports;
-use crate::declare::spec::{NodeSpec, Param, STEADINESS, Scope, WINDOW};
+use crate::declare::spec::{CONTROL, NodeSpec, Param, STEADINESS, Scope, WINDOW};
 use crate::kernels::colour::{lightness, rgb_to_lab};
 use crate::kernels::lines::flow_dog_two_dimensional::Stepping;
 use crate::kernels::shared::stream::Integrator;
+use crate::stages::control::Control;
 use crate::stages::flow_dog::{
     DEPTH, FlowDog, Guided, Kernel, NORMAL, OBJECT_ID, SIGMA_M, Seen, guides, tensor,
 };
@@ -25,7 +26,7 @@ pub static NODE: NodeSpec = NodeSpec {
           Where normals, depth or object ids are given and `guide_weight` is above 0, lines are also \
           drawn where these break, along the same flow. 1 is paper, 0 is line.",
     section: "4.5",
-    inputs: &[ports::COLOR, ports::TENSOR, NORMAL, DEPTH, OBJECT_ID],
+    inputs: &[ports::COLOR, ports::TENSOR, NORMAL, DEPTH, OBJECT_ID, CONTROL],
     output: dog::EDGES,
     own_params: &[
         dog::SIGMA_E,
@@ -115,5 +116,5 @@ fn build(scope: &mut Scope<'_>) -> ImageId {
     });
     let lightness = lightness::pass(scope.plan, color);
     let lab = (lines.colour > 0.0).then(|| rgb_to_lab::pass(scope.plan, color, 1.0));
-    lines.edges(scope.plan, Seen { lightness, lab }, tensor, &guides)
+    lines.edges(scope.plan, Seen { lightness, lab, control: Control::of(scope) }, tensor, &guides)
 }

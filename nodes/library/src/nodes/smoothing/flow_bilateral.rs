@@ -38,6 +38,7 @@ fn build(scope: &mut Scope<'_>) -> ImageId {
             sigma_r: scope.float("sigma_rg"),
             sampling,
             elongation: 0.0,
+            scaled: false,
         },
         flow: flow_bilateral::Options {
             sigma_d: scope.float("sigma_dt"),

@@ -38,6 +38,7 @@ fn build(scope: &mut Scope<'_>) -> ImageId {
         sigma_r: scope.float(range),
         sampling: scope.option("sampling"),
         elongation: scope.float("anisotropy"),
+        scaled: false,
     };
     let passes =
         Passes { gradient: options("sigma_dg", "sigma_rg"), tangent: options("sigma_dt", "sigma_rt") };

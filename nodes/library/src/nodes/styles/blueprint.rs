@@ -7,6 +7,7 @@ use crate::kernels::colour::blueprint_paper::{self, Sheet};
 use crate::kernels::colour::composite_lines::{self, Params as Composite};
 use crate::kernels::colour::{lightness, rgb_to_lab};
 use crate::stages::abstraction::{self, Abstraction};
+use crate::stages::control::Control;
 use crate::stages::lines::{SHOW, Show};
 use crate::stages::steady::{Agreement, COLOUR_AGREEMENT, steadied};
 use crate::stages::{
@@ -86,9 +87,10 @@ fn build(scope: &mut Scope<'_>) -> ImageId {
         let tensor = flow_dog::tensor(scope, color, &guides);
         let tensor = flow_map::bent(scope, tensor);
         let lab = rgb_to_lab::pass(scope.plan, color, 1.0);
-        let smooth = abstraction.apply(scope.plan, lab, tensor, n_e);
+        let control = Control::of(scope);
+        let smooth = abstraction.apply(scope.plan, [lab, tensor], control, n_e);
         let lightness = lightness::pass_lab(scope.plan, smooth);
-        let seen = flow_dog::Seen { lightness, lab: Some(smooth) };
+        let seen = flow_dog::Seen { lightness, lab: Some(smooth), control };
         [smooth, flow.edges(scope.plan, seen, tensor, &guides)]
     });
     let line = scope.color("line_color");

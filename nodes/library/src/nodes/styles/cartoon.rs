@@ -8,6 +8,7 @@ use crate::kernels::colour::composite_lines::{self, Params as Composite};
 use crate::kernels::colour::{lab_to_rgb, lightness, rgb_to_lab};
 use crate::kernels::smoothing::line_integral_convolution::{self, Options as Lic};
 use crate::stages::abstraction::{self, Abstraction};
+use crate::stages::control::Control;
 use crate::stages::line_on_dark::{LINE_ON_DARK, OnDark};
 use crate::stages::steady::{Agreement, COLOUR_AGREEMENT, steadied};
 use crate::stages::tensor_options::Guides;
@@ -137,13 +138,14 @@ fn build(scope: &mut Scope<'_>) -> ImageId {
         let guides = flow_dog::guides(scope, guide_weight);
         let tensor = oriented(scope, guide_weight);
         let lab = rgb_to_lab::pass(scope.plan, color, 1.0);
+        let control = Control::of(scope);
         // The first iterations are those behind the lines: the plan records them once.
-        let smooth = abstraction.apply(scope.plan, lab, tensor, n_a);
-        let for_lines = abstraction.apply(scope.plan, lab, tensor, n_e);
+        let smooth = abstraction.apply(scope.plan, [lab, tensor], control, n_a);
+        let for_lines = abstraction.apply(scope.plan, [lab, tensor], control, n_e);
         let lightness = lightness::pass_lab(scope.plan, for_lines);
         let edges = match line_filter {
             LineFilter::Flow => {
-                let seen = flow_dog::Seen { lightness, lab: Some(for_lines) };
+                let seen = flow_dog::Seen { lightness, lab: Some(for_lines), control };
                 flow.edges(scope.plan, seen, tensor, &guides)
             }
             LineFilter::Isotropic => flow.isotropic(scope.plan, lightness),

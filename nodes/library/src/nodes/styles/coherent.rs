@@ -6,6 +6,7 @@ use crate::declare::value::Value;
 use crate::kernels::colour::quantize_luminance::{self, Steepness};
 use crate::kernels::colour::{lab_to_rgb, rgb_to_lab};
 use crate::stages::coherence_enhancing::{self as filter, Filter, Stepping, filtered};
+use crate::stages::control::Control;
 use crate::stages::{
     ADVANCED, LOOK, abstraction, quantization as levels, quantize_luminance as quantization, shock, tone,
     tones_by_area,
@@ -64,7 +65,9 @@ const SHARPNESS: Param = Param::float("sharpness", "Sharpness", 0.5, [0.0, 1.0])
 fn build(scope: &mut Scope<'_>) -> ImageId {
     let (filtered, tensor) = filtered(scope, of);
     let toned = toned(scope, filtered);
-    of(scope).finish(scope.plan, toned, tensor)
+    let finished = of(scope).finish(scope.plan, toned, tensor);
+    let color = scope.required("color");
+    Control::of(scope).kept(scope.plan, [color, finished])
 }
 
 /// The filter under the controls of artists.

@@ -11,6 +11,7 @@ use crate::kernels::colour::composite_lines::{self, Params as Composite};
 use crate::kernels::colour::halftone_screen::{self, Print, Shape};
 use crate::kernels::colour::{ink_separation, lightness, rgb_to_lab};
 use crate::stages::abstraction::{self, Abstraction};
+use crate::stages::control::Control;
 use crate::stages::steady::{Agreement, COLOUR_AGREEMENT, steadied};
 use crate::stages::tensor_options::Guides;
 use crate::stages::{
@@ -159,10 +160,11 @@ fn build(scope: &mut Scope<'_>) -> ImageId {
     let [smooth, edges] = steadied(scope, by, |scope| {
         let guides = flow_dog::guides(scope, guide_weight);
         let (smooth, lab, tensor) = smoothed(scope, &guides);
+        let control = Control::of(scope);
         // The first iterations are those behind the tones: the plan records them once.
-        let for_lines = Abstraction::of(scope).apply(scope.plan, lab, tensor, n_e);
+        let for_lines = Abstraction::of(scope).apply(scope.plan, [lab, tensor], control, n_e);
         let lightness = lightness::pass_lab(scope.plan, for_lines);
-        let seen = flow_dog::Seen { lightness, lab: Some(for_lines) };
+        let seen = flow_dog::Seen { lightness, lab: Some(for_lines), control };
         [smooth, flow.edges(scope.plan, seen, tensor, &guides)]
     });
     let print = printed(scope, smooth);
@@ -177,7 +179,8 @@ fn smoothed(scope: &mut Scope<'_>, guides: &Guides) -> (ImageId, ImageId, ImageI
     let tensor = flow_map::bent(scope, tensor);
     let lab = rgb_to_lab::pass(scope.plan, color, 1.0);
     let n_a = scope.int(abstraction::N_A.id);
-    (Abstraction::of(scope).apply(scope.plan, lab, tensor, n_a), lab, tensor)
+    let control = Control::of(scope);
+    (Abstraction::of(scope).apply(scope.plan, [lab, tensor], control, n_a), lab, tensor)
 }
 
 /// A Lab image on paper.

@@ -21,6 +21,7 @@ use crate::kernels::structure::solid_noise::Marks;
 use crate::kernels::structure::tensor_across;
 use crate::kernels::structure::tensor_display::least_significant;
 use crate::stages::abstraction::{self, Abstraction};
+use crate::stages::control::Control;
 use crate::stages::flow_dog::{self, FlowDog, Kernel, Seen};
 use crate::stages::line_context::LineContext;
 use crate::stages::line_on_dark::{MASSES_ON_DARK, MassesOnDark};
@@ -302,7 +303,13 @@ fn sheet(scope: &Scope<'_>, drawing: &Preset) -> Sheet {
 }
 
 /// Marks that say the tones of a Lab image, along a form.
-fn marked(scope: &mut Scope<'_>, drawing: &Preset, [lab, form]: [ImageId; 2]) -> ImageId {
+fn marked(scope: &mut Scope<'_>, drawing: &Preset, inputs: [ImageId; 2]) -> ImageId {
+    let marks = toned(scope, drawing, inputs);
+    Control::of(scope).marked(scope.plan, marks)
+}
+
+/// The same, as strong everywhere as the parameters say.
+fn toned(scope: &mut Scope<'_>, drawing: &Preset, [lab, form]: [ImageId; 2]) -> ImageId {
     let scale = scope.scale();
     let (along, deviation) = strokes(scope, form, drawing.stroke, 1.0);
     let rules = rules(scope, drawing, deviation);
@@ -357,9 +364,10 @@ fn found(scope: &mut Scope<'_>, drawing: &Preset, flow: &FlowDog) -> [ImageId; 3
     let tensor = flow_map::bent(scope, tensor);
     let lab = rgb_to_lab::pass(scope.plan, color, 1.0);
     let iterations = scope.int("n_e") + drawing.flattening;
-    let smooth = Abstraction::of(scope).apply(scope.plan, lab, tensor, iterations);
+    let control = Control::of(scope);
+    let smooth = Abstraction::of(scope).apply(scope.plan, [lab, tensor], control, iterations);
     let lightness = lightness::pass_lab(scope.plan, smooth);
-    let seen = Seen { lightness, lab: Some(smooth) };
+    let seen = Seen { lightness, lab: Some(smooth), control };
     [smooth, tensor, flow.edges(scope.plan, seen, tensor, &guides)]
 }
 

@@ -6,6 +6,7 @@ use crate::declare::spec::{HOLD, NodeSpec, Param, Port, RENEWAL, STEADINESS, Sco
 use crate::declare::value::Value;
 use crate::kernels::colour::lab_to_rgb;
 use crate::kernels::colour::paint_relief::{self, Relief};
+use crate::stages::control::Control;
 use crate::stages::strokes::{self, Brush, Subject};
 use crate::stages::tensor_options::TensorOptions;
 use crate::stages::{ADVANCED, LOOK, abstraction, flow_dog, tone};
@@ -162,7 +163,8 @@ fn build(scope: &mut Scope<'_>) -> ImageId {
             shine: scope.float("shine") * MOST_SHINE * scale,
             angle: scope.float("light_angle"),
         };
-        painted = paint_relief::pass(scope.plan, strokes, heights, &relief);
+        let thick = paint_relief::pass(scope.plan, strokes, heights, &relief);
+        painted = Control::of(scope).laid(scope.plan, [picture, thick]);
     }
     painted = tone::curve(scope, painted);
     let saturation = scope.float("saturation");

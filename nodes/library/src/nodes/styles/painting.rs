@@ -8,6 +8,7 @@ use crate::kernels::colour::{lab_to_rgb, rgb_to_lab};
 use crate::stages::anisotropic_kuwahara::{
     ALPHA, LEVELS, LIMIT_RANGE, P_D, P_S, Painting, RADIUS, TAU_V, TAU_W, Weights,
 };
+use crate::stages::control::Control;
 use crate::stages::generalized_kuwahara::{Q, SECTORS, THRESHOLD};
 use crate::stages::steady::steadied_picture;
 use crate::stages::{ADVANCED, LOOK, abstraction, flow_dog, tone};
@@ -94,6 +95,7 @@ fn build(scope: &mut Scope<'_>) -> ImageId {
     // Whatever lines weigh: the guides are all there is to say where things end.
     painting.guarded = Some(flow_dog::guides(scope, 1.0));
     let painted = painting.apply(scope.plan, color, tensor, scale);
+    let painted = Control::of(scope).kept(scope.plan, [color, painted]);
 
     let saturation = scope.float("saturation");
     if saturation == tone::SATURATION.default_float() && tone::is_neutral(scope) {

@@ -9,6 +9,7 @@ use crate::kernels::colour::{keep_detail, lab_to_rgb};
 use crate::kernels::smoothing::gaussian_blur;
 use crate::kernels::smoothing::line_integral_convolution::{self, Options as Lic};
 use crate::kernels::smoothing::wobble::{self, Options as Wobble};
+use crate::stages::control::Control;
 use crate::stages::steady::{Agreement, COLOUR_AGREEMENT, steadied};
 use crate::stages::tensor_options::TensorOptions;
 use crate::stages::{
@@ -176,7 +177,8 @@ fn build(scope: &mut Scope<'_>) -> ImageId {
         backruns: scope.float("backruns") * MOST_BACKRUNS,
     };
     let clouds = marks::clouds(scope, CLOUDS);
-    watercolor_wash::pass(scope.plan, &drawn, clouds, &wash)
+    let painted = watercolor_wash::pass(scope.plan, &drawn, clouds, &wash);
+    Control::of(scope).diluted(scope.plan, painted)
 }
 
 /// A length times the size of marks, as far as filters reach whose work grows with it.
@@ -204,6 +206,7 @@ fn patches(scope: &mut Scope<'_>) -> [ImageId; 2] {
     let simple = morphology::open(scope.plan, closed, radius);
     let [_, factor] = abstraction::detail_factors(scope.float("detail"));
     let painted = keep_detail::pass(scope.plan, simple, rgb, PAINTED.map(|difference| difference * factor));
+    let painted = Control::of(scope).kept(scope.plan, [rgb, painted]);
     let smooth = Lic { sigma: scope.float("sigma_a"), ..lic::options() };
     [smoothed, line_integral_convolution::pass(scope.plan, painted, tensors, &smooth)]
 }
