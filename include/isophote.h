@@ -180,6 +180,10 @@ extern "C" {
 // but 0, 0, 0 is something.
 #define ISOPHOTE_KIND_POSITION 8
 
+// A control map: what an artist wants of places, 0.5 for no change; detail, width of lines, their amount, and strength of
+// the medium. Its values are data, which no colour space changes.
+#define ISOPHOTE_KIND_CONTROL 9
+
 // A number.
 #define ISOPHOTE_PARAM_FLOAT 0
 
@@ -274,6 +278,10 @@ extern "C" {
 // Bit of `IsophoteRequest::guides` for `specular`: light that surfaces mirror: highlights and reflections, in the
 // picture's space.
 #define ISOPHOTE_GUIDE_SPECULAR 1024
+
+// Bit of `IsophoteRequest::guides` for `control`: a control map, 0.5 for no change: detail, width of lines, their
+// amount, and strength of the medium.
+#define ISOPHOTE_GUIDE_CONTROL 2048
 
 // The host binds its own texture, which shows the window of the picture that the plan names.
 #define ISOPHOTE_ROLE_INPUT 0

@@ -152,6 +152,9 @@ pub const ISOPHOTE_GUIDE_DIFFUSE: u32 = 512;
 /// Bit of `IsophoteRequest::guides` for `specular`: light that surfaces mirror: highlights and reflections, in the
 /// picture's space.
 pub const ISOPHOTE_GUIDE_SPECULAR: u32 = 1024;
+/// Bit of `IsophoteRequest::guides` for `control`: a control map, 0.5 for no change: detail, width of lines, their
+/// amount, and strength of the medium.
+pub const ISOPHOTE_GUIDE_CONTROL: u32 = 2048;
 // end of guides
 
 /// Purpose of a texture of a plan. One of `ISOPHOTE_ROLE_...`.

@@ -1,4 +1,4 @@
-//! Guides: the program knows all that the library has, and painted flow maps bend what styles draw.
+//! Guides: the program knows all that the library has, painted flow maps bend what styles draw, and control maps direct it.
 
 mod support;
 
@@ -73,6 +73,46 @@ fn a_flow_map_bends_what_a_style_draws() {
         .expect("the style can be computed");
     let Samples::U8(wanted) = result.samples() else { panic!("bytes were asked for") };
     assert_eq!(*wanted, read("bent.png"));
+}
+
+#[test]
+fn a_control_map_directs_places_and_neutral_ones_change_nothing() {
+    let folder = folder();
+    let at = |name: &str| folder.path().join(name);
+    let map = |name: &str, right: [u8; 4]| {
+        let half = |x, _| Rgba(if x < SIZE.0 / 2 { [128, 127, 128, right[3]] } else { right });
+        RgbaImage::from_fn(SIZE.0, SIZE.1, half).save(at(name)).expect("it can be written");
+    };
+    picture(SIZE.0, SIZE.1).save(at("in.png")).expect("as above");
+    let styled = |style: &str, control: &str| {
+        let run = [style, "in.png", "out.png", "--control", control, "--force"];
+        let plain = [style, "in.png", "out.png", "--force"];
+        succeeds(&mut apply(folder.path(), if control.is_empty() { &plain } else { &run }));
+        image::open(at("out.png")).expect("a picture was written").to_rgb8()
+    };
+    // Nobody has painted the alpha of an opaque file.
+    map("neutral.png", [127, 128, 127, 255]);
+    map("no_lines.png", [128, 128, 0, 255]);
+    map("faint.png", [128, 128, 128, 0]);
+    for style in ["cartoon", "watercolor"] {
+        assert_eq!(styled(style, ""), styled(style, "neutral.png"), "{style}");
+    }
+    let (plain, directed) = (styled("cartoon", ""), styled("cartoon", "no_lines.png"));
+    let differing = |from: u32, to: u32| {
+        let places = (0..SIZE.1).flat_map(|y| (from..to).map(move |x| (x, y)));
+        places.filter(|(x, y)| plain.get_pixel(*x, *y) != directed.get_pixel(*x, *y)).count()
+    };
+    assert_eq!(differing(0, SIZE.0 / 2 - 16), 0, "the left half is not directed");
+    assert!(differing(SIZE.0 / 2 + 4, SIZE.0) > 20, "the right half has its lines");
+    assert_ne!(styled("watercolor", ""), styled("watercolor", "faint.png"));
+    for (style, file, words) in [
+        ("gaussian_blur", "neutral.png", &["--control", "follows no control map"][..]),
+        ("cartoon", "small.png", &["small.png", "50x40", "control maps of the picture's size"]),
+    ] {
+        RgbaImage::new(50, 40).save(at("small.png")).expect("as above");
+        fails(&mut apply(folder.path(), &[style, "in.png", "none.png", "--control", file]), 2, words);
+        assert!(!at("none.png").exists());
+    }
 }
 
 #[test]

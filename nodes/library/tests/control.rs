@@ -177,7 +177,7 @@ fn detail_stays_where_it_is_asked_for() {
     let color = picture(|x, y| {
         let x = x % (SIZE[0] / 2);
         let grain = ((x * 7 + y * 13) % 11) as f32 / 11.0 - 0.5;
-        let light = if (24..48).contains(&x) { 0.35 } else { 0.6 };
+        let light = if (x / 5 + y / 5) % 2 == 0 { 0.52 } else { 0.6 };
         [light + 0.06 * grain, light + 0.05 * grain, light - 0.04 * grain, 1.0]
     });
     for style in ["cartoon", "watercolor", "painting", "coherent"] {

@@ -253,6 +253,7 @@ def apply(
     albedo: Any = None,
     diffuse: Any = None,
     specular: Any = None,
+    control: Any = None,
     out: Any = None,
     frame: int = 0,
     color_space: str = "srgb",
@@ -291,6 +292,7 @@ def apply(
     - `albedo`: colours of surfaces without light, in the picture's space.
     - `diffuse`: light that surfaces reflect in all directions, in their colours and the picture's space.
     - `specular`: light that surfaces mirror: highlights and reflections, in the picture's space.
+    - `control`: a control map, 0.5 for no change: detail, width of lines, their amount, and strength of the medium.
 
     Normals have 3 or 4 channels of floats, rest positions 32 bits a channel, and motion goes x right and y down.
 
@@ -336,6 +338,7 @@ def apply(
         albedo=albedo,
         diffuse=diffuse,
         specular=specular,
+        control=control,
     )
 
 

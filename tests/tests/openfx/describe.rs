@@ -81,6 +81,7 @@ pub fn clips_are_source_and_output_and_in_general_a_mask_and_guides(binary: &Bin
         ("albedo", "Albedo"),
         ("diffuse", "Diffuse"),
         ("specular", "Specular"),
+        ("control", "Control"),
     ] {
         general.extend(takes(port).then_some(clip));
     }

@@ -310,7 +310,8 @@ pub fn the_effect_for_looks_shows_all_that_ships(binary: &Binary) {
             "Flow",
             "Albedo",
             "Diffuse",
-            "Specular"
+            "Specular",
+            "Control"
         ]
     );
     let instance = in_host(&host, binary, LOOK_EFFECT, CONTEXTS[0]);

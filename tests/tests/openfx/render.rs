@@ -260,6 +260,13 @@ pub fn object_numbers_and_painted_flow_enter_in_the_general_context(binary: &Bin
         graph.connect_input(GraphInput::Flow, first, "flow").unwrap();
         inputs.push(("flow", &flow, layout));
     }
+    let map = [0.9, 0.8, 0.2, 0.6].map(f32::to_ne_bytes).concat().repeat((WIDTH * HEIGHT) as usize);
+    let is_directed = names.contains(&"Control".to_owned());
+    if is_directed {
+        instance.connect("Control", Picture::packed_in(layout, WIDTH, HEIGHT, &map));
+        graph.connect_input(GraphInput::Control, first, "control").unwrap();
+        inputs.push(("control", &map, layout));
+    }
     // Colours of surfaces and their light: half of the picture's, and a third.
     let share = |share: f32| -> Vec<u8> {
         let dimmed = values(&color, &layout).into_iter().map(|v| v * share);
@@ -284,7 +291,11 @@ pub fn object_numbers_and_painted_flow_enter_in_the_general_context(binary: &Bin
     }
     .c(&inputs, layout);
     assert!(got == wanted, "{}", effect.plugin(binary).identifier());
-    assert!(!has_layers || got != through(&graph, &source, layout, ColourSpace::Srgb), "layers count");
+    assert!(
+        !(has_layers || is_directed) || got != through(&graph, &source, layout, ColourSpace::Srgb),
+        "{} does not mind its clips",
+        effect.node.id
+    );
     let follows_flow = ["oil_paint", "painting", "coherent", "line_integral_convolution", "flow_bilateral"];
     if follows_flow.contains(&effect.node.id) {
         let without = through(&graph, &source, layout, ColourSpace::Srgb);

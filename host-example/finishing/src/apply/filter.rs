@@ -5,6 +5,7 @@ use std::sync::Arc;
 
 use super::backend::Backend;
 use super::frame_cache::Window;
+use super::masks::PAINTED;
 use super::memory::Needs;
 use super::picture_request::PictureRequest;
 use super::square;
@@ -94,8 +95,8 @@ pub struct Planner {
     library: Library,
     layers: Vec<Layer>,
     guides: Vec<Guide>,
-    /// True where frames have painted flow maps.
-    has_flow: bool,
+    /// Maps that are painted for the frames.
+    painted: Vec<Guide>,
     /// Memory that filtering a picture of this size takes, as was found last.
     last: Option<((u32, u32), u64)>,
 }
@@ -389,12 +390,12 @@ impl Planner {
         for look in &looks {
             guides.extend(look.style.usable_guides(&library)?);
         }
-        Ok(Self { library, layers: layers(looks)?, guides, has_flow: false, last: None })
+        Ok(Self { library, layers: layers(looks)?, guides, painted: Vec::new(), last: None })
     }
 
-    /// Counts the painted flow map that each frame has, if it has one.
-    pub fn with_flow(self, has_flow: bool) -> Self {
-        Self { has_flow, ..self }
+    /// Counts the painted maps that each frame has.
+    pub fn with_painted(self, painted: Vec<Guide>) -> Self {
+        Self { painted, ..self }
     }
 
     /// Guides that the styles can use.
@@ -413,7 +414,8 @@ impl Planner {
         }
         let refused = |e: isophote_loader::Error| e.at(name, "choose another picture or style");
         let pixels = u64::from(size.0) * u64::from(size.1);
-        let is_counted = |guide: &&Guide| **guide != Guide::Flow || self.has_flow;
+        let is_painted = |guide: &Guide| PAINTED.iter().any(|painted| painted.guide == *guide);
+        let is_counted = |guide: &&Guide| !is_painted(guide) || self.painted.contains(guide);
         let guides = self.guides.iter().filter(is_counted).map(|guide| guide.id());
         // One look is made at a time; what it keeps of frames stays.
         let (mut kept, mut most) = (0, 0);
@@ -464,7 +466,7 @@ impl Planner {
         let filter = self.filter_memory(&name, frame, size)?;
         // Each as it is read, as it is kept and as one of all frames.
         let masks = self.layers.iter().filter(|layer| layer.look.mask.is_some()).count() as u64;
-        let masks = masks + if self.has_flow { 4 } else { 0 };
+        let masks = masks + 4 * self.painted.len() as u64;
         let maps = u64::from(size.0) * u64::from(size.1) * 4 * 3 * masks;
         let area = |(width, height): (u32, u32)| u64::from(width) * u64::from(height);
         // Both are there while one is made of the other.

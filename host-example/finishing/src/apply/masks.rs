@@ -1,4 +1,4 @@
-//! Masks of a run, and its painted flow map: where they come from, and each in its picture's size.
+//! Masks of a run, and its painted maps: where they come from, and each in its picture's size.
 //!
 //! A mask is a number for each pixel. Files of colours stand for their luminance, 0.2126 R + 0.7152 G + 0.0722 B of the numbers
 //! as they are stored; alpha is never looked at. What is no number is 0, and all is cut to 0..=1.
@@ -11,12 +11,46 @@ use isophote_exr_edit::Window;
 use super::tasks::Tasks;
 use isophote_files::error::{Error, Result};
 use isophote_files::frames::{self, Pattern};
-use isophote_pictures::exr::{self, MaskSource, OnUnknown, Picture, Selection};
+use isophote_pictures::exr::{self, Guide, MaskSource, OnUnknown, Picture, Selection};
 use isophote_pictures::pixels::{Pixels, Samples};
 use isophote_pictures::read::{self, Source, Unread};
 
-/// The guide that a flow map is.
-const FLOW: &str = "flow";
+/// Kind of map that an artist paints: RGBA, read as it is stored.
+#[derive(Debug)]
+pub struct Painted {
+    /// The guide that it is, which is also the option of `isophote apply` that names its files.
+    pub guide: Guide,
+    /// For people.
+    pub name: &'static str,
+    /// Value of what is not painted.
+    nothing: f32,
+    /// Alpha of files that have none.
+    opaque: f32,
+    /// True where alpha that is 1 everywhere is that of a file in which nobody painted it.
+    is_plain_opaque: bool,
+    /// What a grey file cannot say.
+    wanted: &'static str,
+}
+
+/// The kinds of maps.
+pub const PAINTED: [Painted; 2] = [
+    Painted {
+        guide: Guide::Flow,
+        name: "flow map",
+        nothing: 0.0,
+        opaque: 1.0,
+        is_plain_opaque: false,
+        wanted: "is grey, and its red and green are to say where flow leads",
+    },
+    Painted {
+        guide: Guide::Control,
+        name: "control map",
+        nothing: 0.5,
+        opaque: 0.5,
+        is_plain_opaque: true,
+        wanted: "is grey, and its colours are to say what is wanted of detail and lines",
+    },
+];
 
 /// Where a mask comes from, and whether what it leaves out is meant.
 #[derive(Clone, Debug)]
@@ -27,16 +61,17 @@ pub struct MaskChoice {
     pub invert: bool,
 }
 
-/// The masks of a run, and its painted flow map.
+/// The masks of a run, and its painted maps.
 #[derive(Debug, Default)]
 pub struct Masks {
     masks: Vec<Mask>,
-    flow: Option<Flow>,
+    maps: Vec<Map>,
 }
 
-/// A painted flow map: RGBA as it is stored.
+/// A painted map.
 #[derive(Debug)]
-struct Flow {
+struct Map {
+    kind: &'static Painted,
     place: Place,
     /// The map that all frames have in common.
     kept: Mutex<Option<(Frame, Pixels)>>,
@@ -88,16 +123,18 @@ impl Masks {
             };
             Ok(Mask { place, source, invert: choice.invert, on_unknown, kept: Mutex::new(None) })
         };
-        Ok(Self { masks: choices.iter().map(mask).collect::<Result<_>>()?, flow: None })
+        Ok(Self { masks: choices.iter().map(mask).collect::<Result<_>>()?, maps: Vec::new() })
     }
 
-    /// The same with the painted flow map of a file, or of one for each frame.
+    /// The same with painted maps, each of a file, or of one for each frame.
     ///
     /// # Errors
     /// As [`Masks::new`].
-    pub fn with_flow(self, path: Option<&Path>) -> Result<Self> {
-        let flow = |path| -> Result<Flow> { Ok(Flow { place: Place::of(path)?, kept: Mutex::new(None) }) };
-        Ok(Self { flow: path.map(flow).transpose()?, ..self })
+    pub fn with_maps(self, paths: &[(&'static Painted, &Path)]) -> Result<Self> {
+        let map = |(kind, path): &(&'static Painted, &Path)| {
+            Ok(Map { kind, place: Place::of(path)?, kept: Mutex::new(None) })
+        };
+        Ok(Self { maps: paths.iter().map(map).collect::<Result<_>>()?, ..self })
     }
 
     /// Makes sure that all frames have their files; those of a video are not known.
@@ -105,8 +142,9 @@ impl Masks {
     /// # Errors
     /// [`Error::Input`] naming files that are missing.
     pub fn check(&self, tasks: Option<&Tasks>) -> Result<()> {
-        let masks = self.masks.iter().map(|mask| (&mask.place, "masks"));
-        for (place, what) in masks.chain(self.flow.iter().map(|flow| (&flow.place, "flow maps"))) {
+        let masks = self.masks.iter().map(|mask| (&mask.place, "masks".to_owned()));
+        let maps = self.maps.iter().map(|map| (&map.place, format!("{}s", map.kind.name)));
+        for (place, what) in masks.chain(maps) {
             match (place, tasks) {
                 (Place::Files(pattern), Some(tasks)) if !tasks.is_sequence() => {
                     let problem = format!("names {what} by frame, and there is one picture");
@@ -144,11 +182,12 @@ impl Masks {
                 data: picture.window(),
                 display: picture.meaning.display.unwrap_or(picture.window()),
             };
-            if let Some(flow) = &self.flow {
-                match flow.of_frame(number, frame) {
+            for map in &self.maps {
+                let id = map.kind.guide.id();
+                match map.of_frame(number, frame) {
                     Ok(pixels) => {
-                        picture.guides.retain(|(name, _)| *name != FLOW);
-                        picture.guides.push((FLOW, pixels));
+                        picture.guides.retain(|(name, _)| *name != id);
+                        picture.guides.push((id, pixels));
                     }
                     Err(error @ Error::Failure { .. }) => return Err(error),
                     Err(error) => {
@@ -229,7 +268,7 @@ impl Mask {
     }
 }
 
-impl Flow {
+impl Map {
     /// The map of a frame.
     fn of_frame(&self, number: Option<i64>, frame: Frame) -> Result<Pixels> {
         let path = match &self.place {
@@ -237,27 +276,31 @@ impl Flow {
             Place::File(path) => path.clone(),
             Place::Picture => PathBuf::new(),
         };
-        of_file(&self.kept, &self.place, frame, || Self::read(&path, frame))
+        of_file(&self.kept, &self.place, frame, || self.kind.read(&path, frame))
     }
+}
 
+impl Painted {
     /// Map in a file, in the size of a picture.
-    fn read(path: &Path, frame: Frame) -> Result<Pixels> {
+    fn read(&self, path: &Path, frame: Frame) -> Result<Pixels> {
+        let another = format!("name another {}", self.name);
         let source = read::open(path, &Selection::default())?.decode(path)?;
         let Some(picture) = source.pictures.into_iter().next() else {
-            return Err(Error::file(path, "is empty", "name another flow map"));
+            return Err(Error::file(path, "is empty", another));
         };
         let own = picture.window();
-        let window = frame
-            .place(own, picture.meaning.display)
-            .map_err(|problem| Error::file(path, problem, "paint flow maps of the picture's size"))?;
+        let window = frame.place(own, picture.meaning.display).map_err(|problem| {
+            Error::file(path, problem, format!("paint {}s of the picture's size", self.name))
+        })?;
         let channels = picture.pixels.channels() as usize;
         if channels < 3 {
-            let problem = "is grey, and its red and green are to say where flow leads";
-            return Err(Error::file(path, problem, "name a picture of colours"));
+            return Err(Error::file(path, self.wanted, "name a picture of colours"));
         }
         let numbers = picture.pixels.to_f32();
+        let is_unpainted = channels == 3
+            || self.is_plain_opaque && numbers.chunks_exact(channels).all(|pixel| pixel[channels - 1] >= 1.0);
         // Beside the map nothing is painted.
-        let mut map = vec![0.0; window.width * window.height * 4];
+        let mut map = vec![self.nothing; window.width * window.height * 4];
         for y in 0..window.height {
             for x in 0..window.width {
                 let (column, row) =
@@ -266,15 +309,15 @@ impl Flow {
                     let from =
                         &numbers[(row as usize * own.width + column as usize) * channels..][..channels];
                     let to = &mut map[(y * window.width + x) * 4..][..4];
-                    // What has no alpha counts fully.
-                    to[3] = 1.0;
                     to[..channels].copy_from_slice(from);
+                    if is_unpainted {
+                        to[3] = self.opaque;
+                    }
                 }
             }
         }
-        Pixels::new(window.width as u32, window.height as u32, 4, Samples::F32(map)).ok_or_else(|| {
-            Error::file(path, "does not hold as many pixels as it says", "name another flow map")
-        })
+        Pixels::new(window.width as u32, window.height as u32, 4, Samples::F32(map))
+            .ok_or_else(|| Error::file(path, "does not hold as many pixels as it says", another))
     }
 }
 

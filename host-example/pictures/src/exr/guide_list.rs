@@ -71,6 +71,8 @@ guides! {
     Specular "specular" "Specular light" Color ISOPHOTE_GUIDE_SPECULAR,
     /// A painted flow map: x and y in red and green, 0.5 for none, and its strength in alpha.
     Flow "flow" "Flow" Flow ISOPHOTE_GUIDE_FLOW,
+    /// A control map, 0.5 for no change: detail, width of lines, their amount, and strength of the medium.
+    Control "control" "Control" Control ISOPHOTE_GUIDE_CONTROL,
     // end of guides
 }
 

@@ -10,6 +10,7 @@ use std::path::{Path, PathBuf};
 
 use clap::{Args, ValueHint};
 
+use self::guiding::PaintedArgs;
 use super::shared::{ForceArgs, LengthArgs, PrecisionArgs, QuietArgs, parse_rate};
 use isophote_files::error::{Error, Result};
 use isophote_files::files::{self, Existing};
@@ -136,9 +137,9 @@ pub struct ApplyArgs {
     #[arg(long, value_name = "NEWLAYER")]
     pub into: Option<String>,
     /// The layer of an EXR file that guides the filter: normal=LAYER, depth=LAYER, object_id=LAYER, motion=LAYER,
-    /// motion_forward=LAYER, rest_position=LAYER, albedo=LAYER, diffuse=LAYER, specular=LAYER or flow=LAYER, or none instead of
+    /// motion_forward=LAYER, rest_position=LAYER, albedo=LAYER, diffuse=LAYER, specular=LAYER, flow=LAYER or control=LAYER, or none instead of
     /// a layer; normal=A,B,C names its channels. Without it guides are found by the names that renderers give them, such as N, Z,
-    /// depth, P, id, IndexOB, Vector, velocity, Pref, albedo, DiffCol, diffuse, specular and flow_map; where there is no id, the Cryptomatte of objects stands for it, which is
+    /// depth, P, id, IndexOB, Vector, velocity, Pref, albedo, DiffCol, diffuse, specular, flow_map and control; where there is no id, the Cryptomatte of objects stands for it, which is
     /// object_id=cryptomatte, or `object_id=cryptomatte[LAYER]` for another. May be repeated.
     #[arg(long, value_name = "GUIDE=LAYER")]
     pub guide: Vec<GuideChoice>,
@@ -157,10 +158,8 @@ pub struct ApplyArgs {
     /// Names in the mask that a frame does not have: fail, or take them for empty.
     #[arg(long, value_enum, default_value_t = OnUnknown::Fail)]
     pub on_unknown: OnUnknown,
-    /// A painted flow map, along which the style draws: a file such as flow.png, or one for each frame (flow.####.exr). Red and
-    /// green say where it leads, 0.5 for nowhere, and alpha how much it counts.
-    #[arg(long, value_name = "FILE", value_hint = ValueHint::FilePath)]
-    pub flow: Option<PathBuf>,
+    #[command(flatten)]
+    pub painted: PaintedArgs,
     /// Steadiness of a sequence against flicker, from 0 to 1: neighbouring frames are averaged along the motion. Needs motion vectors in the EXR files, or --motion [default: what the style says].
     #[arg(long, value_name = "S")]
     pub steadiness: Option<f32>,
@@ -221,7 +220,7 @@ pub fn run(args: &ApplyArgs) -> Result<()> {
     let opened = args.open_first(&tasks, &selection)?;
     let backend = if args.dry_run { Backend::Cpu } else { args.backend };
     let own = args.looks(&library, files.style, &entries)?;
-    let mut planner = Planner::new(library.clone(), own)?.with_flow(args.flow.is_some());
+    let mut planner = Planner::new(library.clone(), own)?.with_painted(args.painted.guides());
     args.check_results(&tasks, &planner, &choices)?;
     let guides = args.guides_found(&tasks, &selection, opened.as_ref(), &planner)?;
     let filter = args.filter(&library, looks, backend)?;

@@ -70,7 +70,8 @@ impl ApplyArgs {
             ("to", Part::Result, self.to.as_deref()),
             ("mask", Part::Frames, mask),
             ("mask_from", Part::Frames, self.mask_from.as_deref()),
-            ("flow", Part::Frames, self.flow.as_deref()),
+            ("flow", Part::Frames, self.painted.flow.as_deref()),
+            ("control", Part::Frames, self.painted.control.as_deref()),
             ("motion", Part::Frames, self.motion.as_deref().filter(|_| !self.estimates_motion())),
         ];
         // Standard input and output have no path.

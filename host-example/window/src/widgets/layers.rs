@@ -89,6 +89,7 @@ fn title(guide: Guide) -> &'static str {
         Guide::ObjectId => "Objects",
         Guide::RestPosition => "Rest positions",
         Guide::Flow => "Flow map",
+        Guide::Control => "Control map",
         other => other.label(),
     }
 }

@@ -172,12 +172,8 @@ impl FlowDog {
             own.base = 0.0;
         }
         let directed = seen.control.widened(plan, field, line_width::drawable(0.0) / self.sigma_e.max(1e-6));
-        let options = flow_dog_gradient::Options {
-            sigma: self.sigma_e,
-            k: self.k,
-            xdog: own,
-            scaled: directed.scaled,
-        };
+        let options =
+            flow_dog_gradient::Options { sigma: self.sigma_e, k: self.k, xdog: own, scaled: directed.scaled };
         let mut response = flow_dog_gradient::pass(plan, seen.lightness, directed.field, &options);
         if let Some(lab) = lab {
             let [a, b] = [0, 1].map(|axis| {

@@ -104,7 +104,8 @@ export type Guide =
   | "rest_position"
   | "albedo"
   | "diffuse"
-  | "specular";
+  | "specular"
+  | "control";
 // end of guides
 
 /** A picture: anything that `GPUQueue.copyExternalImageToTexture` takes, or a texture of the same device. */

@@ -1,16 +1,50 @@
 //! Guides, masks and motion of a run of `isophote apply`: which a style can use, and which were found.
 
+use std::path::{Path, PathBuf};
+
+use clap::{Args, ValueHint};
+
 use super::ApplyArgs;
 use isophote_files::error::{Error, Result};
 use isophote_files::frames::Pattern;
 use isophote_files::output;
 use isophote_finishing::apply::filter::{MaskedStyle, Planner};
 use isophote_finishing::apply::looks::Entry;
-use isophote_finishing::apply::masks::{MaskChoice, Masks};
+use isophote_finishing::apply::masks::{MaskChoice, Masks, PAINTED, Painted};
 use isophote_finishing::apply::tasks::Tasks;
 use isophote_loader::Library;
 use isophote_pictures::exr::{Guide, MaskSource, Selection};
 use isophote_pictures::read::Opened;
+
+/// Maps that artists paint.
+#[derive(Clone, Debug, Default, Args)]
+pub struct PaintedArgs {
+    /// A painted flow map, along which the style draws: a file such as flow.png, or one for each frame (flow.####.exr). Red and
+    /// green say where it leads, 0.5 for nowhere, and alpha how much it counts.
+    #[arg(long, value_name = "FILE", value_hint = ValueHint::FilePath)]
+    pub flow: Option<PathBuf>,
+    /// A control map, by which places are directed: a file such as control.png, or one for each frame (control.####.exr). Red is
+    /// detail, green the width of lines, blue their amount and alpha the strength of marks and paint; 0.5 changes nothing,
+    /// and alpha of 1 everywhere is none.
+    #[arg(long, value_name = "FILE", value_hint = ValueHint::FilePath)]
+    pub control: Option<PathBuf>,
+}
+
+impl PaintedArgs {
+    /// Files of the maps that there are.
+    pub(in crate::verbs) fn paths(&self) -> Vec<(&'static Painted, &Path)> {
+        let path = |painted: &Painted| match painted.guide {
+            Guide::Control => self.control.as_deref(),
+            _ => self.flow.as_deref(),
+        };
+        PAINTED.iter().filter_map(|painted| Some((painted, path(painted)?))).collect()
+    }
+
+    /// The maps that there are.
+    pub(super) fn guides(&self) -> Vec<Guide> {
+        self.paths().into_iter().map(|(painted, _)| painted.guide).collect()
+    }
+}
 
 impl ApplyArgs {
     /// Guides that are looked for.
@@ -30,22 +64,25 @@ impl ApplyArgs {
         own.chain(entries.iter().filter_map(|entry| entry.mask.clone())).collect()
     }
 
-    /// Maps over the pictures: masks, and the flow map.
+    /// Maps over the pictures: masks, and those that are painted.
     ///
     /// # Errors
-    /// As [`Masks::new`]; [`Error::Input`] for a flow map that no style would follow.
+    /// As [`Masks::new`]; [`Error::Input`] for a map that no style would follow.
     pub(super) fn maps(&self, choices: &[MaskChoice], looks: &[MaskedStyle]) -> Result<Masks> {
-        if self.flow.is_some() {
+        let paths = self.painted.paths();
+        for (painted, _) in &paths {
+            let id = painted.guide.id();
             let mut followed = false;
             for look in looks {
-                followed |= look.style.takes("flow")?;
+                followed |= look.style.takes(id)?;
             }
             if !followed {
-                let fix = "choose another style, or connect @flow in its graph";
-                return Err(Error::input("--flow", "the style follows no flow map", fix));
+                let problem = format!("the style follows no {}", painted.name);
+                let fix = format!("choose another style, or connect @{id} in its graph");
+                return Err(Error::input(&format!("--{id}"), problem, fix));
             }
         }
-        Masks::new(choices, self.mask_from.as_deref(), self.on_unknown)?.with_flow(self.flow.as_deref())
+        Masks::new(choices, self.mask_from.as_deref(), self.on_unknown)?.with_maps(&paths)
     }
 
     /// The files of motion vectors.
@@ -107,7 +144,8 @@ impl ApplyArgs {
         // Other files than EXR have none; what was left out by hand is not missed, nor what few files have.
         let is_missed = |guide: &Guide| {
             let is_named = selection.guides.iter().any(|choice| choice.guide == *guide);
-            let is_rare = matches!(guide, Guide::Flow | Guide::RestPosition | Guide::MotionForward);
+            let is_rare =
+                matches!(guide, Guide::Flow | Guide::Control | Guide::RestPosition | Guide::MotionForward);
             !offers.layers.is_empty() && is_used(guide) && !(is_named || is_rare || has(*guide))
         };
         let missed: Vec<&str> = Guide::ALL.into_iter().filter(is_missed).map(Guide::id).collect();

@@ -19,7 +19,12 @@ crate::kernel!(control_difference {
 });
 
 /// `first` + factor (`second` - `first`) of two pictures of four channels, under a control map.
-pub fn pass(plan: &mut PlanBuilder, [first, second]: [ImageId; 2], control: ImageId, params: &Params) -> ImageId {
+pub fn pass(
+    plan: &mut PlanBuilder,
+    [first, second]: [ImageId; 2],
+    control: ImageId,
+    params: &Params,
+) -> ImageId {
     plan.pass(&KERNEL, &[first, second, control], params, Class::Colour, Support::Pixels(0))
 }
 

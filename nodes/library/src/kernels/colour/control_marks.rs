@@ -9,7 +9,10 @@ use isophote_engine::math::Elementary;
 use isophote_engine::{Class, ImageId, PlanBuilder, Support, Tolerance};
 
 crate::kernel!(control_marks {
-    block: |simd, pass| |block| [repeated(block.read(simd, &pass.inputs[0]), block.read(simd, &pass.inputs[1]))],
+    block: |simd, pass| |block| [repeated(
+        block.read(simd, &pass.inputs[0]),
+        block.read(simd, &pass.inputs[1])
+    )],
     cost: |_| 50.0,
     tolerance: Tolerance::of_rounding(2e-6, 2e-5, "a logarithm times four, through an exponential"),
 });

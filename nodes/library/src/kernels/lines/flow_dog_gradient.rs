@@ -188,7 +188,12 @@ fn gradient<S: Simd>(simd: S, pass: &CpuPass<'_>, params: &Params, band: &mut Ba
 
 /// The orientations (E - G, F) of a block, and the factor on standard deviations, which is 1 where the field has none.
 #[inline(always)]
-pub fn directed<S: Simd>(simd: S, block: &Block, field: &View<'_>, scaled: bool) -> ([f32x8<S>; 2], f32x8<S>) {
+pub fn directed<S: Simd>(
+    simd: S,
+    block: &Block,
+    field: &View<'_>,
+    scaled: bool,
+) -> ([f32x8<S>; 2], f32x8<S>) {
     if !scaled {
         return (block.read(simd, field), f32x8::splat(simd, 1.0));
     }

@@ -16,7 +16,11 @@ crate::kernel!(line_amount {
         block.read(simd, &pass.inputs[2])
     ),
     cost: |_| 25.0,
-    tolerance: Tolerance::of_rounding(1e-3, 1e-5, "a difference of highlights of hundreds of L, times up to four"),
+    tolerance: Tolerance::of_rounding(
+        1e-3,
+        1e-5,
+        "a difference of highlights of hundreds of L, times up to four"
+    ),
 });
 
 /// Share of the way from 0 to neutral over which lines fade to none.
