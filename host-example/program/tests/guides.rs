@@ -106,7 +106,7 @@ fn a_control_map_directs_places_and_neutral_ones_change_nothing() {
     assert!(differing(SIZE.0 / 2 + 4, SIZE.0) > 20, "the right half has its lines");
     assert_ne!(styled("watercolor", ""), styled("watercolor", "faint.png"));
     for (style, file, words) in [
-        ("gaussian_blur", "neutral.png", &["--control", "follows no control map"][..]),
+        ("gaussian", "neutral.png", &["--control", "follows no control map"][..]),
         ("cartoon", "small.png", &["small.png", "50x40", "control maps of the picture's size"]),
     ] {
         RgbaImage::new(50, 40).save(at("small.png")).expect("as above");

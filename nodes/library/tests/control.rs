@@ -206,3 +206,34 @@ fn media_are_as_strong_as_asked_for() {
         assert!(more > left && less < left, "{style}: {less} {left} {more}");
     }
 }
+
+#[test]
+fn lines_far_away_are_as_wide_as_asked_for() {
+    let color = bars();
+    let grey = picture(|_, _| [0.6, 0.6, 0.6, 1.0]);
+    // Near on the left, far on the right, where there is a gap through which nothing is seen.
+    let mut depth = Image::new(SIZE[0] as u32, SIZE[1] as u32, 1).unwrap();
+    for (at, depth) in depth.data_mut().iter_mut().enumerate() {
+        let x = at as i32 % SIZE[0];
+        let gap = (40..56).contains(&(x % (SIZE[0] / 2)));
+        *depth = if gap {
+            0.0
+        } else if x < SIZE[0] / 2 {
+            1.0
+        } else {
+            50.0
+        };
+    }
+    for picture in [&color, &grey] {
+        let drawn = |width: &str| {
+            let settings = [("far_width", width), ("outline_width", "1.5"), ("show", "lines")];
+            mean(&styled("cartoon", &settings, &[("color", picture), ("depth", &depth)]), |pixel| pixel[3])
+        };
+        let ([left, same], [near, wide], [_, thin]) = (drawn("1"), drawn("2.5"), drawn("0.5"));
+        assert!(
+            (left - same).abs() < 0.1 * left && (near - left).abs() < 0.02 * left,
+            "{left} {same} {near}"
+        );
+        assert!(wide > 1.3 * same && thin < 0.95 * same, "{thin} {same} {wide}");
+    }
+}

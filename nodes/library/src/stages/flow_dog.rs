@@ -4,8 +4,8 @@ use crate::declare::choice::choice;
 use crate::declare::spec::{ImageKind, Param, Port, Scope};
 use crate::kernels::lines::flow_dog_two_dimensional::{self, Stepping};
 use crate::kernels::lines::{
-    colour_edges, darken_by_lines, dog_columns, flow_dog_cabral_leedom, flow_dog_gradient, flow_dog_tangent,
-    guide_lines, lab_channel,
+    colour_edges, darken_by_lines, depth_width, dog_columns, flow_dog_cabral_leedom, flow_dog_gradient,
+    flow_dog_tangent, guide_lines, lab_channel,
 };
 use crate::kernels::shared::edge_threshold::{Threshold, Xdog};
 use crate::kernels::structure::orientation_field;
@@ -71,6 +71,47 @@ pub(crate) struct FlowDog {
     pub context: LineContext,
     /// Weight of the colour axes beside lightness; 0 leaves them unread. It counts in the separable filter.
     pub colour: f32,
+    /// Width by distance; it counts in the separable filter, where depth is given.
+    pub distance: Distance,
+}
+
+/// Standard deviations that a line reaches from a break, and the most pixels.
+const REACH: f32 = 3.0;
+const MOST_REACH: f32 = 64.0;
+
+/// Width of lines by the distance from the camera.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Distance {
+    /// Distance up to which lines keep their width, and that from which on they have the other one, scene units.
+    pub near: f32,
+    pub far: f32,
+    /// Factor on widths far away; 1 leaves distances unread.
+    pub width: f32,
+}
+
+impl Distance {
+    /// One width everywhere.
+    pub(crate) const NONE: Self = Self { near: 0.0, far: 0.0, width: 1.0 };
+
+    /// A field with factors of widths by the distance of the nearest thing within `radius` pixels.
+    fn widened(
+        self,
+        plan: &mut PlanBuilder,
+        directed: Directed,
+        depth: ImageId,
+        radius: f32,
+        least: f32,
+    ) -> Directed {
+        let params = depth_width::Params {
+            near: self.near,
+            inverse_range: 1.0 / (self.far - self.near).max(1e-6),
+            change: self.width - 1.0,
+            radius,
+            least,
+            scaled: directed.scaled.into(),
+        };
+        Directed { field: depth_width::pass(plan, [directed.field, depth], &params), scaled: true }
+    }
 }
 
 /// Picture that lines are found in.
@@ -171,7 +212,7 @@ impl FlowDog {
             // Lightness is added to what the differences come to.
             own.base = 0.0;
         }
-        let directed = seen.control.widened(plan, field, line_width::drawable(0.0) / self.sigma_e.max(1e-6));
+        let directed = self.directed(plan, seen.control, field, guides.depth);
         let options =
             flow_dog_gradient::Options { sigma: self.sigma_e, k: self.k, xdog: own, scaled: directed.scaled };
         let mut response = flow_dog_gradient::pass(plan, seen.lightness, directed.field, &options);
@@ -188,6 +229,27 @@ impl FlowDog {
             response = self.context.weighed(plan, response, &ground);
         }
         self.with_guides(plan, response, directed, guides)
+    }
+
+    /// The field that lines follow, with factors on their widths where places or distances ask for them.
+    fn directed(
+        &self,
+        plan: &mut PlanBuilder,
+        control: Control,
+        field: ImageId,
+        depth: Option<ImageId>,
+    ) -> Directed {
+        let least = line_width::drawable(0.0) / self.sigma_e.max(1e-6);
+        let directed = control.widened(plan, field, least);
+        match depth.filter(|_| self.distance.width != 1.0) {
+            Some(depth) => {
+                // As far as lines reach from the things that they belong to.
+                let widest = self.guided.iter().fold(self.sigma_e, |widest, kind| widest.max(kind.sigma));
+                let radius = (REACH * widest * self.distance.width.max(1.0)).min(MOST_REACH);
+                self.distance.widened(plan, directed, depth, radius, least.min(1.0))
+            }
+            None => directed,
+        }
     }
 
     /// Thresholds that give an edge image, which alone can darken the input of the next iteration; its lines are not faint.

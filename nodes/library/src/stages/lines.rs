@@ -6,7 +6,7 @@ use crate::kernels::colour::lines_alone;
 use crate::kernels::lines::flow_dog_two_dimensional::Stepping;
 use crate::kernels::shared::edge_threshold::{Threshold, Xdog};
 use crate::kernels::shared::stream::Integrator;
-use crate::stages::flow_dog::{FlowDog, Guided, Kernel};
+use crate::stages::flow_dog::{Distance, FlowDog, Guided, Kernel};
 use crate::stages::line_context::{self, LineContext};
 use crate::stages::{ADVANCED, LOOK};
 use isophote_engine::ImageId;
@@ -27,6 +27,20 @@ pub(crate) const CREASE_WIDTH: Param = Param::float("crease_width", "Crease widt
     .slider(0.0, 3.0)
     .group(LOOK)
     .hint("Width of lines where a surface folds against other lines; 0 draws none. Needs normals.");
+pub(crate) const FAR_WIDTH: Param = Param::float("far_width", "Width far away", 1.0, [0.0, 4.0])
+    .slider(0.25, 2.0)
+    .structural()
+    .group(LOOK)
+    .hint("Width of lines far from the camera against near ones; 1 for the same everywhere. Needs depth.")
+    .doc("Factor on all widths from `far` on; between `near` and `far` it grows evenly with the distance. No line is narrower than a pixel.");
+pub(crate) const NEAR: Param = Param::float("near", "Near", 2.0, [0.0, 1e6])
+    .slider(0.0, 50.0)
+    .group(ADVANCED)
+    .hint("Distance from the camera up to which lines keep their width, in units of the scene.");
+pub(crate) const FAR: Param =
+    Param::float("far", "Far", 20.0, [0.0, 1e6]).slider(0.0, 200.0).group(ADVANCED).hint(
+        "Distance from the camera from which on lines have their width of far away, in units of the scene.",
+    );
 pub(crate) const TEXTURE_LINES: Param = Param::float("texture_lines", "Texture lines", 1.0, [0.0, 1.0])
     .group(LOOK)
     .hint("How many lines come from the picture itself: 0 leaves outlines and creases alone.");
@@ -131,8 +145,14 @@ pub(crate) fn flow_dog(scope: &Scope<'_>, guide_weight: f32) -> FlowDog {
         fades: true,
         context: LineContext::of(scope, scope.float(TEXTURE_LINES.id)),
         colour: scope.float(line_context::COLOUR_EDGES.id),
+        distance: distance(scope),
     }
     .on_pixels(scope)
+}
+
+/// Width of lines by distance.
+pub(crate) fn distance(scope: &Scope<'_>) -> Distance {
+    Distance { near: scope.float(NEAR.id), far: scope.float(FAR.id), width: scope.float(FAR_WIDTH.id) }
 }
 
 /// Creases and outlines beside lines of standard deviation `sigma_e`.

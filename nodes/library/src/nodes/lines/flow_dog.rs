@@ -9,7 +9,7 @@ use crate::kernels::lines::flow_dog_two_dimensional::Stepping;
 use crate::kernels::shared::stream::Integrator;
 use crate::stages::control::Control;
 use crate::stages::flow_dog::{
-    DEPTH, FlowDog, Guided, Kernel, NORMAL, OBJECT_ID, SIGMA_M, Seen, guides, tensor,
+    DEPTH, Distance, FlowDog, Guided, Kernel, NORMAL, OBJECT_ID, SIGMA_M, Seen, guides, tensor,
 };
 use crate::stages::line_context::{COLOUR_EDGES, INHIBITION, LOCAL_CONTRAST, LineContext};
 use crate::stages::steady::{Agreement, COLOUR_AGREEMENT, compared, steadied};
@@ -103,6 +103,7 @@ fn build(scope: &mut Scope<'_>) -> ImageId {
         fades: dog::fades(scope),
         context: LineContext::of(scope, 1.0),
         colour: scope.float(COLOUR_EDGES.id),
+        distance: Distance::NONE,
     }
     .on_pixels(scope);
     let guides_of = |scope: &Scope<'_>| guides(scope, lines.guide_weight);

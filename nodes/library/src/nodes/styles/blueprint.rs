@@ -32,6 +32,7 @@ pub static NODE: NodeSpec = NodeSpec {
         lines::SUPPRESS_SMALL,
         lines::OUTLINE_WIDTH,
         lines::CREASE_WIDTH,
+        lines::FAR_WIDTH,
         lines::TEXTURE_LINES,
         Param::color("line_color", "Line colour", [0.92, 0.96, 1.0, 1.0])
             .group(LOOK)
@@ -66,6 +67,8 @@ pub static NODE: NodeSpec = NodeSpec {
         dog::PHI.group(ADVANCED),
         lines::LINE_ITERATIONS,
         lines::GUIDE_WEIGHT,
+        lines::NEAR,
+        lines::FAR,
         STEADINESS,
         WINDOW,
         line_context::LOCAL_CONTRAST.with_default(Value::Float(1.0)).group(ADVANCED),

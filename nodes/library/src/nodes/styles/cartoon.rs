@@ -39,6 +39,7 @@ pub static NODE: NodeSpec = NodeSpec {
         lines::SUPPRESS_SMALL,
         lines::OUTLINE_WIDTH,
         lines::CREASE_WIDTH,
+        lines::FAR_WIDTH,
         lines::TEXTURE_LINES,
         LINE_COLOR,
         abstraction::DETAIL,
@@ -68,6 +69,8 @@ pub static NODE: NodeSpec = NodeSpec {
         dog::PHI.group(ADVANCED),
         lines::LINE_ITERATIONS,
         lines::GUIDE_WEIGHT,
+        lines::NEAR,
+        lines::FAR,
         // Crisper steps than those of Fig. 4.8, where there is something that they follow.
         quantization::PHI_Q.with_default(Value::Float(8.0)).group(ADVANCED),
         quantization::ADAPTIVE.with_default(Value::Bool(false)).group(ADVANCED),

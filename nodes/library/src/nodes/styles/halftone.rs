@@ -106,6 +106,7 @@ pub static NODE: NodeSpec = NodeSpec {
         lines::SUPPRESS_SMALL,
         lines::OUTLINE_WIDTH,
         lines::CREASE_WIDTH,
+        lines::FAR_WIDTH,
         lines::TEXTURE_LINES,
         Param::color("line_color", "Line colour", [0.09, 0.085, 0.1, 1.0])
             .group(LOOK)
@@ -136,6 +137,8 @@ pub static NODE: NodeSpec = NodeSpec {
         dog::PHI.group(ADVANCED),
         lines::LINE_ITERATIONS,
         lines::GUIDE_WEIGHT,
+        lines::NEAR,
+        lines::FAR,
         line_context::LOCAL_CONTRAST.with_default(Value::Float(1.0)).group(ADVANCED),
         line_context::INHIBITION.with_default(Value::Float(1.0)).group(ADVANCED),
         line_context::COLOUR_EDGES.with_default(Value::Float(0.5)).group(ADVANCED),

@@ -63,6 +63,7 @@ pub static NODE: NodeSpec = NodeSpec {
         lines::SUPPRESS_SMALL.doc("Lengthens the smoothing along lines by up to 0.8 of it and halves p."),
         lines::OUTLINE_WIDTH,
         lines::CREASE_WIDTH,
+        lines::FAR_WIDTH,
         lines::TEXTURE_LINES,
         TONE,
         GRAIN,
@@ -128,6 +129,8 @@ pub static NODE: NodeSpec = NodeSpec {
         abstraction::SIGMA_D,
         abstraction::SIGMA_R,
         lines::GUIDE_WEIGHT,
+        lines::NEAR,
+        lines::FAR,
         STEADINESS,
         WINDOW,
         // Marks that are drawn anew do not fade.
@@ -267,6 +270,7 @@ fn flow(scope: &Scope<'_>, drawing: &Preset, guide_weight: f32) -> FlowDog {
         fades: true,
         context: context(scope, drawing),
         colour: scope.float(line_context::COLOUR_EDGES.id),
+        distance: lines::distance(scope),
     }
     .on_pixels(scope)
 }
