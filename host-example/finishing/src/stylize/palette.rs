@@ -4,9 +4,8 @@ use std::path::Path;
 
 use super::style::{Setting, Style};
 use isophote_files::error::{AtPlace, Error, Result};
-use isophote_files::output;
 use isophote_loader::Library;
-use isophote_loader::catalogue::{Node, ParamKind};
+use isophote_loader::catalogue::{Choice, Node, Param, ParamKind};
 use isophote_pictures::palette::{self, Palette, Wanted, hex};
 
 /// Id of the node, and of its choice of a palette.
@@ -18,7 +17,7 @@ const COLOUR: &str = "color_";
 /// Way to find a style that draws with them.
 const FIX: &str = "choose the style palette, or one that has a node of it";
 
-/// Colours of a file, as many as the node takes. What is to be said of them is said as warnings.
+/// Colours of a file, as many as the node takes.
 ///
 /// # Errors
 /// As [`palette::read`]; [`Error::Input`] for a `count` that the node does not take, and for the id of a palette that ships.
@@ -38,21 +37,20 @@ pub fn read(library: &Library, path: &Path, count: Option<usize>) -> Result<Pale
         let fix = format!("write `--set {NODE}={id}`");
         return Err(Error::input(place, "is a palette that ships, and no file", fix));
     }
-    let palette = palette::read(path, Wanted { count, most })?;
-    for note in &palette.notes {
-        output::warn(format_args!("{}: {note}", path.display()));
-    }
-    Ok(palette)
+    palette::read(path, Wanted { count, most })
+}
+
+/// True for the parameter by which the node chooses a palette, and colours of one's own as well.
+pub fn chooses(param: &Param) -> bool {
+    let has_own = |options: &[Choice]| options.iter().any(|option| option.id == OWN);
+    param.id == NODE && matches!(&param.kind, ParamKind::Choice { options, .. } if has_own(options))
 }
 
 /// True where a path is the id of a palette that ships.
 fn ships(node: &Node, path: &Path) -> bool {
-    let choices = node.params.iter().filter(|param| param.id == NODE);
-    let mut options = choices.flat_map(|param| match &param.kind {
-        ParamKind::Choice { options, .. } => options.as_slice(),
-        _ => &[],
-    });
-    options.any(|option| path.as_os_str() == option.id)
+    let is_meant = |options: &[Choice]| options.iter().any(|option| path.as_os_str() == option.id);
+    let mut choices = node.params.iter().filter(|param| param.id == NODE);
+    choices.any(|param| matches!(&param.kind, ParamKind::Choice { options, .. } if is_meant(options)))
 }
 
 impl Style {

@@ -4,7 +4,7 @@ use std::path::PathBuf;
 
 use clap::{Args, ValueHint};
 
-use super::shared::{ForceArgs, QuietArgs};
+use super::shared::{ForceArgs, QuietArgs, warn_of};
 use isophote_files::error::Result;
 use isophote_files::files;
 use isophote_files::output;
@@ -44,9 +44,7 @@ pub fn run(args: &ColoursArgs) -> Result<()> {
         files::check_writable(to, args.force.existing())?;
     }
     let palette = palette::read(&args.file, Wanted { count: args.count.map(usize::from), most: MOST })?;
-    for note in &palette.notes {
-        output::warn(format_args!("{}: {note}", args.file.display()));
-    }
+    warn_of(&args.file, &palette);
     if let Some(to) = &args.output {
         palette::write(to, args.force.existing(), &palette)?;
     }

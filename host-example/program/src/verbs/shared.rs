@@ -7,6 +7,7 @@ use clap::{Args, ValueHint};
 
 use isophote_files::error::Result;
 use isophote_files::files::Existing;
+use isophote_files::output;
 use isophote_files::replacing::Consent;
 use isophote_finishing::staging::ReadingArgs;
 use isophote_finishing::stylize::palette;
@@ -89,13 +90,22 @@ pub struct PaletteArgs {
 }
 
 impl PaletteArgs {
-    /// Reads the colours, where a file is named.
+    /// Reads the colours, where a file is named, and warns of what is to be said of them.
     ///
     /// # Errors
     /// As [`palette::read`].
     pub fn read(&self, library: &Library) -> Result<Option<Palette>> {
-        let read = |path: &PathBuf| palette::read(library, path, self.palette_count.map(usize::from));
-        self.palette.as_ref().map(read).transpose()
+        let Some(path) = &self.palette else { return Ok(None) };
+        let palette = palette::read(library, path, self.palette_count.map(usize::from))?;
+        warn_of(path, &palette);
+        Ok(Some(palette))
+    }
+}
+
+/// Warns of what is to be said of a palette.
+pub fn warn_of(path: &Path, palette: &Palette) {
+    for note in &palette.notes {
+        output::warn(format_args!("{}: {note}", path.display()));
     }
 }
 
