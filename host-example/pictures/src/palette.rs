@@ -50,6 +50,11 @@ const SIDE: u32 = 256;
 /// Way to put most palettes right.
 const FIX: &str = "name a palette (.gpl, .hex, .ase, .aco, .pal or .json) or a picture";
 
+/// Way to put right those whose kind is known.
+const AGAIN: &str = "use an intact file, or export the palette again, such as .gpl";
+/// Kind of a text that is of no other.
+const LIST: &str = "a list of colours";
+
 /// Colours of a file, each once.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Palette {
@@ -179,7 +184,7 @@ fn swatches(path: &Path, bytes: &[u8]) -> Result<Option<Swatches>> {
                 }
                 () if str::from_utf8(bytes).is_err() || text.contains('\0') => return Ok(None),
                 () if text.starts_with(['[', '{']) => ("a palette in JSON", text::of_json(text).map(plain)),
-                () => ("a list of colours", text::numbers(text).map(plain)),
+                () => (LIST, text::numbers(text).map(plain)),
             }
         }
     };
@@ -187,7 +192,8 @@ fn swatches(path: &Path, bytes: &[u8]) -> Result<Option<Swatches>> {
         let problem = format!("is too large for a palette, with more than {MOST_BYTES} bytes");
         return Err(Error::file(path, problem, FIX));
     }
-    let wrong = |problem| Error::file(path, format!("cannot be read as {kind}: it {problem}"), FIX);
+    let fix = if kind == LIST { FIX } else { AGAIN };
+    let wrong = |problem| Error::file(path, format!("cannot be read as {kind}: it {problem}"), fix);
     read.map(Some).map_err(wrong)
 }
 

@@ -80,6 +80,13 @@ fn what_is_no_palette_is_refused_with_a_reason() {
         let problem = problem(&file(&folder, "own.any", bytes));
         assert!(problem.contains(words), "{problem}");
     }
+    let cut = problem(&file(&folder, "own.any", b"ASEF\0\x01\0\0\0\0\0\x01\0\x01"));
+    assert!(
+        cut.ends_with(
+            "it ends within block 1 of 1; use an intact file, or export the palette again, such as .gpl"
+        ),
+        "{cut}"
+    );
     assert!(problem(folder.path()).contains("is a folder"));
     assert!(problem(&folder.path().join("none.gpl")).contains("cannot be read"));
     let large = file(&folder, "large.txt", vec![b' '; MOST_BYTES as usize + 9]);
