@@ -16,6 +16,7 @@
 //! | [`exr`] | layers, guides, masks and mattes of EXR files |
 //! | [`resize`] | pixels at another size |
 //! | [`mix`] | mixing of two pictures by a mask |
+//! | [`palette`] | colours of files of painting programs, and those that are found in pictures |
 
 #![forbid(unsafe_code)]
 
@@ -32,6 +33,7 @@ mod inks;
 mod jpeg;
 pub mod meaning;
 pub mod mix;
+pub mod palette;
 pub mod pixels;
 mod png;
 pub mod read;

@@ -2,7 +2,7 @@
 
 use clap::{CommandFactory, Parser, Subcommand};
 
-use crate::verbs::{apply, bench, documents, farm, info, nodes, preset, render, sheet, view};
+use crate::verbs::{apply, bench, colours, documents, farm, info, nodes, preset, render, sheet, view};
 use isophote_files::error::Result;
 
 const ABOUT: &str = "Turns pictures, sequences, videos and 3D scenes into cartoons, drawings and paintings.";
@@ -50,6 +50,8 @@ enum Command {
     View(view::ViewArgs),
     /// Puts pictures side by side on one contact sheet, with their names.
     Sheet(sheet::SheetArgs),
+    /// Prints the colours of a picture or a palette, and writes them as a palette.
+    Colours(colours::ColoursArgs),
     /// Saves, shows and checks presets: styles with their parameters as JSON files.
     Preset(preset::PresetArgs),
     /// Makes jobs for render farms.
@@ -75,6 +77,7 @@ impl Cli {
             Command::Apply(args) => apply::run(args),
             Command::View(args) => view::run(args),
             Command::Sheet(args) => sheet::run(args),
+            Command::Colours(args) => colours::run(args),
             Command::Preset(args) => preset::run(args),
             Command::Farm(args) => farm::run(args),
             Command::Info(args) => info::run(args),

@@ -4,6 +4,7 @@
 //! after the scene's, and read the renderer's textures directly. Once warm, a frame creates no GPU object and
 //! is one submission.
 
+pub mod palette;
 pub mod precision;
 pub mod preset;
 pub mod source;

@@ -4,6 +4,7 @@ mod film;
 mod guiding;
 mod on_video;
 mod several;
+mod styled;
 
 use std::borrow::Cow;
 use std::path::{Path, PathBuf};
@@ -11,7 +12,7 @@ use std::path::{Path, PathBuf};
 use clap::{Args, ValueHint};
 
 use self::guiding::PaintedArgs;
-use super::shared::{ForceArgs, LengthArgs, PrecisionArgs, QuietArgs, parse_rate};
+use super::shared::{ForceArgs, LengthArgs, PaletteArgs, PrecisionArgs, QuietArgs, parse_rate};
 use isophote_files::error::{Error, Result};
 use isophote_files::files::{self, Existing};
 use isophote_files::frames::FrameList;
@@ -22,14 +23,13 @@ use isophote_files::stop::Stop;
 use isophote_finishing::apply::backend::Backend;
 use isophote_finishing::apply::dry_run::DryRun;
 use isophote_finishing::apply::filter::{Filter, MaskedStyle, Planner};
-use isophote_finishing::apply::looks::{self, Entry};
 use isophote_finishing::apply::masks::MaskChoice;
 use isophote_finishing::apply::memory::{self, Budget, Bytes, Needs, too_large};
 use isophote_finishing::apply::reader::{FrameSource, Reader};
 use isophote_finishing::apply::report::{self, Outcome, Report};
 use isophote_finishing::apply::sequence::Run;
 use isophote_finishing::apply::tasks::{OnMissing, Task, Tasks};
-use isophote_finishing::stylize::style::{Setting, Style};
+use isophote_finishing::stylize::style::Setting;
 use isophote_finishing::video::{self, OnError};
 use isophote_finishing::writing::ResultArgs;
 use isophote_loader::Library;
@@ -104,6 +104,9 @@ pub struct ApplyArgs {
     /// Sets a parameter; node.id=value for one node of a graph. May be repeated.
     #[arg(long, value_name = "ID=VALUE")]
     pub set: Vec<Setting>,
+    /// Colours that the style draws with.
+    #[command(flatten)]
+    pub palette: PaletteArgs,
     /// Meaning of lengths of parameters.
     #[command(flatten)]
     pub lengths: LengthArgs,
@@ -209,17 +212,17 @@ pub fn run(args: &ApplyArgs) -> Result<()> {
     tasks.ready.iter().try_for_each(|task| args.result.check(&task.input, &task.output))?;
     let library = Library::open()?;
     let threads = limits::start_threads(args.threads as usize)?;
-    let entries = args.entries()?;
-    let looks = args.looks(&library, files.style, &entries)?;
+    let written = args.written(&library)?;
+    let looks = args.looks(&library, files.style, &written)?;
     tasks.warn_of_keys_beyond(&looks);
-    let choices = args.masks(&entries);
+    let choices = args.masks(&written.entries);
     let masks = args.maps(&choices, &looks)?;
     masks.check(Some(&tasks))?;
     let selection = args.selection(&library, &looks, &choices, format)?;
     let motion = args.motion_files(&tasks, &selection)?;
     let opened = args.open_first(&tasks, &selection)?;
     let backend = if args.dry_run { Backend::Cpu } else { args.backend };
-    let own = args.looks(&library, files.style, &entries)?;
+    let own = args.looks(&library, files.style, &written)?;
     let mut planner = Planner::new(library.clone(), own)?.with_painted(args.painted.guides());
     args.check_results(&tasks, &planner, &choices)?;
     let guides = args.guides_found(&tasks, &selection, opened.as_ref(), &planner)?;
@@ -236,7 +239,7 @@ pub fn run(args: &ApplyArgs) -> Result<()> {
     }
     let report = args.report(&tasks).of_result(&files.output, args.size(opened.as_ref()));
     let is_parallel = tasks.are_several() && !is_film && threads == Threads::Several;
-    let mut filters = filters(filter, is_parallel, || args.looks(&library, files.style, &entries))?;
+    let mut filters = filters(filter, is_parallel, || args.looks(&library, files.style, &written))?;
     let budget = Budget::new(most.0, filters.len());
     let (frames, motion) = (tasks.sequence.as_ref(), motion.as_ref());
     let (selection, masks, budget) = (&selection, &masks, &budget);
@@ -352,45 +355,6 @@ impl ApplyArgs {
             ));
         }
         Ok(needs)
-    }
-
-    /// The looks of a file; none where there is a style.
-    fn entries(&self) -> Result<Vec<Entry>> {
-        self.layered.as_deref().map_or_else(|| Ok(Vec::new()), looks::read)
-    }
-
-    /// Looks that every picture gets: those of a file, or else the style.
-    fn looks(&self, library: &Library, name: &Path, entries: &[Entry]) -> Result<Vec<MaskedStyle>> {
-        let mut masks = 0..;
-        let looks = if entries.is_empty() {
-            let style = Style::load(library, name, &self.set)?;
-            vec![MaskedStyle { style, mask: self.mask.as_ref().and_then(|_| masks.next()) }]
-        } else {
-            let look = |entry: &Entry| {
-                let style = entry.style(library)?;
-                Ok(MaskedStyle { style, mask: entry.mask.as_ref().and_then(|_| masks.next()) })
-            };
-            entries.iter().map(look).collect::<Result<_>>()?
-        };
-        self.timed(looks)
-    }
-
-    /// The looks with what the command line says of time and lengths. Of several, one that knows of time is enough.
-    fn timed(&self, mut looks: Vec<MaskedStyle>) -> Result<Vec<MaskedStyle>> {
-        let mut refused = Vec::new();
-        for MaskedStyle { style, .. } in &mut looks {
-            self.lengths.apply(style);
-            self.precision.precision.apply(style)?;
-            refused.extend(self.steadiness.and_then(|steadiness| style.steady(steadiness).err()));
-            if self.estimates_motion() {
-                style.estimate_motion()?;
-            }
-        }
-        if refused.len() < looks.len() {
-            Ok(looks)
-        } else {
-            refused.into_iter().next().map_or(Ok(looks), Err)
-        }
     }
 
     /// The frames that are read and written.

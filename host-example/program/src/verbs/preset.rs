@@ -6,7 +6,7 @@ use std::path::{Path, PathBuf};
 use clap::{Args, Subcommand};
 use serde_json::Value;
 
-use super::shared::{ForceArgs, QuietArgs};
+use super::shared::{ForceArgs, PaletteArgs, QuietArgs};
 use isophote_files::error::{AtPlace, Error, Result};
 use isophote_files::identity::is_same;
 use isophote_files::replacing::{Consent, Inputs, Made};
@@ -77,6 +77,8 @@ struct SaveArgs {
     /// Sets a parameter; node.id=value for one node of a graph. May be repeated.
     #[arg(long, value_name = "ID=VALUE")]
     set: Vec<Setting>,
+    #[command(flatten)]
+    palette: PaletteArgs,
     /// Also writes the parameters that are not set, so that later changes of defaults do not matter.
     #[arg(long)]
     all: bool,
@@ -118,7 +120,7 @@ pub fn run(args: &PresetArgs) -> Result<()> {
     match &args.command {
         PresetCommand::List(args) => list(args),
         PresetCommand::Save(args) => {
-            args.consent().check(&[made(args)], false, || Ok(Inputs::default()))?;
+            args.consent().check(&[made(args)], false, || Ok(Inputs::of(&args.palette.palette)))?;
             save(&Library::open()?, args)
         }
         PresetCommand::Show { file, frame } => show(&Library::open()?, file, *frame),
@@ -188,13 +190,25 @@ fn base(library: &Library, style: &Style, args: &SaveArgs) -> Result<Preset> {
     Ok(Preset { style, ..preset })
 }
 
+/// The style that is written, and all that is set in it.
+fn styled(library: &Library, args: &SaveArgs) -> Result<(Style, Vec<Setting>)> {
+    let style = Style::any(library, &args.style, &[])?;
+    let mut settings = match args.palette.read(library)? {
+        Some(palette) => style.palette_settings(&palette)?,
+        None => Vec::new(),
+    };
+    settings.extend(args.set.iter().cloned());
+    settings.iter().try_for_each(|setting| style.set(setting))?;
+    Ok((style, settings))
+}
+
 fn save(library: &Library, args: &SaveArgs) -> Result<()> {
-    let SaveArgs { file, set: settings, all, name, about, tag, .. } = args;
-    let style = Style::any(library, &args.style, settings)?;
+    let SaveArgs { file, all, name, about, tag, .. } = args;
+    let (style, settings) = styled(library, args)?;
     let mut preset = base(library, &style, args)?;
     let title = Title { name: name.clone(), about: about.clone(), tags: tag.clone() };
     preset.title = title.or(preset.title);
-    for setting in settings {
+    for setting in &settings {
         let param = match &setting.node {
             Some(node) => format!("{node}.{}", setting.param),
             None => setting.param.clone(),

@@ -5,7 +5,9 @@ use std::path::{Path, PathBuf};
 
 use clap::Args;
 
-use super::shared::{ForceArgs, LengthArgs, PrecisionArgs, QuietArgs, SceneArgs, is_folder, parse_size};
+use super::shared::{
+    ForceArgs, LengthArgs, PaletteArgs, PrecisionArgs, QuietArgs, SceneArgs, is_folder, parse_size,
+};
 use isophote_files::error::{Error, Result};
 use isophote_files::files::{self, Existing};
 use isophote_files::frames::{FrameList, Pattern};
@@ -86,6 +88,8 @@ pub struct RenderArgs {
     #[arg(long, value_name = "ID=VALUE")]
     set: Vec<Setting>,
     #[command(flatten)]
+    palette: PaletteArgs,
+    #[command(flatten)]
     lengths: LengthArgs,
     /// Processor that the style is computed on; the scene itself is drawn by the graphics driver.
     #[arg(long, value_enum, default_value_t)]
@@ -110,7 +114,8 @@ pub fn run(args: &RenderArgs) -> Result<()> {
     limits::start_threads(0)?;
     let style = match &library {
         Some(library) => {
-            let mut style = Style::load(library, &args.style, &args.set)?;
+            let mut style =
+                Style::load_in(library, &args.style, args.palette.read(library)?.as_ref(), &args.set)?;
             args.lengths.apply(&mut style);
             args.precision.precision.apply(&style)?;
             args.steadiness.map_or(Ok(()), |steadiness| style.steady(steadiness))?;
@@ -197,7 +202,7 @@ impl RenderArgs {
         let made: Vec<Made<'_>> = results.iter().map(|(_, file)| Made { from: None, to: file }).collect();
         let read = || {
             let named = [Some(self.scene.scene.clone()), self.scene.reading.texture.clone()];
-            let more = [self.staging.surroundings(), Some(self.style.clone())];
+            let more = [self.staging.surroundings(), Some(self.style.clone()), self.palette.palette.clone()];
             Ok(Inputs::of(named.into_iter().chain(more).flatten()))
         };
         self.consent().check(&made, is_sequence, read)
@@ -277,7 +282,9 @@ impl RenderArgs {
         files::check_writable(&self.out, Existing::Replace)?;
         self.check_results()?;
         let steadiness = self.steadiness.map(|s| format!("--steadiness {s}"));
-        let setting = self.set.first().map(|setting| format!("--set {setting}")).or(steadiness);
+        let palette = self.palette.palette.as_ref().map(|file| format!("--palette {}", file.display()));
+        let setting = self.set.first().map(|setting| format!("--set {setting}"));
+        let setting = setting.or(palette).or(steadiness);
         if let (true, Some(setting)) = (!self.is_stylized(), setting) {
             return Err(Error::input(
                 setting,

@@ -2,16 +2,20 @@
 
 use std::path::{Path, PathBuf};
 
-use clap::Args;
 use clap::builder::{PossibleValue, PossibleValuesParser, TypedValueParser};
+use clap::{Args, ValueHint};
 
 use isophote_files::error::Result;
 use isophote_files::files::Existing;
+use isophote_files::output;
 use isophote_files::replacing::Consent;
 use isophote_finishing::staging::ReadingArgs;
+use isophote_finishing::stylize::palette;
 use isophote_finishing::stylize::precision::Precision;
 use isophote_finishing::stylize::preset::Lengths;
 use isophote_finishing::stylize::style::Style;
+use isophote_loader::Library;
+use isophote_pictures::palette::Palette;
 use isophote_pictures::pixels::MOST_PIXELS;
 use isophote_scene::Scene;
 
@@ -71,6 +75,38 @@ pub struct PrecisionArgs {
     /// Accuracy of a graphics card; the CPU is always exact.
     #[arg(long, value_enum, default_value_t)]
     pub precision: Precision,
+}
+
+/// Colours that a style draws with.
+#[derive(Args, Clone, Debug)]
+pub struct PaletteArgs {
+    /// A file whose colours the style palette draws with: a palette (.gpl of GIMP, .hex, .ase, .aco, .pal or .json), or a
+    /// picture, such as a strip of colours or a photograph. What --set says of them comes after.
+    #[arg(long, value_name = "FILE", value_hint = ValueHint::FilePath)]
+    pub palette: Option<PathBuf>,
+    /// Number of colours that are taken from the palette or found in the picture [default: all of a palette, 8 of a photograph].
+    #[arg(long, value_name = "N", requires = "palette", value_parser = clap::value_parser!(u16).range(2..))]
+    pub palette_count: Option<u16>,
+}
+
+impl PaletteArgs {
+    /// Reads the colours, where a file is named, and warns of what is to be said of them.
+    ///
+    /// # Errors
+    /// As [`palette::read`].
+    pub fn read(&self, library: &Library) -> Result<Option<Palette>> {
+        let Some(path) = &self.palette else { return Ok(None) };
+        let palette = palette::read(library, path, self.palette_count.map(usize::from))?;
+        warn_of(path, &palette);
+        Ok(Some(palette))
+    }
+}
+
+/// Warns of what is to be said of a palette.
+pub fn warn_of(path: &Path, palette: &Palette) {
+    for note in &palette.notes {
+        output::warn(format_args!("{}: {note}", path.display()));
+    }
 }
 
 /// Treatment of files that are there already.

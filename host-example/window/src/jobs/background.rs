@@ -120,6 +120,7 @@ impl Background {
             Dialog::File => self.opener.ask(OpenJob::Files(library, paths.to_vec())),
             Dialog::Look => self.opener.ask(OpenJob::Look(library, path)),
             Dialog::Surroundings => self.opener.ask(OpenJob::Surroundings(path)),
+            Dialog::Palette => self.opener.ask(OpenJob::Palette(library, path)),
             Dialog::LookFolder | Dialog::Save | Dialog::Export | Dialog::Several | Dialog::SeveralTo => {}
         }
     }

@@ -75,7 +75,9 @@ fn proposed(dialog: Dialog, session: &Session) -> (Option<PathBuf>, String) {
             let results = session.dialogs.batch.as_ref().map(|batch| PathBuf::from(batch.folder.trim()));
             results.as_deref().and_then(Path::parent).map(Path::to_owned)
         }
-        Dialog::File | Dialog::Surroundings | Dialog::Several => session.settings.folder.clone(),
+        Dialog::File | Dialog::Surroundings | Dialog::Palette | Dialog::Several => {
+            session.settings.folder.clone()
+        }
     };
     let file = match (dialog, planned) {
         (Dialog::Export, Some(planned)) => planned,
@@ -135,6 +137,8 @@ impl Asked {
                 };
                 shown.save_file()
             }
+            // Pictures are palettes as well, of many endings.
+            Dialog::Palette => shown.set_title("Colours of a palette or a picture").pick_file(),
             Dialog::Surroundings => shown
                 .set_title("Surroundings")
                 .add_filter("Pictures of the surroundings", &["hdr", "exr"])

@@ -1,4 +1,4 @@
-//! Opening of files, scenes, looks and surroundings, one after the other on a thread of its own.
+//! Opening of files, scenes, looks, surroundings and palettes, one after the other on a thread of its own.
 
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
@@ -11,6 +11,7 @@ use crate::state::outcome::Opened;
 use crate::state::samples::Sample;
 use isophote_files::error::Result;
 use isophote_files::frames;
+use isophote_finishing::stylize::palette;
 use isophote_finishing::{naming, video};
 use isophote_loader::Library;
 use isophote_pictures::exr::Selection;
@@ -32,6 +33,8 @@ pub enum OpenJob {
     Look(Library, PathBuf),
     /// Surroundings of a scene.
     Surroundings(PathBuf),
+    /// Colours for the look.
+    Palette(Library, PathBuf),
 }
 
 /// Something that was opened, with the document whose frames are to be read while it is shown.
@@ -62,6 +65,7 @@ pub fn open(job: OpenJob) -> Result<WithFrames> {
             let environment = Arc::new(Environment::read(&path)?);
             Opened::Surroundings(Surround::Environment(environment), path)
         }
+        OpenJob::Palette(library, path) => Opened::Palette(palette::read(&library, &path, None)?),
     };
     Ok((opened, None))
 }

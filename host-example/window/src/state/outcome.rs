@@ -15,6 +15,7 @@ use super::preview::order::Done;
 use super::progress::Progress;
 use isophote_files::error::{Error, Result};
 use isophote_loader::abi::IsophoteRequest;
+use isophote_pictures::palette::Palette;
 use isophote_render::background::Background;
 use isophote_scene::Scene;
 
@@ -62,6 +63,8 @@ pub enum Opened {
     Look(Box<EditedLook>),
     /// Surroundings of a scene with their file.
     Surroundings(Background, PathBuf),
+    /// Colours for the look.
+    Palette(Palette),
 }
 
 /// Purpose of a dialog of the system.
@@ -77,6 +80,8 @@ pub enum Dialog {
     Save,
     /// Open surroundings of the scene.
     Surroundings,
+    /// Take the colours of a file.
+    Palette,
     /// Name the output of an export.
     Export,
     /// Choose pictures to use the look on.

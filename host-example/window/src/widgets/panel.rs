@@ -6,8 +6,11 @@ use egui::{CollapsingHeader, RichText, ScrollArea, Ui};
 
 use super::{chain, control, hint, histogram, keyboard, layers, lighting, order, theme};
 use crate::state::look::Parameter;
+use crate::state::outcome::Dialog;
 use crate::state::resetting::Goal;
 use crate::state::session::{Session, TURNS};
+use crate::state::work::Request;
+use isophote_finishing::stylize::palette;
 
 /// Headings that are open at first.
 const OPEN: [&str; 2] = ["look", ""];
@@ -134,6 +137,18 @@ fn sections<'p>(parameters: &[&'p Parameter]) -> Vec<Section<'p>> {
     sections
 }
 
+/// The button that takes the colours of a palette from a file.
+fn of_file(ui: &mut Ui, session: &mut Session) {
+    ui.horizontal(|ui| {
+        ui.add_space(12.0);
+        let hint =
+            "Takes the colours of a palette (.gpl, .hex, .ase, .aco, .pal or .json), or those of a picture";
+        if ui.button("Colours from a file…").on_hover_text(hint).clicked() {
+            session.work.ask(Request::Choose(Dialog::Palette));
+        }
+    });
+}
+
 fn section(ui: &mut Ui, session: &mut Session, heading: &str, id: String, parameters: &[&Parameter]) {
     let changed = parameters.iter().filter(|parameter| session.look().strays(parameter)).count();
     let mut text = RichText::new(heading).strong();
@@ -145,6 +160,9 @@ fn section(ui: &mut Ui, session: &mut Session, heading: &str, id: String, parame
     let shown = header.show_unindented(ui, |ui| {
         for parameter in parameters {
             control::show(ui, session, parameter);
+            if palette::chooses(&parameter.param) {
+                of_file(ui, session);
+            }
         }
         ui.add_space(8.0);
     });

@@ -81,13 +81,14 @@ impl ApplyArgs {
         let is_video = pictures.is_none();
         self.check_options(is_video)?;
         self.result.check(files.input, &files.output)?;
-        let choices = self.masks(&self.entries()?);
+        let entries = self.entries()?;
+        let choices = self.masks(&entries);
         if self.is_done(files, pictures.as_ref(), &choices)? {
             return Ok(());
         }
         let library = Library::open()?;
         limits::start_threads(self.threads as usize)?;
-        let looks = self.looks(&library, files.style, &self.entries()?)?;
+        let looks = self.looks(&library, files.style, &self.written(&library)?)?;
         let is_file = |mask: &MaskChoice| matches!(mask.source, MaskSource::File(_));
         if !(self.mask_from.is_some() || choices.iter().all(is_file)) {
             let fix = "name files of masks, or EXR files by --mask-from";

@@ -12,6 +12,7 @@ use crate::state::resetting::Goal;
 use isophote_files::error::Result;
 use isophote_finishing::stylize::value::Value;
 use isophote_loader::Library;
+use isophote_pictures::palette::Palette;
 
 impl Session {
     /// The look was saved.
@@ -62,6 +63,29 @@ impl Session {
     /// Gives a parameter a value.
     pub fn set(&mut self, parameter: &Parameter, value: &Value) {
         self.edit(&parameter.name, |look| look.set(parameter, value));
+    }
+
+    /// Gives the look the colours of a palette, as one step.
+    pub fn colour_by(&mut self, palette: &Palette) {
+        let settings = match self.look().style(&self.library) {
+            Ok(Some(style)) => style.palette_settings(palette),
+            Ok(None) => return,
+            Err(error) => Err(error),
+        };
+        match settings {
+            Ok(settings) => {
+                let parameters = Arc::clone(self.looks.parameters());
+                self.let_go();
+                self.edit("palette", |look| {
+                    settings.iter().for_each(|setting| look.take(&parameters, setting));
+                });
+                self.let_go();
+                for note in &palette.notes {
+                    self.notes.say(format!("{} {note}", palette.name));
+                }
+            }
+            Err(error) => self.notes.complain_of(Subject::Look, &error),
+        }
     }
 
     /// Takes a parameter back to what it is in the look as that was chosen, or to its default where it is that already.

@@ -92,6 +92,7 @@ impl Session {
             Opened::Scene(scene, file) => self.open_scene(*scene, file),
             Opened::Pictures(playback) => self.show_playback(*playback),
             Opened::Look(look) => self.take(Arc::from(look)),
+            Opened::Palette(palette) => self.colour_by(&palette),
             Opened::Surroundings(background, path) => {
                 self.relight("surroundings", |lighting| {
                     (lighting.background, lighting.surroundings) = (background, Some(path));
@@ -122,7 +123,7 @@ impl Session {
         let Some(path) = paths.first().cloned() else { return };
         let path = path.as_path();
         match dialog {
-            Dialog::File | Dialog::Surroundings => {}
+            Dialog::File | Dialog::Surroundings | Dialog::Palette => {}
             Dialog::Look => self.settings.look_folder = path.parent().map(Path::to_owned),
             Dialog::LookFolder => {
                 self.settings.add_look_folder(path);

@@ -1,0 +1,113 @@
+//! Colours of a file as those of the nodes `palette` of a style.
+
+use std::path::Path;
+
+use super::style::{Setting, Style};
+use isophote_files::error::{AtPlace, Error, Result};
+use isophote_loader::Library;
+use isophote_loader::catalogue::{Choice, Node, Param, ParamKind};
+use isophote_pictures::palette::{self, Palette, Wanted, hex};
+
+/// Id of the node, and of its choice of a palette.
+const NODE: &str = "palette";
+/// Option of that choice for colours of one's own.
+const OWN: &str = "own";
+/// Beginning of the ids of these colours; a number from 1 follows.
+const COLOUR: &str = "color_";
+/// Way to find a style that draws with them.
+const FIX: &str = "choose the style palette, or one that has a node of it";
+
+/// Colours of a file, as many as the node takes.
+///
+/// # Errors
+/// As [`palette::read`]; [`Error::Input`] for a `count` that the node does not take, and for the id of a palette that ships.
+pub fn read(library: &Library, path: &Path, count: Option<usize>) -> Result<Palette> {
+    let node = library.find_node(NODE).map_err(|e| e.at("--palette", "use the library of this program"))?;
+    let most = node.params.iter().filter(|param| param.id.starts_with(COLOUR)).count();
+    if let Some(count) = count.filter(|count| *count > most) {
+        let problem = format!("a style takes {most} colours at most");
+        return Err(Error::input(
+            format!("--palette-count {count}"),
+            problem,
+            format!("give a number from 2 to {most}"),
+        ));
+    }
+    if !path.exists() && ships(&node, path) {
+        let (place, id) = (format!("--palette {}", path.display()), path.display());
+        let fix = format!("write `--set {NODE}={id}`");
+        return Err(Error::input(place, "is a palette that ships, and no file", fix));
+    }
+    palette::read(path, Wanted { count, most })
+}
+
+/// True for the parameter by which the node chooses a palette, and colours of one's own as well.
+pub fn chooses(param: &Param) -> bool {
+    let has_own = |options: &[Choice]| options.iter().any(|option| option.id == OWN);
+    param.id == NODE && matches!(&param.kind, ParamKind::Choice { options, .. } if has_own(options))
+}
+
+/// True where a path is the id of a palette that ships.
+fn ships(node: &Node, path: &Path) -> bool {
+    let is_meant = |options: &[Choice]| options.iter().any(|option| path.as_os_str() == option.id);
+    let mut choices = node.params.iter().filter(|param| param.id == NODE);
+    choices.any(|param| matches!(&param.kind, ParamKind::Choice { options, .. } if is_meant(options)))
+}
+
+impl Style {
+    /// Makes the style of `name` as [`Style::load`] does, with the colours of a palette where there is one. Settings come
+    /// after them.
+    ///
+    /// # Errors
+    /// As [`Style::load`] and [`Style::colour_by`].
+    pub fn load_in(
+        library: &Library,
+        name: &Path,
+        palette: Option<&Palette>,
+        settings: &[Setting],
+    ) -> Result<Self> {
+        let Some(palette) = palette else { return Self::load(library, name, settings) };
+        let style = Self::load(library, name, &[])?;
+        style.colour_by(palette)?;
+        settings.iter().try_for_each(|setting| style.set(setting))?;
+        Ok(style)
+    }
+
+    /// Gives its nodes `palette` the colours of a palette.
+    ///
+    /// # Errors
+    /// [`Error::Input`] where it has no such node.
+    pub fn colour_by(&self, palette: &Palette) -> Result<()> {
+        self.palette_settings(palette)?.iter().try_for_each(|setting| self.set(setting))
+    }
+
+    /// Settings that give its nodes `palette` the colours of a palette.
+    ///
+    /// # Errors
+    /// [`Error::Input`] where it has no such node.
+    pub fn palette_settings(&self, palette: &Palette) -> Result<Vec<Setting>> {
+        let refused = |e: isophote_loader::Error| e.at(&self.name, FIX);
+        let mut settings = Vec::new();
+        for node in 0..self.graph.count() {
+            if self.graph.spec(node).map_err(refused)?.id != NODE {
+                continue;
+            }
+            // Presets of a node alone have parameters without its name.
+            let is_alone = self.graph.count() == 1;
+            let name = self.graph.name(node).map_err(refused)?;
+            let name = Some(name).filter(|_| !is_alone);
+            let mut set = |param: String, value: String| {
+                settings.push(Setting { node: name.clone(), param, value });
+            };
+            set(NODE.into(), OWN.into());
+            set("count".into(), palette.colours.len().to_string());
+            for (number, colour) in (1..).zip(&palette.colours) {
+                set(format!("{COLOUR}{number}"), hex(*colour));
+            }
+        }
+        if settings.is_empty() {
+            let problem = format!("the style {} draws with no palette", self.name);
+            return Err(Error::input("--palette", problem, FIX));
+        }
+        Ok(settings)
+    }
+}
