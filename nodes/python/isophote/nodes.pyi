@@ -21,11 +21,13 @@ def blueprint(
     flow: Any = None,
     motion: Any = None,
     motion_forward: Any = None,
+    control: Any = None,
     line_width: float = 2.0,
     line_amount: float = 0.5,
     suppress_small: float = 0.0,
     outline_width: float = 1.0,
     crease_width: float = 1.0,
+    far_width: float = 1.0,
     texture_lines: float = 1.0,
     line_color: Color = (0.92, 0.96, 1.0, 1.0),
     paper_color: Color = (0.0706, 0.251, 0.4824, 1.0),
@@ -46,6 +48,8 @@ def blueprint(
     phi: float = 2.0,
     line_iterations: int = 1,
     guide_weight: float = 1.0,
+    near: float = 2.0,
+    far: float = 20.0,
     steadiness: float = 0.0,
     window: int = 2,
     local_contrast: float = 1.0,
@@ -74,6 +78,9 @@ def blueprint(
             frames before count for nothing.
         motion_forward: Pixels from where a point is to where it will be in the next frame; without
             it the frames that follow count for nothing.
+        control: A control map, of which 0.5 changes nothing: red is detail, green the width of
+            lines, blue their amount, 0 for none, and alpha the strength of marks and paint, as far
+            as the node has any. Each is a factor of 1/4 to 4.
 
     Parameters:
         line_width: How thick lines are. Wide lines also run longer, so that they do not break.
@@ -87,6 +94,9 @@ def blueprint(
             object ids or normals. 0 to 8.
         crease_width: Width of lines where a surface folds against other lines; 0 draws none. Needs
             normals. 0 to 8.
+        far_width: Width of lines far from the camera against near ones; 1 for the same everywhere.
+            Needs depth. Factor on all widths from `far` on; between `near` and `far` it grows
+            evenly with the distance. No line is narrower than a pixel. 0 to 4.
         texture_lines: How many lines come from the picture itself: 0 leaves outlines and creases
             alone. 0 to 1.
         line_color: Colour and opacity of the lines and the grid.
@@ -128,6 +138,10 @@ def blueprint(
         guide_weight: Strength of the lines that normals, depth and object ids draw; 0 leaves these
             out. Strength of lines where normal, depth or object id break; 0 leaves the guides
             unread. 0 to 16.
+        near: Distance from the camera up to which lines keep their width, in units of the scene. 0
+            to 1e+06.
+        far: Distance from the camera from which on lines have their width of far away, in units of
+            the scene. 0 to 1e+06.
         steadiness: How calm moving pictures are: neighbouring frames are averaged along the motion.
             0 is off, 0.5 suits most shots. How much neighbouring frames count, carried here along
             the motion of things: 0 leaves each frame alone, 0.5 is for sequences, 1 lets all frames
@@ -163,11 +177,13 @@ def cartoon(
     flow: Any = None,
     motion: Any = None,
     motion_forward: Any = None,
+    control: Any = None,
     line_width: float = 2.0,
     line_amount: float = 0.5,
     suppress_small: float = 0.0,
     outline_width: float = 1.0,
     crease_width: float = 1.0,
+    far_width: float = 1.0,
     texture_lines: float = 1.0,
     line_color: Color = (0.0, 0.0, 0.0, 1.0),
     detail: float = 0.5,
@@ -191,6 +207,8 @@ def cartoon(
     phi: float = 2.0,
     line_iterations: int = 1,
     guide_weight: float = 1.0,
+    near: float = 2.0,
+    far: float = 20.0,
     phi_q: float = 8.0,
     adaptive: bool = False,
     lambda_delta: float = 0.0,
@@ -231,6 +249,9 @@ def cartoon(
             frames before count for nothing.
         motion_forward: Pixels from where a point is to where it will be in the next frame; without
             it the frames that follow count for nothing.
+        control: A control map, of which 0.5 changes nothing: red is detail, green the width of
+            lines, blue their amount, 0 for none, and alpha the strength of marks and paint, as far
+            as the node has any. Each is a factor of 1/4 to 4.
 
     Parameters:
         line_width: How thick lines are. Wide lines also run longer, so that they do not break.
@@ -244,6 +265,9 @@ def cartoon(
             object ids or normals. 0 to 8.
         crease_width: Width of lines where a surface folds against other lines; 0 draws none. Needs
             normals. 0 to 8.
+        far_width: Width of lines far from the camera against near ones; 1 for the same everywhere.
+            Needs depth. Factor on all widths from `far` on; between `near` and `far` it grows
+            evenly with the distance. No line is narrower than a pixel. 0 to 4.
         texture_lines: How many lines come from the picture itself: 0 leaves outlines and creases
             alone. 0 to 1.
         line_color: Colour and opacity of the lines.
@@ -297,6 +321,10 @@ def cartoon(
         guide_weight: Strength of the lines that normals, depth and object ids draw; 0 leaves these
             out. Strength of lines where normal, depth or object id break; 0 leaves the guides
             unread. 0 to 16.
+        near: Distance from the camera up to which lines keep their width, in units of the scene. 0
+            to 1e+06.
+        far: Distance from the camera from which on lines have their width of far away, in units of
+            the scene. 0 to 1e+06.
         phi_q: How suddenly one tone changes to the next. Does not count with adaptive steps.
             Steepness of the steps, per unit of L. 0 to 1000.
         adaptive: Softer steps in flat areas and steeper ones at edges, so that moving pictures
@@ -356,6 +384,7 @@ def coherent(
     motion_forward: Any = None,
     depth: Any = None,
     object_id: Any = None,
+    control: Any = None,
     iterations: int = 5,
     detail: float = 0.5,
     sharpness: float = 0.5,
@@ -405,6 +434,9 @@ def coherent(
             it the frames that follow count for nothing.
         depth: Distance from the camera: neighbouring frames count where it agrees.
         object_id: Object numbers: neighbouring frames count where they agree.
+        control: A control map, of which 0.5 changes nothing: red is detail, green the width of
+            lines, blue their amount, 0 for none, and alpha the strength of marks and paint, as far
+            as the node has any. Each is a factor of 1/4 to 4.
 
     Parameters:
         iterations: Rounds of smoothing and sharpening: more of them draw the picture into simpler,
@@ -479,6 +511,7 @@ def oil_paint(
     motion: Any = None,
     motion_forward: Any = None,
     depth: Any = None,
+    control: Any = None,
     stroke_length: float = 20.0,
     stroke_width: float = 4.0,
     bristle: float = 0.5,
@@ -532,6 +565,9 @@ def oil_paint(
         motion_forward: Pixels from where a point is to where it will be in the next frame; without
             it the frames that follow count for nothing.
         depth: Distance from the camera: neighbouring frames count where it agrees.
+        control: A control map, of which 0.5 changes nothing: red is detail, green the width of
+            lines, blue their amount, 0 for none, and alpha the strength of marks and paint, as far
+            as the node has any. Each is a factor of 1/4 to 4.
 
     Parameters:
         stroke_length: How long the finest brush strokes are; coarse ones are four times as long.
@@ -614,6 +650,7 @@ def watercolor(
     motion_forward: Any = None,
     depth: Any = None,
     object_id: Any = None,
+    control: Any = None,
     mark_size: float = 2.5,
     wash_size: float = 1.5,
     detail: float = 0.5,
@@ -669,6 +706,9 @@ def watercolor(
             it the frames that follow count for nothing.
         depth: Distance from the camera: neighbouring frames count where it agrees.
         object_id: Object numbers: neighbouring frames count where they agree.
+        control: A control map, of which 0.5 changes nothing: red is detail, green the width of
+            lines, blue their amount, 0 for none, and alpha the strength of marks and paint, as far
+            as the node has any. Each is a factor of 1/4 to 4.
 
     Parameters:
         mark_size: Size of all that paint and paper leave: washes, borders, bleeding, waves and
@@ -743,12 +783,14 @@ def ink(
     flow: Any = None,
     motion: Any = None,
     motion_forward: Any = None,
+    control: Any = None,
     style: Literal['pencil', 'ink', 'charcoal', 'woodcut', 'pastel'] = 'ink',
     line_width: float = 2.0,
     line_amount: float = 0.5,
     suppress_small: float = 0.0,
     outline_width: float = 1.0,
     crease_width: float = 1.0,
+    far_width: float = 1.0,
     texture_lines: float = 1.0,
     tone: float = 0.5,
     grain: float = 0.5,
@@ -774,6 +816,8 @@ def ink(
     sigma_d: float = 3.0,
     sigma_r: float = 4.25,
     guide_weight: float = 1.0,
+    near: float = 2.0,
+    far: float = 20.0,
     steadiness: float = 0.0,
     window: int = 2,
     hold: int = 0,
@@ -811,6 +855,9 @@ def ink(
             frames before count for nothing.
         motion_forward: Pixels from where a point is to where it will be in the next frame; without
             it the frames that follow count for nothing.
+        control: A control map, of which 0.5 changes nothing: red is detail, green the width of
+            lines, blue their amount, 0 for none, and alpha the strength of marks and paint, as far
+            as the node has any. Each is a factor of 1/4 to 4.
 
     Parameters:
         style: What is drawn with: pencil, ink, charcoal, woodcut or pastel. Sets every technical
@@ -825,6 +872,9 @@ def ink(
             object ids or normals. 0 to 8.
         crease_width: Width of lines where a surface folds against other lines; 0 draws none. Needs
             normals. 0 to 8.
+        far_width: Width of lines far from the camera against near ones; 1 for the same everywhere.
+            Needs depth. Factor on all widths from `far` on; between `near` and `far` it grows
+            evenly with the distance. No line is narrower than a pixel. 0 to 4.
         texture_lines: How many lines come from the picture itself: 0 leaves outlines and creases
             alone. 0 to 1.
         tone: How much of the drawing is dark: 0 leaves lines alone, 1 fills all that is not bright.
@@ -872,6 +922,10 @@ def ink(
         guide_weight: Strength of the lines that normals, depth and object ids draw; 0 leaves these
             out. Strength of lines where normal, depth or object id break; 0 leaves the guides
             unread. 0 to 16.
+        near: Distance from the camera up to which lines keep their width, in units of the scene. 0
+            to 1e+06.
+        far: Distance from the camera from which on lines have their width of far away, in units of
+            the scene. 0 to 1e+06.
         steadiness: How calm moving pictures are: neighbouring frames are averaged along the motion.
             0 is off, 0.5 suits most shots. How much neighbouring frames count, carried here along
             the motion of things: 0 leaves each frame alone, 0.5 is for sequences, 1 lets all frames
@@ -919,6 +973,7 @@ def halftone(
     flow: Any = None,
     motion: Any = None,
     motion_forward: Any = None,
+    control: Any = None,
     shape: Literal['dots', 'lines', 'rings', 'squares'] = 'dots',
     inks: Literal['one', 'cmyk', 'two_spots', 'three_spots'] = 'cmyk',
     cell: float = 8.0,
@@ -942,6 +997,7 @@ def halftone(
     suppress_small: float = 0.0,
     outline_width: float = 1.0,
     crease_width: float = 1.0,
+    far_width: float = 1.0,
     texture_lines: float = 1.0,
     line_color: Color = (0.09, 0.085, 0.1, 1.0),
     abstraction: Literal['oriented', 'flow', 'full', 'xy'] = 'oriented',
@@ -960,6 +1016,8 @@ def halftone(
     phi: float = 2.0,
     line_iterations: int = 1,
     guide_weight: float = 1.0,
+    near: float = 2.0,
+    far: float = 20.0,
     local_contrast: float = 1.0,
     inhibition: float = 1.0,
     colour_edges: float = 0.5,
@@ -991,6 +1049,9 @@ def halftone(
             frames before count for nothing.
         motion_forward: Pixels from where a point is to where it will be in the next frame; without
             it the frames that follow count for nothing.
+        control: A control map, of which 0.5 changes nothing: red is detail, green the width of
+            lines, blue their amount, 0 for none, and alpha the strength of marks and paint, as far
+            as the node has any. Each is a factor of 1/4 to 4.
 
     Parameters:
         shape: What tones are printed as: dots, lines, rings around a point, or squares. Dots and
@@ -1036,6 +1097,9 @@ def halftone(
             object ids or normals. 0 to 8.
         crease_width: Width of lines where a surface folds against other lines; 0 draws none. Needs
             normals. 0 to 8.
+        far_width: Width of lines far from the camera against near ones; 1 for the same everywhere.
+            Needs depth. Factor on all widths from `far` on; between `near` and `far` it grows
+            evenly with the distance. No line is narrower than a pixel. 0 to 4.
         texture_lines: How many lines come from the picture itself: 0 leaves outlines and creases
             alone. 0 to 1.
         line_color: Colour and opacity of the lines.
@@ -1077,6 +1141,10 @@ def halftone(
         guide_weight: Strength of the lines that normals, depth and object ids draw; 0 leaves these
             out. Strength of lines where normal, depth or object id break; 0 leaves the guides
             unread. 0 to 16.
+        near: Distance from the camera up to which lines keep their width, in units of the scene. 0
+            to 1e+06.
+        far: Distance from the camera from which on lines have their width of far away, in units of
+            the scene. 0 to 1e+06.
         local_contrast: Judges edges against what is around them, so that soft light has lines and
             hard light is not black. Share by which the response is divided by the local deviation
             of lightness, in a window of about 16 pixels with a floor (Heeger 1992); 0 leaves it as
@@ -1110,6 +1178,7 @@ def painting(
     flow: Any = None,
     motion: Any = None,
     motion_forward: Any = None,
+    control: Any = None,
     brush_size: float = 12.0,
     detail: float = 0.5,
     stroke_length: float = 0.5,
@@ -1155,6 +1224,9 @@ def painting(
             frames before count for nothing.
         motion_forward: Pixels from where a point is to where it will be in the next frame; without
             it the frames that follow count for nothing.
+        control: A control map, of which 0.5 changes nothing: red is detail, green the width of
+            lines, blue their amount, 0 for none, and alpha the strength of marks and paint, as far
+            as the node has any. Each is a factor of 1/4 to 4.
 
     Parameters:
         brush_size: Width of the strokes where the picture varies. Width of round strokes: scales
@@ -2087,6 +2159,7 @@ def flow_dog(
     normal: Any = None,
     depth: Any = None,
     object_id: Any = None,
+    control: Any = None,
     motion: Any = None,
     motion_forward: Any = None,
     sigma_e: float = 1.0,
@@ -2127,6 +2200,9 @@ def flow_dog(
         depth: Distance from the camera; jumps draw lines, relative to the distance and never on
             planes.
         object_id: Object numbers; borders between objects draw lines.
+        control: A control map, of which 0.5 changes nothing: red is detail, green the width of
+            lines, blue their amount, 0 for none, and alpha the strength of marks and paint, as far
+            as the node has any. Each is a factor of 1/4 to 4.
         motion: Pixels from where a point is to where it was in the frame before; without it the
             frames before count for nothing.
         motion_forward: Pixels from where a point is to where it will be in the next frame; without
