@@ -36,8 +36,8 @@ fn distance_at(p: vec2i) -> f32 {
 
 // The nearest distance on a ring of eight pixels.
 fn ring(p: vec2i, radius: f32) -> f32 {
-    let straight = i32(floor(radius + 0.5));
-    let slanted = i32(floor(radius * DIAGONAL + 0.5));
+    let straight = i32(ceil(radius));
+    let slanted = i32(ceil(radius * DIAGONAL));
     var nearest = NOWHERE;
     for (var i = -1; i <= 1; i++) {
         for (var j = -1; j <= 1; j++) {

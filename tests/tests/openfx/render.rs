@@ -233,6 +233,19 @@ pub fn guides_enter_in_the_general_context(binary: &Binary, effect: Expected) {
     host.no_faults();
 }
 
+/// A picture of floats of one colour.
+fn everywhere(color: [f32; 4]) -> Vec<u8> {
+    color.map(f32::to_ne_bytes).concat().repeat((WIDTH * HEIGHT) as usize)
+}
+
+/// Clips of colours of surfaces and their light: half of the picture's, and a third.
+fn layers_of(color: &[u8], layout: &Layout) -> [(&'static str, Vec<u8>); 3] {
+    [("Albedo", 0.9), ("Diffuse", 0.5), ("Specular", 0.3)].map(|(clip, share)| {
+        let dimmed = values(color, layout).into_iter().map(|v| v * share);
+        (clip, dimmed.flat_map(f32::to_ne_bytes).collect())
+    })
+}
+
 pub fn object_numbers_and_painted_flow_enter_in_the_general_context(binary: &Binary, effect: Expected) {
     let host = Host::new(Behaviour::default());
     let layout = Layout::default();
@@ -253,27 +266,16 @@ pub fn object_numbers_and_painted_flow_enter_in_the_general_context(binary: &Bin
         graph.connect_input(GraphInput::ObjectId, first, "object_id").unwrap();
         inputs.push(("object_id", &objects, numbers));
     }
-    let slanted = [0.5 + 0.35, 0.5 + 0.35, 0.0, 1.0].map(f32::to_ne_bytes).concat();
-    let flow = slanted.repeat((WIDTH * HEIGHT) as usize);
-    if names.contains(&"Flow".to_owned()) {
-        instance.connect("Flow", Picture::packed_in(layout, WIDTH, HEIGHT, &flow));
-        graph.connect_input(GraphInput::Flow, first, "flow").unwrap();
-        inputs.push(("flow", &flow, layout));
+    let (flow, map) = (everywhere([0.85, 0.85, 0.0, 1.0]), everywhere([0.9, 0.8, 0.2, 0.6]));
+    let has = |clip: &str| names.iter().any(|name| name == clip);
+    let painted = [("Flow", GraphInput::Flow, &flow), ("Control", GraphInput::Control, &map)];
+    for (clip, input, pixels) in painted.into_iter().filter(|(clip, ..)| has(clip)) {
+        instance.connect(clip, Picture::packed_in(layout, WIDTH, HEIGHT, pixels));
+        graph.connect_input(input, first, input.id()).unwrap();
+        inputs.push((input.id(), pixels, layout));
     }
-    let map = [0.9, 0.8, 0.2, 0.6].map(f32::to_ne_bytes).concat().repeat((WIDTH * HEIGHT) as usize);
-    let is_directed = names.contains(&"Control".to_owned());
-    if is_directed {
-        instance.connect("Control", Picture::packed_in(layout, WIDTH, HEIGHT, &map));
-        graph.connect_input(GraphInput::Control, first, "control").unwrap();
-        inputs.push(("control", &map, layout));
-    }
-    // Colours of surfaces and their light: half of the picture's, and a third.
-    let share = |share: f32| -> Vec<u8> {
-        let dimmed = values(&color, &layout).into_iter().map(|v| v * share);
-        dimmed.flat_map(f32::to_ne_bytes).collect()
-    };
-    let layers = [("Albedo", share(0.9)), ("Diffuse", share(0.5)), ("Specular", share(0.3))];
-    let has_layers = names.contains(&"Albedo".to_owned());
+    let layers = layers_of(&color, &layout);
+    let has_layers = has("Albedo");
     for (name, layer) in layers.iter().filter(|_| has_layers) {
         let input = GraphInput::from_id(&name.to_ascii_lowercase()).unwrap();
         instance.connect(name, Picture::packed_in(layout, WIDTH, HEIGHT, layer));
@@ -292,7 +294,7 @@ pub fn object_numbers_and_painted_flow_enter_in_the_general_context(binary: &Bin
     .c(&inputs, layout);
     assert!(got == wanted, "{}", effect.plugin(binary).identifier());
     assert!(
-        !(has_layers || is_directed) || got != through(&graph, &source, layout, ColourSpace::Srgb),
+        !(has_layers || has("Control")) || got != through(&graph, &source, layout, ColourSpace::Srgb),
         "{} does not mind its clips",
         effect.node.id
     );

@@ -5,8 +5,8 @@ use std::sync::Arc;
 
 use super::backend::Backend;
 use super::frame_cache::Window;
-use super::masks::PAINTED;
 use super::memory::Needs;
+use super::painted::PAINTED;
 use super::picture_request::PictureRequest;
 use super::square;
 use super::stages::stages;

@@ -8,49 +8,13 @@ use std::sync::{Mutex, PoisonError};
 
 use isophote_exr_edit::Window;
 
+use super::painted::Painted;
 use super::tasks::Tasks;
 use isophote_files::error::{Error, Result};
 use isophote_files::frames::{self, Pattern};
-use isophote_pictures::exr::{self, Guide, MaskSource, OnUnknown, Picture, Selection};
+use isophote_pictures::exr::{self, MaskSource, OnUnknown, Picture, Selection};
 use isophote_pictures::pixels::{Pixels, Samples};
 use isophote_pictures::read::{self, Source, Unread};
-
-/// Kind of map that an artist paints: RGBA, read as it is stored.
-#[derive(Debug)]
-pub struct Painted {
-    /// The guide that it is, which is also the option of `isophote apply` that names its files.
-    pub guide: Guide,
-    /// For people.
-    pub name: &'static str,
-    /// Value of what is not painted.
-    nothing: f32,
-    /// Alpha of files that have none.
-    opaque: f32,
-    /// True where alpha that is 1 everywhere is that of a file in which nobody painted it.
-    is_plain_opaque: bool,
-    /// What a grey file cannot say.
-    wanted: &'static str,
-}
-
-/// The kinds of maps.
-pub const PAINTED: [Painted; 2] = [
-    Painted {
-        guide: Guide::Flow,
-        name: "flow map",
-        nothing: 0.0,
-        opaque: 1.0,
-        is_plain_opaque: false,
-        wanted: "is grey, and its red and green are to say where flow leads",
-    },
-    Painted {
-        guide: Guide::Control,
-        name: "control map",
-        nothing: 0.5,
-        opaque: 0.5,
-        is_plain_opaque: true,
-        wanted: "is grey, and its colours are to say what is wanted of detail and lines",
-    },
-];
 
 /// Where a mask comes from, and whether what it leaves out is meant.
 #[derive(Clone, Debug)]

@@ -11,7 +11,7 @@ use std::path::{Path, PathBuf};
 
 use clap::{Args, ValueHint};
 
-use self::guiding::PaintedArgs;
+use super::painted::PaintedArgs;
 use super::shared::{ForceArgs, LengthArgs, PaletteArgs, PrecisionArgs, QuietArgs, parse_rate};
 use isophote_files::error::{Error, Result};
 use isophote_files::files::{self, Existing};

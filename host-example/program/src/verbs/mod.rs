@@ -8,6 +8,7 @@ pub mod documents;
 pub mod farm;
 pub mod info;
 pub mod nodes;
+mod painted;
 mod places;
 pub mod preset;
 pub mod render;

@@ -34,11 +34,11 @@ pub(crate) const FAR_WIDTH: Param = Param::float("far_width", "Width far away", 
     .hint("Width of lines far from the camera against near ones; 1 for the same everywhere. Needs depth.")
     .doc("Factor on all widths from `far` on; between `near` and `far` it grows evenly with the distance. No line is narrower than a pixel.");
 pub(crate) const NEAR: Param = Param::float("near", "Near", 2.0, [0.0, 1e6])
-    .slider(0.0, 50.0)
+    .slider(0.5, 8.0)
     .group(ADVANCED)
     .hint("Distance from the camera up to which lines keep their width, in units of the scene.");
 pub(crate) const FAR: Param =
-    Param::float("far", "Far", 20.0, [0.0, 1e6]).slider(0.0, 200.0).group(ADVANCED).hint(
+    Param::float("far", "Far", 20.0, [0.0, 1e6]).slider(5.0, 100.0).group(ADVANCED).hint(
         "Distance from the camera from which on lines have their width of far away, in units of the scene.",
     );
 pub(crate) const TEXTURE_LINES: Param = Param::float("texture_lines", "Texture lines", 1.0, [0.0, 1.0])

@@ -1,50 +1,16 @@
 //! Guides, masks and motion of a run of `isophote apply`: which a style can use, and which were found.
 
-use std::path::{Path, PathBuf};
-
-use clap::{Args, ValueHint};
-
 use super::ApplyArgs;
 use isophote_files::error::{Error, Result};
 use isophote_files::frames::Pattern;
 use isophote_files::output;
 use isophote_finishing::apply::filter::{MaskedStyle, Planner};
 use isophote_finishing::apply::looks::Entry;
-use isophote_finishing::apply::masks::{MaskChoice, Masks, PAINTED, Painted};
+use isophote_finishing::apply::masks::{MaskChoice, Masks};
 use isophote_finishing::apply::tasks::Tasks;
 use isophote_loader::Library;
 use isophote_pictures::exr::{Guide, MaskSource, Selection};
 use isophote_pictures::read::Opened;
-
-/// Maps that artists paint.
-#[derive(Clone, Debug, Default, Args)]
-pub struct PaintedArgs {
-    /// A painted flow map, along which the style draws: a file such as flow.png, or one for each frame (flow.####.exr). Red and
-    /// green say where it leads, 0.5 for nowhere, and alpha how much it counts.
-    #[arg(long, value_name = "FILE", value_hint = ValueHint::FilePath)]
-    pub flow: Option<PathBuf>,
-    /// A control map, by which places are directed: a file such as control.png, or one for each frame (control.####.exr). Red is
-    /// detail, green the width of lines, blue their amount and alpha the strength of marks and paint; 0.5 changes nothing,
-    /// and alpha of 1 everywhere is none.
-    #[arg(long, value_name = "FILE", value_hint = ValueHint::FilePath)]
-    pub control: Option<PathBuf>,
-}
-
-impl PaintedArgs {
-    /// Files of the maps that there are.
-    pub(in crate::verbs) fn paths(&self) -> Vec<(&'static Painted, &Path)> {
-        let path = |painted: &Painted| match painted.guide {
-            Guide::Control => self.control.as_deref(),
-            _ => self.flow.as_deref(),
-        };
-        PAINTED.iter().filter_map(|painted| Some((painted, path(painted)?))).collect()
-    }
-
-    /// The maps that there are.
-    pub(super) fn guides(&self) -> Vec<Guide> {
-        self.paths().into_iter().map(|(painted, _)| painted.guide).collect()
-    }
-}
 
 impl ApplyArgs {
     /// Guides that are looked for.

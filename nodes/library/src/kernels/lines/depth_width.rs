@@ -26,7 +26,7 @@ pub fn pass(plan: &mut PlanBuilder, [field, depth]: [ImageId; 2], params: &Param
 }
 
 fn pixels_away(radius: f32) -> i32 {
-    (radius + 0.5).floor() as i32
+    radius.ceil() as i32
 }
 
 #[inline(always)]

@@ -1,0 +1,40 @@
+//! Maps that artists paint over pictures: what their numbers are where nothing is painted.
+
+use isophote_pictures::exr::Guide;
+
+/// Kind of map that an artist paints: RGBA, read as it is stored.
+#[derive(Debug)]
+pub struct Painted {
+    /// The guide that it is, which is also the option of `isophote apply` that names its files.
+    pub guide: Guide,
+    /// For people.
+    pub name: &'static str,
+    /// Value of what is not painted.
+    pub(super) nothing: f32,
+    /// Alpha of files that have none.
+    pub(super) opaque: f32,
+    /// True where alpha that is 1 everywhere is that of a file in which nobody painted it.
+    pub(super) is_plain_opaque: bool,
+    /// What a grey file cannot say.
+    pub(super) wanted: &'static str,
+}
+
+/// The kinds of maps.
+pub const PAINTED: [Painted; 2] = [
+    Painted {
+        guide: Guide::Flow,
+        name: "flow map",
+        nothing: 0.0,
+        opaque: 1.0,
+        is_plain_opaque: false,
+        wanted: "is grey, and its red and green are to say where flow leads",
+    },
+    Painted {
+        guide: Guide::Control,
+        name: "control map",
+        nothing: 0.5,
+        opaque: 0.5,
+        is_plain_opaque: true,
+        wanted: "is grey, and its colours are to say what is wanted of detail and lines",
+    },
+];

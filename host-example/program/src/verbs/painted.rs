@@ -1,0 +1,38 @@
+//! Options of maps that artists paint.
+
+use std::path::{Path, PathBuf};
+
+use clap::{Args, ValueHint};
+
+use isophote_finishing::apply::painted::{PAINTED, Painted};
+use isophote_pictures::exr::Guide;
+
+/// Maps that artists paint.
+#[derive(Clone, Debug, Default, Args)]
+pub struct PaintedArgs {
+    /// A painted flow map, along which the style draws: a file such as flow.png, or one for each frame (flow.####.exr). Red and
+    /// green say where it leads, 0.5 for nowhere, and alpha how much it counts.
+    #[arg(long, value_name = "FILE", value_hint = ValueHint::FilePath)]
+    pub flow: Option<PathBuf>,
+    /// A control map, by which places are directed: a file such as control.png, or one for each frame (control.####.exr). Red is
+    /// detail, green the width of lines, blue their amount and alpha the strength of marks and paint; 0.5 changes nothing,
+    /// and alpha of 1 everywhere is none.
+    #[arg(long, value_name = "FILE", value_hint = ValueHint::FilePath)]
+    pub control: Option<PathBuf>,
+}
+
+impl PaintedArgs {
+    /// Files of the maps that there are.
+    pub fn paths(&self) -> Vec<(&'static Painted, &Path)> {
+        let path = |painted: &Painted| match painted.guide {
+            Guide::Control => self.control.as_deref(),
+            _ => self.flow.as_deref(),
+        };
+        PAINTED.iter().filter_map(|painted| Some((painted, path(painted)?))).collect()
+    }
+
+    /// The maps that there are.
+    pub fn guides(&self) -> Vec<Guide> {
+        self.paths().into_iter().map(|(painted, _)| painted.guide).collect()
+    }
+}
