@@ -45,7 +45,7 @@ impl ApplyArgs {
             if !followed {
                 let problem = format!("the style follows no {}", painted.name);
                 let fix = format!("choose another style, or connect @{id} in its graph");
-                return Err(Error::input(&format!("--{id}"), problem, fix));
+                return Err(Error::input(format!("--{id}"), problem, fix));
             }
         }
         Masks::new(choices, self.mask_from.as_deref(), self.on_unknown)?.with_maps(&paths)
