@@ -8,7 +8,7 @@ use isophote::value::Value;
 use std::fmt::Write as _;
 
 /// Parameter that is set as well where a control does nothing by itself: node and control, then parameter and value.
-const TOGETHER: [(&str, &str, &str, &str); 14] = [
+const TOGETHER: [(&str, &str, &str, &str); 15] = [
     ("cartoon", "posterize_smooth", "posterize", "6"),
     ("coherent", "posterize_smooth", "posterize", "6"),
     ("coherent", "steps", "posterize", "6"),
@@ -19,6 +19,7 @@ const TOGETHER: [(&str, &str, &str, &str); 14] = [
     ("halftone", "suppress_small", "line_amount", "0.5"),
     ("halftone", "outline_width", "line_amount", "0.5"),
     ("halftone", "crease_width", "line_amount", "0.5"),
+    ("halftone", "far_width", "line_amount", "0.5"),
     ("halftone", "texture_lines", "line_amount", "0.5"),
     ("halftone", "line_color", "line_amount", "0.5"),
     ("halftone", "ink_color", "inks", "one"),
