@@ -108,7 +108,8 @@ fn main(@builtin(global_invocation_id) id: vec3u) {
     let factor = select(1.0, orientation.w, params.scaled != 0u);
     let upright = abs(t.x) > abs(t.y);
     let slope = select(-t.x / t.y, -t.y / t.x, upright);
-    let ds = sqrt(1.0 + slope * slope);
+    // Against the width that is asked for.
+    let ds = sqrt(1.0 + slope * slope) / factor;
 
     // Breaks between pixels k and k + 1 along the line; depth looks one further on either side.
     let halfwidth = max(params.halfwidth.x, params.halfwidth.y);
@@ -159,7 +160,7 @@ fn main(@builtin(global_invocation_id) id: vec3u) {
             found.w = select(0.0, 1.0, id_next != id_here);
             id_here = id_next;
         }
-        let d = (f32(k) + 0.5) * ds / factor;
+        let d = (f32(k) + 0.5) * ds;
         let near = abs(vec2f(d)) <= params.halfwidth;
         let n = select(vec2f(0.0), exp(params.narrow * d * d), near);
         let w = select(vec2f(0.0), exp(params.wide * d * d), near);

@@ -1,12 +1,11 @@
 //! Control maps on the CPU executor: what is neutral changes no bit, and each channel does what it is for.
 
-use isophote::engine::cpu::{CallingThread, Control, CpuExecutor};
-use isophote::engine::{Image, Rect};
-use isophote::registry;
-use isophote::request::Guides;
-use isophote::{ColourSpace, Graph, Planned, Request};
+mod result;
 
-type Inputs<'a> = &'a [(&'static str, &'a Image)];
+use isophote::ColourSpace;
+use isophote::engine::Image;
+use isophote::registry;
+use result::Inputs;
 
 const SIZE: [i32; 2] = [192, 96];
 const NEUTRAL: [f32; 4] = [0.5; 4];
@@ -42,23 +41,7 @@ fn on_the_right(channel: usize, value: f32) -> Image {
 }
 
 fn styled(style: &str, settings: &[(&str, &str)], inputs: Inputs<'_>) -> Image {
-    let mut graph = Graph::single(style).unwrap();
-    let id = graph.node(0).unwrap();
-    for (param, value) in settings {
-        graph.set_text(id, param, value).unwrap();
-    }
-    let has = |name: &str| inputs.iter().any(|(n, _)| *n == name);
-    let request = Request {
-        space: ColourSpace::Srgb,
-        guides: Guides::of(|input| has(input.id())),
-        ..Request::new(SIZE[0] as u32, SIZE[1] as u32)
-    };
-    let planned = Planned::new(&graph, request).unwrap();
-    let whole = Rect::of_size(SIZE[0] as u32, SIZE[1] as u32);
-    CpuExecutor::new()
-        .run(planned.plan(), inputs, whole, &CallingThread, Control::default())
-        .unwrap()
-        .remove(0)
+    result::of(style, settings, ColourSpace::Srgb, inputs)
 }
 
 fn bits(image: &Image) -> Vec<u32> {

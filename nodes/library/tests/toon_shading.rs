@@ -1,11 +1,10 @@
 //! Cel shading on the CPU executor: where steps lie, what they multiply, and what stays as it is.
 
-use isophote::engine::cpu::{CallingThread, Control, CpuExecutor};
-use isophote::engine::{Image, Rect};
-use isophote::request::Guides;
-use isophote::{ColourSpace, Graph, Planned, Request};
+mod result;
 
-type Inputs<'a> = &'a [(&'static str, &'a Image)];
+use isophote::ColourSpace;
+use isophote::engine::Image;
+use result::Inputs;
 
 const SIZE: [i32; 2] = [128, 96];
 
@@ -20,28 +19,7 @@ fn picture(value: impl Fn(i32, i32) -> [f32; 4]) -> Image {
 
 /// The node on linear, premultiplied images.
 fn shaded(settings: &[(&str, &str)], inputs: Inputs<'_>) -> Image {
-    let mut graph = Graph::single("toon_shading").unwrap();
-    let id = graph.node(0).unwrap();
-    for (param, value) in settings {
-        graph.set_text(id, param, value).unwrap();
-    }
-    let has = |name: &str| inputs.iter().any(|(n, _)| *n == name);
-    let request = Request {
-        space: ColourSpace::Linear,
-        guides: Guides::of(|input| has(input.id())),
-        ..Request::new(SIZE[0] as u32, SIZE[1] as u32)
-    };
-    let planned = Planned::new(&graph, request).unwrap();
-    let whole = Rect::of_size(SIZE[0] as u32, SIZE[1] as u32);
-    let read = planned.plan().windows(whole);
-    let is_read = |name: &str| {
-        planned.plan().inputs().iter().any(|port| port.name == name && !read[port.image.index()].is_empty())
-    };
-    let parts: Vec<(&str, &Image)> = inputs.iter().filter(|(name, _)| is_read(name)).copied().collect();
-    CpuExecutor::new()
-        .run(planned.plan(), &parts, whole, &CallingThread, Control::default())
-        .unwrap()
-        .remove(0)
+    result::of("toon_shading", settings, ColourSpace::Linear, inputs)
 }
 
 fn at(image: &Image, x: i32, y: i32) -> [f32; 4] {

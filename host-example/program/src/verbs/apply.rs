@@ -212,7 +212,7 @@ pub fn run(args: &ApplyArgs) -> Result<()> {
     tasks.ready.iter().try_for_each(|task| args.result.check(&task.input, &task.output))?;
     let library = Library::open()?;
     let threads = limits::start_threads(args.threads as usize)?;
-    let written = args.written(&library)?;
+    let written = args.written(&library, args.entries()?)?;
     let looks = args.looks(&library, files.style, &written)?;
     tasks.warn_of_keys_beyond(&looks);
     let choices = args.masks(&written.entries);

@@ -88,7 +88,7 @@ impl ApplyArgs {
         }
         let library = Library::open()?;
         limits::start_threads(self.threads as usize)?;
-        let looks = self.looks(&library, files.style, &self.written(&library)?)?;
+        let looks = self.looks(&library, files.style, &self.written(&library, entries)?)?;
         let is_file = |mask: &MaskChoice| matches!(mask.source, MaskSource::File(_));
         if !(self.mask_from.is_some() || choices.iter().all(is_file)) {
             let fix = "name files of masks, or EXR files by --mask-from";

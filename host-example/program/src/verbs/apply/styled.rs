@@ -19,12 +19,12 @@ pub(super) struct Written {
 }
 
 impl ApplyArgs {
-    /// Reads the files that say what the looks are.
+    /// The looks of a file, with the colours to draw with.
     ///
     /// # Errors
-    /// As [`looks::read`] and [`PaletteArgs::read`](super::PaletteArgs::read).
-    pub(super) fn written(&self, library: &Library) -> Result<Written> {
-        Ok(Written { entries: self.entries()?, palette: self.palette.read(library)? })
+    /// As [`PaletteArgs::read`](super::PaletteArgs::read).
+    pub(super) fn written(&self, library: &Library, entries: Vec<Entry>) -> Result<Written> {
+        Ok(Written { entries, palette: self.palette.read(library)? })
     }
 
     /// The looks of a file; none where there is a style.

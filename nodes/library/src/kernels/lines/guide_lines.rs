@@ -129,6 +129,8 @@ fn strength<S: Simd>(
         let halfwidth = params.halfwidth[0].max(params.halfwidth[1]);
         ((factor.reduce_max() * halfwidth + 0.5) as i32).min(params.steps)
     };
+    // Of a step, against the width that is asked for.
+    let length = line.step / factor;
     let first = -steps;
     let start = line.nearest(first);
     let mut normal_here = if has(1) { normals(simd, normal, start) } else { [zero; 3] };
@@ -160,7 +162,7 @@ fn strength<S: Simd>(
             found[3] = id_next.simd_eq(id_here).select(zero, one);
             id_here = id_next;
         }
-        let d = line.step * (k as f32 + 0.5) / factor;
+        let d = length * (k as f32 + 0.5);
         let weights = weights(d, params, 0);
         let others = if is_uniform { weights } else { self::weights(d, params, 1) };
         sums[0].add([found[0], zero, zero], weights);
