@@ -156,10 +156,7 @@ impl App {
     }
 
     fn draw(&mut self) -> Result<()> {
-        let (Some(window), Some(stage), Some(input)) = (&self.window, &mut self.stage, &mut self.input)
-        else {
-            return Ok(());
-        };
+        let Some(stage) = &self.stage else { return Ok(()) };
         if stage.is_waiting() {
             // It is drawn as soon as the device is there for it.
             self.due = Some(Instant::now());
@@ -167,22 +164,11 @@ impl App {
         }
         let started = Instant::now();
         self.due = None;
-        let session = &mut self.session;
-        collect(&mut self.background, session);
-        let context = input.egui_ctx().clone();
-        let mut raw = input.take_egui_input(window);
-        self.late = clicks::one_at_a_time(&mut raw.events, std::mem::take(&mut self.late));
-        let output = context.run_ui(raw, |ui| widgets::show(ui, session));
-        input.handle_platform_output(window, output.platform_output);
-        let delay =
-            output.viewport_output.get(&egui::ViewportId::ROOT).map(|viewport| viewport.repaint_delay);
-        let shapes = context.tessellate(output.shapes, output.pixels_per_point);
-        self.textures.follow(&output.textures_delta);
-        stage.panel.set(shapes, output.textures_delta, output.pixels_per_point);
+        collect(&mut self.background, &mut self.session);
+        let delay = self.show_controls();
         let controls = started.elapsed();
-        if !context.egui_is_using_pointer() && !context.text_edit_focused() && !session.is_wheeled() {
-            session.let_go();
-        }
+        let (Some(window), Some(stage)) = (&self.window, &mut self.stage) else { return Ok(()) };
+        let session = &mut self.session;
         hand_over(&mut self.background, session);
         session.advance();
         if let Some(frames) = self.background.frames(session) {
@@ -212,6 +198,26 @@ impl App {
             self.want(Duration::ZERO);
         }
         Ok(())
+    }
+
+    /// Lets the controls see the events up to the next click, and change the session; returns the time after which they are to be
+    /// shown again, or nothing where there is no window for them.
+    fn show_controls(&mut self) -> Option<Duration> {
+        let (window, stage, input) = (self.window.as_ref()?, self.stage.as_mut()?, self.input.as_mut()?);
+        let context = input.egui_ctx().clone();
+        let mut raw = input.take_egui_input(window);
+        self.late = clicks::one_at_a_time(&mut raw.events, std::mem::take(&mut self.late));
+        let session = &mut self.session;
+        let output = context.run_ui(raw, |ui| widgets::show(ui, session));
+        input.handle_platform_output(window, output.platform_output);
+        let shapes = context.tessellate(output.shapes, output.pixels_per_point);
+        self.textures.follow(&output.textures_delta);
+        stage.panel.set(shapes, output.textures_delta, output.pixels_per_point);
+        if !context.egui_is_using_pointer() && !context.text_edit_focused() && !session.is_wheeled() {
+            session.let_go();
+        }
+        let shown = output.viewport_output.get(&egui::ViewportId::ROOT);
+        Some(shown.map_or(Duration::MAX, |shown| shown.repaint_delay))
     }
 
     /// Draws so much later at the latest.
@@ -320,6 +326,9 @@ impl ApplicationHandler<Event> for App {
     fn window_event(&mut self, event_loop: &ActiveEventLoop, _: WindowId, event: WindowEvent) {
         if Self::is_held_escape(&event) {
             return;
+        }
+        if matches!(event, WindowEvent::KeyboardInput { .. }) {
+            self.catch_up();
         }
         if !self.is_taken(&event) {
             self.pass_on(&event);

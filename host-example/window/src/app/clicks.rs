@@ -2,6 +2,15 @@
 
 use egui::{Event, Key};
 
+fn is_button(event: &Event) -> bool {
+    matches!(event, Event::PointerButton { .. })
+}
+
+/// True where a button is pressed or released.
+pub fn is_any(events: &[Event]) -> bool {
+    events.iter().any(is_button)
+}
+
 /// Ends the events of a frame, those of before first, with the first press or release of a button, and before a release that
 /// follows a move; returns the rest. Controls do not see a click that begins and ends within one frame, as clicks do where
 /// frames are slow; they take a press for one where the pointer is at the end of the frame; and what is dragged does not go
@@ -9,7 +18,6 @@ use egui::{Event, Key};
 pub fn one_at_a_time(events: &mut Vec<Event>, before: Vec<Event>) -> Vec<Event> {
     events.splice(..0, before);
     let is_move = |event: &Event| matches!(event, Event::PointerMoved(_));
-    let is_button = |event: &Event| matches!(event, Event::PointerButton { .. });
     let is_key = |event: &Event| matches!(event, Event::Key { pressed: true, .. });
     let is_tab = |event: &Event| matches!(event, Event::Key { key: Key::Tab, pressed: true, .. });
     let Some(first) = events.iter().position(|event| is_button(event) || is_tab(event)) else {

@@ -6,7 +6,7 @@ use egui_winit::State;
 use winit::event::{ElementState, KeyEvent, WindowEvent};
 use winit::keyboard::{Key, NamedKey};
 
-use super::App;
+use super::{App, clicks};
 use crate::state::leaving::Leaving;
 use crate::state::outcome::Dialog;
 use crate::state::work::Request;
@@ -18,6 +18,17 @@ impl App {
     pub(super) fn is_held_escape(event: &WindowEvent) -> bool {
         let WindowEvent::KeyboardInput { event, .. } = event else { return false };
         event.repeat && event.logical_key == Key::Named(NamedKey::Escape)
+    }
+
+    /// Lets the controls see the clicks that came before a key: they decide what it is for, and must not find what it has changed.
+    pub(super) fn catch_up(&mut self) {
+        loop {
+            let fresh = self.input.as_ref().map(|input| &input.egui_input().events);
+            let is_behind = fresh.is_some_and(|fresh| clicks::is_any(fresh)) || clicks::is_any(&self.late);
+            if !is_behind || self.show_controls().is_none() {
+                return;
+            }
+        }
     }
 
     /// Does what a key stands for.
