@@ -158,6 +158,19 @@ struct Program {
 impl Program {
     fn command(&self) -> Command {
         let mut command = Command::new(&self.path);
+        self.set_up(&mut command);
+        command
+    }
+
+    /// The same, behind all other processes.
+    fn patient(&self) -> Command {
+        let mut command = Command::new("nice");
+        command.args(["-n", "19"]).arg(&self.path);
+        self.set_up(&mut command);
+        command
+    }
+
+    fn set_up(&self, command: &mut Command) {
         command
             .args(&self.arguments)
             .current_dir(&self.folder)
@@ -165,7 +178,6 @@ impl Program {
             .env("ISOPHOTE_LIBRARY", library_file("debug"))
             .env("ISOPHOTE_REQUIRE_GPU", "1")
             .env("NODEVICE_SELECT", "1");
-        command
     }
 
     /// Its tests whose name contains the filter, or all of them when its own name does.
@@ -297,10 +309,14 @@ const LONG: [&str; 15] = [
     "colour",
 ];
 
-/// Programs that measure time or start browsers, and run when nothing else does.
-const ALONE: [&str; 2] = ["openfx_faults", "web"];
+/// Programs that measure time, and run when nothing else does.
+const ALONE: [&str; 1] = ["openfx_faults"];
 
-/// Programs that run at a time. Each has as many threads as there are cores; while one waits for a
+/// Programs that wait for most of their time, as for browsers, and begin at once. The others leave them the processor when
+/// they want it.
+const FIRST: [&str; 1] = ["web"];
+
+/// Other programs that run at a time. Each has as many threads as there are cores; while one waits for a
 /// device, or for its last test, the other computes.
 const LANES: usize = 2;
 
@@ -313,29 +329,34 @@ fn run_all(mut programs: Vec<Program>) -> Result<Vec<String>> {
     programs.sort_by_key(|p| LONG.iter().position(|long| *long == p.name).unwrap_or(LONG.len()));
     let (alone, together): (Vec<Program>, Vec<Program>) =
         programs.into_iter().partition(|p| ALONE.contains(&p.name.as_str()));
+    let (first, together): (Vec<Program>, Vec<Program>) =
+        together.into_iter().partition(|p| FIRST.contains(&p.name.as_str()));
     let (failed, times) = (Mutex::new(Vec::new()), Mutex::new(Vec::new()));
-    for (programs, lanes) in [(together, LANES), (alone, 1)] {
-        let waiting = Mutex::new(programs.into_iter());
-        std::thread::scope(|scope| {
-            for _ in 0..lanes {
-                scope.spawn(|| {
-                    loop {
-                        // Not in the head of a `while let`: its guard would be held while the program runs.
-                        let Some(program) = lock(&waiting).next() else { break };
-                        let started = Instant::now();
-                        let output = program.command().output();
-                        let seconds = started.elapsed().as_secs_f64();
-                        lock(&times).push((seconds, program.name.clone()));
-                        // Locked, so that what two programs print stays apart.
-                        let mut failed = lock(&failed);
-                        if !show(&program, &output, seconds) {
-                            failed.push(program.name);
-                        }
-                    }
-                });
-            }
-        });
-    }
+    let run = |program: Program, is_patient: bool| {
+        let started = Instant::now();
+        let output = if is_patient { program.patient().output() } else { program.command().output() };
+        let seconds = started.elapsed().as_secs_f64();
+        lock(&times).push((seconds, program.name.clone()));
+        // Locked, so that what two programs print stays apart.
+        let mut failed = lock(&failed);
+        if !show(&program, &output, seconds) {
+            failed.push(program.name);
+        }
+    };
+    let waiting = Mutex::new(together.into_iter());
+    std::thread::scope(|scope| {
+        scope.spawn(|| first.into_iter().for_each(|program| run(program, false)));
+        for _ in 0..LANES {
+            scope.spawn(|| {
+                loop {
+                    // Not in the head of a `while let`: its guard would be held while the program runs.
+                    let Some(program) = lock(&waiting).next() else { break };
+                    run(program, true);
+                }
+            });
+        }
+    });
+    alone.into_iter().for_each(|program| run(program, false));
     show_slowest(times.into_inner().unwrap_or_default());
     Ok(failed.into_inner().unwrap_or_default())
 }
