@@ -22,6 +22,10 @@
 //! their values hold, between two of them numbers and colours change evenly (`linear`) or not at all (`step`), the rest
 //! never does. Whole numbers are rounded.
 //!
+//! `objects` are rules for things in the picture, such as `[{"match": "cryptomatte:hero/*", "detail": 2, "lines": false}]`:
+//! factors from 1/4 to 4 on `detail`, `line_width`, `line_amount` and `medium`, or no `lines`. Where several match, the last
+//! one counts. A host that knows where things are makes a control map of them.
+//!
 //! This is the only reader of the format. It reads no files: whoever has them hands in their texts.
 
 mod fault;
@@ -31,6 +35,7 @@ mod keyframes;
 mod lengths;
 mod looks;
 mod names;
+mod objects;
 mod style;
 mod title;
 
@@ -39,5 +44,6 @@ pub use feed::fed;
 pub use file::{Preset, Track, is_graph, is_written_out};
 pub use lengths::Lengths;
 pub use looks::{LOOKS, Look, PREFIX, id_of_look, look};
+pub use objects::ObjectRule;
 pub use style::{Settings, check, open, open_json};
 pub use title::{Title, is_line};

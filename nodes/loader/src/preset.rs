@@ -30,6 +30,23 @@ pub struct Preset {
     pub lengths: Option<Lengths>,
     /// Parameters in the file's order, named `id` or `node.id`.
     pub params: Vec<(String, Track)>,
+    /// Rules for things in the picture; where several hold, the last one counts.
+    pub objects: Vec<ObjectRule>,
+}
+
+/// A rule for things in a picture.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+pub struct ObjectRule {
+    /// The things, in the words of the host that finds them.
+    pub things: String,
+    /// False where they have no lines.
+    pub lines: Option<bool>,
+    /// Factors from 1/4 to 4 on detail, width of lines, their amount and strength of the medium.
+    pub factors: [Option<f64>; 4],
+    /// What a control map has where the things are: detail, width of lines, their amount and strength of the medium. The library
+    /// tells it with the preset that it reads.
+    #[serde(skip_serializing, default)]
+    pub control: [Option<f32>; 4],
 }
 
 /// The name of a preset, a description of its look, and words by which it is found. All may be left out.

@@ -465,8 +465,9 @@ impl Planner {
         let size = square::size(&self.library, &name, own, opened.pixel_aspect())?;
         let filter = self.filter_memory(&name, frame, size)?;
         // Each as it is read, as it is kept and as one of all frames.
-        let masks = self.layers.iter().filter(|layer| layer.look.mask.is_some()).count() as u64;
-        let masks = masks + 4 * self.painted.len() as u64;
+        let of_look = |look: &MaskedStyle| look.style.objects.len() + usize::from(look.mask.is_some());
+        let masks: usize = self.layers.iter().map(|layer| of_look(&layer.look)).sum();
+        let masks = masks as u64 + 4 * self.painted.len() as u64;
         let maps = u64::from(size.0) * u64::from(size.1) * 4 * 3 * masks;
         let area = |(width, height): (u32, u32)| u64::from(width) * u64::from(height);
         // Both are there while one is made of the other.

@@ -8,11 +8,12 @@ use std::sync::{Mutex, PoisonError};
 
 use isophote_exr_edit::Window;
 
+use super::objects::{self, Control, Covered};
 use super::painted::Painted;
 use super::tasks::Tasks;
 use isophote_files::error::{Error, Result};
 use isophote_files::frames::{self, Pattern};
-use isophote_pictures::exr::{self, MaskSource, OnUnknown, Picture, Selection};
+use isophote_pictures::exr::{self, Guide, MaskSource, OnUnknown, Picture, Selection};
 use isophote_pictures::pixels::{Pixels, Samples};
 use isophote_pictures::read::{self, Source, Unread};
 
@@ -30,6 +31,8 @@ pub struct MaskChoice {
 pub struct Masks {
     masks: Vec<Mask>,
     maps: Vec<Map>,
+    /// What rules for things say. Where the things are, the last masks say.
+    rules: Vec<Control>,
 }
 
 /// A painted map.
@@ -87,7 +90,11 @@ impl Masks {
             };
             Ok(Mask { place, source, invert: choice.invert, on_unknown, kept: Mutex::new(None) })
         };
-        Ok(Self { masks: choices.iter().map(mask).collect::<Result<_>>()?, maps: Vec::new() })
+        Ok(Self {
+            masks: choices.iter().map(mask).collect::<Result<_>>()?,
+            maps: Vec::new(),
+            rules: Vec::new(),
+        })
     }
 
     /// The same with painted maps, each of a file, or of one for each frame.
@@ -99,6 +106,12 @@ impl Masks {
             Ok(Map { kind, place: Place::of(path)?, kept: Mutex::new(None) })
         };
         Ok(Self { maps: paths.iter().map(map).collect::<Result<_>>()?, ..self })
+    }
+
+    /// The same with rules for things, of which the last choices say where they are.
+    #[must_use]
+    pub fn with_rules(self, rules: Vec<Control>) -> Self {
+        Self { rules, ..self }
     }
 
     /// Makes sure that all frames have their files; those of a video are not known.
@@ -177,8 +190,34 @@ impl Masks {
                     }
                 }
             }
+            self.follow_rules(picture);
         }
         Ok(())
+    }
+
+    /// Makes a control map of the rules for things.
+    fn follow_rules(&self, picture: &mut Picture) {
+        let guide = |wanted: Guide| {
+            let found = picture.guides.iter().find(|(name, _)| *name == wanted.id());
+            found.map(|(_, pixels)| pixels.to_f32())
+        };
+        let (width, height) = (picture.pixels.width(), picture.pixels.height());
+        let first = self.masks.len() - self.rules.len();
+        let coverage: Vec<Option<Vec<f32>>> =
+            picture.masks[first..].iter().map(|mask| mask.as_ref().map(Pixels::to_f32)).collect();
+        if coverage.iter().all(Option::is_none) {
+            return;
+        }
+        let rules: Vec<Covered<'_>> = coverage
+            .iter()
+            .zip(&self.rules)
+            .map(|(coverage, control)| Covered { coverage: coverage.as_deref(), control: *control })
+            .collect();
+        let (painted, depth) = (guide(Guide::Control), guide(Guide::Depth));
+        let map = objects::map(&rules, width as usize, painted.as_deref(), depth.as_deref());
+        let id = Guide::Control.id();
+        picture.guides.retain(|(name, _)| *name != id);
+        picture.guides.extend(Pixels::new(width, height, 4, Samples::F32(map)).map(|map| (id, map)));
     }
 }
 

@@ -8,6 +8,7 @@ pub mod looks;
 mod machine;
 pub mod masks;
 pub mod memory;
+pub mod objects;
 pub mod painted;
 pub mod picture_request;
 pub mod reader;

@@ -7,7 +7,7 @@ use std::sync::OnceLock;
 use super::suggest;
 use isophote_files::error::{AtPlace, Error, Result};
 use isophote_loader::Library;
-pub use isophote_loader::preset::{LOOK, Lengths, Look, Preset, StyleText, Title, Track};
+pub use isophote_loader::preset::{LOOK, Lengths, Look, ObjectRule, Preset, StyleText, Title, Track};
 
 /// Way to put most presets right.
 const FIX: &str = "correct the preset";
@@ -65,7 +65,7 @@ pub fn color(text: &str) -> Option<[f32; 4]> {
 /// Tells whether a text can be the name, the description or a tag of a preset.
 pub fn is_line(line: &str) -> bool {
     let title = Title { name: Some(line.to_owned()), ..Title::default() };
-    let preset = Preset { title, style: "-".into(), lengths: None, params: Vec::new() };
+    let preset = Preset { title, style: "-".into(), lengths: None, params: Vec::new(), objects: Vec::new() };
     let read = text(&preset).and_then(|text| parse(Path::new("-"), &text));
     read.is_ok()
 }

@@ -6,7 +6,7 @@ use std::str::FromStr;
 
 use serde_json::{Map, Value};
 
-use super::preset::{self, Lengths, Preset};
+use super::preset::{self, Lengths, ObjectRule, Preset};
 use super::source;
 use super::suggest;
 use isophote_files::error::{AtPlace, Error, Result};
@@ -64,6 +64,8 @@ pub struct Style {
     pub kind: Kind,
     /// Unit of its lengths.
     pub lengths: Lengths,
+    /// Rules of its preset for things in pictures.
+    pub objects: Vec<ObjectRule>,
     /// Its parameters by name and by frame.
     tracks: Tracks,
 }
@@ -85,7 +87,7 @@ impl Style {
     /// As [`Style::load`].
     pub fn of_preset(library: &Library, path: &Path, preset: &Preset) -> Result<Self> {
         let tracks = open_text(library, path, &preset::text(preset)?, Some(preset))?;
-        Self::of(tracks, path.as_os_str())?.picture()
+        Self::of(tracks, path.as_os_str(), preset.objects.clone())?.picture()
     }
 
     /// Itself, where it yields a picture.
@@ -105,7 +107,8 @@ impl Style {
     /// # Errors
     /// As [`Style::load`].
     pub fn any(library: &Library, name: impl AsRef<OsStr>, settings: &[Setting]) -> Result<Self> {
-        let style = Self::of(open(library, name.as_ref())?, name.as_ref())?;
+        let (tracks, objects) = open(library, name.as_ref())?;
+        let style = Self::of(tracks, name.as_ref(), objects)?;
         for setting in settings {
             style.set(setting)?;
         }
@@ -128,13 +131,13 @@ impl Style {
         Ok((preset, all.into_iter().map(|fault| Error::of_fault(fault, &place, FIX)).collect()))
     }
 
-    fn of(tracks: Tracks, name: &OsStr) -> Result<Self> {
+    fn of(tracks: Tracks, name: &OsStr, objects: Vec<ObjectRule>) -> Result<Self> {
         let name = name.to_string_lossy().into_owned();
         let graph = tracks.graph().map_err(|e| e.at(&name, "choose another style"))?;
         let kind =
             graph.output_kind().map_err(|e| e.at(&name, "name the node whose output is the graph's"))?;
         let lengths = if tracks.reference_height() == 0 { Lengths::Pixels } else { Lengths::Relative };
-        Ok(Self { name, graph, kind, lengths, tracks })
+        Ok(Self { name, graph, kind, lengths, objects, tracks })
     }
 
     /// Request to the library for pictures of a size, with lengths as the style means them.
@@ -156,6 +159,16 @@ impl Style {
                 "{}: the keyframes {} are outside the frames {first} to {last}",
                 self.name,
                 frames::summary(&keys)
+            ));
+        }
+    }
+
+    /// Warns where there are rules for things, of a run that follows none.
+    pub fn warn_of_objects(&self) {
+        if !self.objects.is_empty() {
+            let name = &self.name;
+            output::warn(format_args!(
+                "{name}: its rules for objects are left out; render EXR files without a style, and `isophote apply` follows them"
             ));
         }
     }
@@ -337,20 +350,22 @@ const FIX: &str = "correct the file";
 /// Way to find a style.
 const LIST_OF_STYLES: &str = "`isophote nodes` lists the styles, and `isophote preset list` the looks";
 
-fn open(library: &Library, style: &OsStr) -> Result<Tracks> {
+/// The style of a name, and the rules of its preset for things.
+fn open(library: &Library, style: &OsStr) -> Result<(Tracks, Vec<ObjectRule>)> {
     if let Some(json) = style.to_str().filter(|text| preset::is_written_out(text)) {
-        return open_text(library, Path::new("the graph"), json, None);
+        return Ok((open_text(library, Path::new("the graph"), json, None)?, Vec::new()));
     }
     let path = Path::new(style);
     // No node has a name that is no text.
     let name = style.to_string_lossy();
     let is_file = (looks_like_file(path) || path.exists()) && preset::id_of_look(path).is_none();
     match library.style(&name) {
-        Ok(tracks) => Ok(tracks),
+        Ok(tracks) => Ok((tracks, Vec::new())),
         Err(_) if is_file => {
             let text = source::read(path)?;
             let preset = if preset::is_graph(&text) { None } else { Some(preset::parse(path, &text)?) };
-            open_text(library, path, &text, preset.as_ref())
+            let tracks = open_text(library, path, &text, preset.as_ref())?;
+            Ok((tracks, preset.map_or_else(Vec::new, |preset| preset.objects)))
         }
         Err(refused) => {
             let is_look = preset::id_of_look(path).is_some();

@@ -8,6 +8,8 @@ use isophote_exr_edit::{Decoded, Error, File, Part, Plane, Window};
 
 use super::cryptomatte::{MatteChoice, id};
 use super::fault::Fault;
+use super::guide_list::Guide;
+use super::guides;
 use super::mattes::{Matte, Ranks, mattes, pick};
 use super::names::{Group, groups};
 use isophote_files::{frames, output};
@@ -24,6 +26,8 @@ pub enum MaskSource {
     Layer(String),
     /// Things of a Cryptomatte in the picture's file.
     Mattes(MatteChoice),
+    /// Objects by their numbers in the guide `object_id` of the picture's file.
+    Ids(Vec<u32>),
 }
 
 /// Treatment of a frame that does not know a name.
@@ -43,6 +47,10 @@ impl FromStr for MaskSource {
         if let Some(choice) = MatteChoice::of(text) {
             return choice.map(Self::Mattes);
         }
+        if let Some(ids) = text.strip_prefix("id:") {
+            let ids: Result<_, _> = ids.split(',').map(|id| id.trim().parse()).collect();
+            return ids.map(Self::Ids).map_err(|_| "write id:3, or id:3,4".into());
+        }
         match text {
             "" => Err("name a file, a layer, or cryptomatte:NAME".into()),
             _ if frames::is_picture(Path::new(text)) => Ok(Self::File(text.into())),
@@ -56,8 +64,18 @@ impl FromStr for MaskSource {
 pub struct ChosenMask {
     /// Its parts and channels there.
     pub layers: Vec<Ranks>,
-    /// Ids that cover pixels; nothing where the only channel is the mask.
-    wanted: Option<Wanted>,
+    covers: Covers,
+}
+
+/// What covers a pixel.
+#[derive(Clone, Debug)]
+enum Covers {
+    /// As much as the only channel says.
+    Value,
+    /// All of it, one of these in the only channel.
+    Numbers(Vec<u32>),
+    /// The ids of a Cryptomatte.
+    Mattes(Wanted),
 }
 
 /// Ids that make a mask.
@@ -94,13 +112,24 @@ impl ChosenMask {
             MaskSource::File(_) => Ok(None),
             MaskSource::Layer(name) => {
                 let channel = channel(exr, &groups, picture, name)?;
-                Ok(Some(Self { layers: vec![channel], wanted: None }))
+                Ok(Some(Self { layers: vec![channel], covers: Covers::Value }))
             }
             MaskSource::Mattes(choice) => {
                 let mattes = mattes(exr);
                 let matte = pick(&mattes, choice.layer.as_deref())?;
                 let layers = matte.ranks(exr, &groups, picture)?;
-                Ok(Some(Self { layers, wanted: Some(Wanted::of(matte, folder, choice)) }))
+                Ok(Some(Self { layers, covers: Covers::Mattes(Wanted::of(matte, folder, choice)) }))
+            }
+            MaskSource::Ids(ids) => {
+                let near = near(&groups, picture);
+                let Some(source) = guides::found(&near, Guide::ObjectId) else {
+                    return Err(Fault::Choice {
+                        problem: "has no layer or channel of object ids".into(),
+                        fix: "render them as object_id, or write cryptomatte:NAME".into(),
+                    });
+                };
+                let layers = vec![Ranks { part: source.part, channels: source.channels }];
+                Ok(Some(Self { layers, covers: Covers::Numbers(ids.clone()) }))
             }
         }
     }
@@ -129,13 +158,21 @@ impl ChosenMask {
         path: &Path,
     ) -> Result<Vec<f32>, Fault> {
         let mut mask = vec![0.0; window.width * window.height];
-        let mut seen = vec![false; self.wanted.as_ref().map_or(0, |wanted| wanted.unlisted.len())];
+        let wanted = match &self.covers {
+            Covers::Mattes(wanted) => Some(wanted),
+            Covers::Value | Covers::Numbers(_) => None,
+        };
+        let mut seen = vec![false; wanted.map_or(0, |wanted| wanted.unlisted.len())];
         for layer in &self.layers {
             let Some(data) = decoded[layer.part].as_ref() else { continue };
             let own = exr.parts()[layer.part].window;
-            let Some(wanted) = &self.wanted else {
+            let Some(wanted) = wanted else {
                 let values = data.plane(layer.channels[0])?.to_f32();
-                add(&mut mask, window, own, |at| values[at]);
+                let value = |at: usize| match &self.covers {
+                    Covers::Numbers(ids) => f32::from(ids.iter().any(|id| *id as f32 == values[at])),
+                    Covers::Value | Covers::Mattes(_) => values[at],
+                };
+                add(&mut mask, window, own, value);
                 continue;
             };
             for pair in layer.channels.chunks_exact(2) {
@@ -155,7 +192,7 @@ impl ChosenMask {
                 });
             }
         }
-        let wanted = self.wanted.iter();
+        let wanted = wanted.into_iter();
         let unseen = wanted.clone().flat_map(|w| &w.unlisted).zip(&seen).filter(|(_, seen)| !**seen);
         let unknown = wanted.flat_map(|w| &w.missing).chain(unseen.map(|((_, unknown), _)| unknown));
         for Unknown { problem, fix } in unknown {
@@ -227,11 +264,17 @@ impl Wanted {
     }
 }
 
-/// The channel that a name stands for: a channel's own, or that of a layer of one channel.
-fn channel(exr: &File, groups: &[Group], picture: &Group, name: &str) -> Result<Ranks, Fault> {
+/// The groups of the picture's view, or of none, those of its part first.
+fn near<'g>(groups: &'g [Group], picture: &Group) -> Vec<&'g Group> {
     let mut near: Vec<&Group> =
         groups.iter().filter(|g| g.view == picture.view || g.view.is_none()).collect();
     near.sort_by_key(|g| (g.part != picture.part, g.view != picture.view));
+    near
+}
+
+/// The channel that a name stands for: a channel's own, or that of a layer of one channel.
+fn channel(exr: &File, groups: &[Group], picture: &Group, name: &str) -> Result<Ranks, Fault> {
+    let near = near(groups, picture);
     let whole = |group: &Group, at: usize| exr.parts()[group.part].channels[at].sampling == (1, 1);
     let full = |group: &Group, component: &str| match group.layer.as_str() {
         "" => component.to_owned(),

@@ -148,7 +148,7 @@ pub struct ApplyArgs {
     pub guide: Vec<GuideChoice>,
     /// The mask of the result, which is used where it is white: a file such as mask.png, one for each frame (mask.####.exr), a layer
     /// or channel of the EXR file, or things of its Cryptomatte: `cryptomatte:hero,props/*` or
-    /// `cryptomatte[crypto_material]:skin`. A star in a name stands for any letters, ? for one, and a backslash makes
+    /// `material:skin`, or `id:3` for numbers of its object ids. A star in a name stands for any letters, ? for one, and a backslash makes
     /// either ordinary. Files of colours count by luminance; alpha never counts.
     #[arg(long, value_name = "MASK", value_hint = ValueHint::FilePath)]
     pub mask: Option<MaskSource>,
@@ -215,7 +215,8 @@ pub fn run(args: &ApplyArgs) -> Result<()> {
     let written = args.written(&library, args.entries()?)?;
     let looks = args.looks(&library, files.style, &written)?;
     tasks.warn_of_keys_beyond(&looks);
-    let choices = args.masks(&written.entries);
+    let mut choices = args.masks(&written.entries);
+    choices.extend(args.things(&looks)?);
     let masks = args.maps(&choices, &looks)?;
     masks.check(Some(&tasks))?;
     let selection = args.selection(&library, &looks, &choices, format)?;
@@ -223,7 +224,7 @@ pub fn run(args: &ApplyArgs) -> Result<()> {
     let opened = args.open_first(&tasks, &selection)?;
     let backend = if args.dry_run { Backend::Cpu } else { args.backend };
     let own = args.looks(&library, files.style, &written)?;
-    let mut planner = Planner::new(library.clone(), own)?.with_painted(args.painted.guides());
+    let mut planner = Planner::new(library.clone(), own)?.with_painted(args.painted.guides_of(&looks));
     args.check_results(&tasks, &planner, &choices)?;
     let guides = args.guides_found(&tasks, &selection, opened.as_ref(), &planner)?;
     let filter = args.filter(&library, looks, backend)?;

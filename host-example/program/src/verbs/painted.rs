@@ -4,6 +4,7 @@ use std::path::{Path, PathBuf};
 
 use clap::{Args, ValueHint};
 
+use isophote_finishing::apply::filter::MaskedStyle;
 use isophote_finishing::apply::painted::{PAINTED, Painted};
 use isophote_pictures::exr::Guide;
 
@@ -31,8 +32,13 @@ impl PaintedArgs {
         PAINTED.iter().filter_map(|painted| Some((painted, path(painted)?))).collect()
     }
 
-    /// The maps that there are.
-    pub fn guides(&self) -> Vec<Guide> {
-        self.paths().into_iter().map(|(painted, _)| painted.guide).collect()
+    /// The maps that there are, that of rules for things included.
+    pub fn guides_of(&self, looks: &[MaskedStyle]) -> Vec<Guide> {
+        let mut guides: Vec<Guide> = self.paths().into_iter().map(|(painted, _)| painted.guide).collect();
+        let has_rules = looks.iter().any(|look| !look.style.objects.is_empty());
+        if has_rules && !guides.contains(&Guide::Control) {
+            guides.push(Guide::Control);
+        }
+        guides
     }
 }

@@ -57,7 +57,7 @@ impl ApplyArgs {
         let inputs = named.inputs.iter().zip(ids).map(|(path, id)| (id, Part::Frames, Some(*path)));
         let mask = self.mask.as_ref().and_then(|mask| match mask {
             MaskSource::File(path) => Some(path.as_path()),
-            MaskSource::Layer(_) | MaskSource::Mattes(_) => None,
+            MaskSource::Layer(_) | MaskSource::Mattes(_) | MaskSource::Ids(_) => None,
         });
         let others = [
             (

@@ -175,7 +175,13 @@ fn made(args: &SaveArgs) -> Made<'_> {
 /// Start of a file.
 fn base(library: &Library, style: &Style, args: &SaveArgs) -> Result<Preset> {
     let SaveArgs { style: base, file, .. } = args;
-    let plain = |style| Preset { title: Title::default(), style, lengths: None, params: Vec::new() };
+    let plain = |style| Preset {
+        title: Title::default(),
+        style,
+        lengths: None,
+        params: Vec::new(),
+        objects: Vec::new(),
+    };
     if library.find_node(&style.name).is_ok() {
         return Ok(plain(style.name.clone()));
     }

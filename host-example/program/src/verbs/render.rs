@@ -125,6 +125,7 @@ pub fn run(args: &RenderArgs) -> Result<()> {
     };
     if let Some((_, style)) = &style {
         style.warn_of_keys_beyond(args.frames.frames());
+        style.warn_of_objects();
     }
     let scene = args.scene.load()?;
     args.check_scene(&scene)?;

@@ -3,7 +3,7 @@
 use std::path::Path;
 
 use isophote_files::error::Result;
-use isophote_finishing::stylize::preset::{self, Lengths, Preset, Title, Track};
+use isophote_finishing::stylize::preset::{self, Lengths, ObjectRule, Preset, Title, Track};
 use isophote_finishing::stylize::value::Value;
 use isophote_loader::catalogue::ParamKind;
 
@@ -146,12 +146,14 @@ pub struct TypedPreset {
     pub lengths: Option<Lengths>,
     /// Values of its parameters.
     pub params: Values,
+    /// Rules for things in the picture, which are kept as they are.
+    pub objects: Vec<ObjectRule>,
 }
 
 impl TypedPreset {
     /// A style without any settings.
     pub fn bare(style: String) -> Self {
-        Self { title: Title::default(), style, lengths: None, params: Values::default() }
+        Self { title: Title::default(), style, lengths: None, params: Values::default(), objects: Vec::new() }
     }
 
     /// The preset of a file whose text was read; its values have no types yet.
@@ -159,19 +161,22 @@ impl TypedPreset {
     /// # Errors
     /// As [`preset::parse`].
     pub fn parse(path: &Path, text: &str) -> Result<Self> {
-        let Preset { title, style, lengths, params } = preset::parse(path, text)?;
-        Ok(Self { title, style, lengths, params: Values::read(params) })
+        let Preset { title, style, lengths, params, objects } = preset::parse(path, text)?;
+        Ok(Self { title, style, lengths, params: Values::read(params), objects })
     }
 
     /// The preset as files hold it.
     pub fn written(&self) -> Preset {
-        let Self { title, style, lengths, params } = self.clone();
-        Preset { title, style, lengths, params: params.written() }
+        let Self { title, style, lengths, params, objects } = self.clone();
+        Preset { title, style, lengths, params: params.written(), objects }
     }
 
     /// True where it gives the same pictures by the same words. Names and tags are written when they are typed.
     pub fn says_the_same(&self, other: &Self) -> bool {
-        self.style == other.style && self.lengths == other.lengths && self.params.says_the_same(&other.params)
+        self.style == other.style
+            && self.lengths == other.lengths
+            && self.objects == other.objects
+            && self.params.says_the_same(&other.params)
     }
 }
 

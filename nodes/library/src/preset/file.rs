@@ -2,6 +2,7 @@
 
 use super::fault::Fault;
 use super::lengths::Lengths;
+use super::objects::{self, ObjectRule};
 use super::title::{self, Title};
 use crate::error::nearest_name;
 use serde::{Deserialize, Serialize};
@@ -26,6 +27,9 @@ pub struct Preset {
     pub lengths: Option<Lengths>,
     /// Parameters in the file's order, named `id` or `node.id`.
     pub params: Vec<(String, Track)>,
+    /// Rules for things in the picture, the last of which counts.
+    #[serde(default)]
+    pub objects: Vec<ObjectRule>,
 }
 
 /// Values of one parameter of a preset.
@@ -107,7 +111,8 @@ impl Preset {
             Some(_) => faults.push(Fault::format(place, "its parameters are no object", fix)),
             None => {}
         }
-        Ok((Self { title, style, lengths, params }, faults))
+        let objects = ObjectRule::take(place, &mut file, &mut faults);
+        Ok((Self { title, style, lengths, params, objects }, faults))
     }
 
     /// The preset as the text of a file.
@@ -141,13 +146,14 @@ impl Preset {
             file.insert(lengths.into(), kind.id().into());
         }
         file.insert(parameters.into(), params.into());
+        ObjectRule::put(&self.objects, &mut file);
         file
     }
 }
 
 /// Faults of the keys of a file that are not known, each with the nearest one that is.
 fn unknown_keys(place: &str, file: &Map<String, Value>) -> Vec<Fault> {
-    let keys = [title::KEYS, KEYS].concat();
+    let keys = [&title::KEYS[..], &KEYS, &[objects::KEY]].concat();
     let unknown = file.keys().filter(|key| !keys.contains(&key.as_str()));
     let fault = |key: &String| {
         let known = nearest_name(key, keys.iter().copied()).map_or_else(
@@ -262,6 +268,18 @@ mod tests {
     }
 
     #[test]
+    fn rules_for_things_are_read_and_written() {
+        let text = r#"{"style": "ink", "objects": [{"match": "cryptomatte:hero/*", "detail": 2, "line_width": 0.5},
+            {"match": "id:3", "lines": false, "medium": 1}, {"match": "id:4", "lines": true}]}"#;
+        let preset = parse(text).unwrap();
+        let control: Vec<_> = preset.objects.iter().map(|rule| rule.control).collect();
+        assert!(matches!(control[0], [Some(a), Some(b), None, None] if a > 0.7 && b < 0.3), "{control:?}");
+        assert_eq!(control[1], [None, None, Some(0.0), Some(0.5)]);
+        assert_eq!(control[2], [None; 4]);
+        assert_eq!(parse(&preset.to_json()), Ok(preset));
+    }
+
+    #[test]
     fn messages_name_what_is_wrong() {
         for (text, message) in [
             ("{", "is no JSON"),
@@ -275,6 +293,18 @@ mod tests {
             (r#"{"style": "ink", "parameters": {"a": {"1": 2, "01": 3}}}"#, "has frame 1 twice"),
             (r#"{"style": "ink", "parameters": {"a": {"betwen": "step"}}}"#, "did you mean 'between'?"),
             (r#"{"style": "ink", "parameters": {"a": {"1": 2, "between": "smooth"}}}"#, "linear"),
+            (r#"{"style": "ink", "objects": {}}"#, "its objects are no list"),
+            (r#"{"style": "ink", "objects": [{"detail": 2}]}"#, "names no things"),
+            (r#"{"style": "ink", "objects": [{"match": "id:1", "detail": 5}]}"#, "from 0.25 to 4"),
+            (
+                r#"{"style": "ink", "objects": [{"match": "id:1", "line_with": 2}]}"#,
+                "did you mean 'line_width'?",
+            ),
+            (r#"{"style": "ink", "objects": [{"match": "id:1", "lines": 0}]}"#, "write true or false"),
+            (
+                r#"{"style": "ink", "objects": [{"match": "id:1", "lines": false, "line_amount": 1}]}"#,
+                "leave out \"lines\" or",
+            ),
         ] {
             let error = parse(text).unwrap_err();
             assert!(error.contains(message) && !error.contains('\n'), "{text}: {error}");

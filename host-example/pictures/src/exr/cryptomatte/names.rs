@@ -1,4 +1,5 @@
-//! Names of things as people write them: `cryptomatte:hero,props/*` or `cryptomatte[crypto_material]:skin`.
+//! Names of things as people write them: `cryptomatte:hero,props/*`, or `cryptomatte[crypto_material]:skin`, which is
+//! `material:skin`, too.
 //!
 //! `*` stands for any characters, `/` included, and `?` for one. A backslash before any of `*?,\` and before blanks makes it
 //! an ordinary letter; all other letters are ordinary ones, brackets too. Blanks around names do not count.
@@ -7,6 +8,9 @@ use std::str::FromStr;
 
 /// Beginning of the choice.
 const WORD: &str = "cryptomatte";
+/// Beginning of the choice of materials, without the colon, and the Cryptomatte that holds them.
+const MATERIAL: &str = "material";
+const MATERIALS: &str = "crypto_material";
 /// Form in which it is written.
 const FIX: &str =
     "write cryptomatte:NAME,NAME or cryptomatte[LAYER]:NAME,NAME, where * stands for any letters";
@@ -38,6 +42,9 @@ enum Part {
 impl MatteChoice {
     /// The choice that a text is; nothing where it is of another kind.
     pub fn of(text: &str) -> Option<Result<Self, String>> {
+        if let Some(names) = text.strip_prefix(MATERIAL).filter(|names| names.starts_with(':')) {
+            return Some(format!("[{MATERIALS}]{names}").parse());
+        }
         let rest = text.strip_prefix(WORD)?;
         rest.starts_with([':', '[']).then(|| rest.parse())
     }

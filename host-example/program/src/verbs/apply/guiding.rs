@@ -7,6 +7,7 @@ use isophote_files::output;
 use isophote_finishing::apply::filter::{MaskedStyle, Planner};
 use isophote_finishing::apply::looks::Entry;
 use isophote_finishing::apply::masks::{MaskChoice, Masks};
+use isophote_finishing::apply::objects;
 use isophote_finishing::apply::tasks::Tasks;
 use isophote_loader::Library;
 use isophote_pictures::exr::{Guide, MaskSource, Selection};
@@ -30,7 +31,26 @@ impl ApplyArgs {
         own.chain(entries.iter().filter_map(|entry| entry.mask.clone())).collect()
     }
 
-    /// Maps over the pictures: masks, and those that are painted.
+    /// Where the things are that the rules of the style's preset are for.
+    ///
+    /// # Errors
+    /// As [`objects::choices`]; [`Error::Input`] for rules of a style that follows none, and of one of several looks.
+    pub(super) fn things(&self, looks: &[MaskedStyle]) -> Result<Vec<MaskChoice>> {
+        let Some(MaskedStyle { style, .. }) = looks.iter().find(|look| !look.style.objects.is_empty()) else {
+            return Ok(Vec::new());
+        };
+        let wrong = |problem, fix| Err(Error::input(format!("{}: objects", style.name), problem, fix));
+        if looks.len() > 1 {
+            return wrong("are rules of one of several looks", "give looks masks, or name the preset alone");
+        }
+        if !style.takes(Guide::Control.id())? {
+            let fix = "choose another style, or connect @control in its graph";
+            return wrong("are rules that the style does not follow", fix);
+        }
+        objects::choices(style)
+    }
+
+    /// Maps over the pictures: masks, those that are painted, and rules for things, whose masks are the last of the choices.
     ///
     /// # Errors
     /// As [`Masks::new`]; [`Error::Input`] for a map that no style would follow.
@@ -48,7 +68,9 @@ impl ApplyArgs {
                 return Err(Error::input(format!("--{id}"), problem, fix));
             }
         }
-        Masks::new(choices, self.mask_from.as_deref(), self.on_unknown)?.with_maps(&paths)
+        let rules = looks.iter().flat_map(|look| &look.style.objects).map(|rule| rule.control);
+        let masks = Masks::new(choices, self.mask_from.as_deref(), self.on_unknown)?;
+        Ok(masks.with_maps(&paths)?.with_rules(rules.collect()))
     }
 
     /// The files of motion vectors.

@@ -82,17 +82,18 @@ impl ApplyArgs {
         self.check_options(is_video)?;
         self.result.check(files.input, &files.output)?;
         let entries = self.entries()?;
-        let choices = self.masks(&entries);
+        let mut choices = self.masks(&entries);
         if self.is_done(files, pictures.as_ref(), &choices)? {
             return Ok(());
         }
         let library = Library::open()?;
         limits::start_threads(self.threads as usize)?;
         let looks = self.looks(&library, files.style, &self.written(&library, entries)?)?;
+        choices.extend(self.things(&looks)?);
         let is_file = |mask: &MaskChoice| matches!(mask.source, MaskSource::File(_));
         if !(self.mask_from.is_some() || choices.iter().all(is_file)) {
             let fix = "name files of masks, or EXR files by --mask-from";
-            return Err(Error::input("--mask", "a video has no layers", fix));
+            return Err(Error::input("the masks", "a video has no layers", fix));
         }
         let masks = self.maps(&choices, &looks)?;
         masks.check(None)?;

@@ -34,6 +34,14 @@ impl Session {
         if let Err(error) = turn(&mut self.looks) {
             self.notes.complain_of(Subject::Look, &error);
         }
+        let look = self.looks.present();
+        if !look.preset.objects.is_empty() {
+            let said = format!(
+                "{} has rules for objects, which `isophote apply` follows and this window does not",
+                look.name
+            );
+            self.notes.say(said);
+        }
     }
 
     /// Changes the list of nodes.

@@ -7,6 +7,12 @@ use isophote_engine::math::Elementary;
 /// Distance from 0.5 that is neutral: eight bits have no exact half, and this is more than half of their step.
 const NEUTRAL: f32 = 0.0021;
 
+/// Number of a control map that stands for a factor of 1/4 to 4.
+pub fn value_of(factor: f32) -> f32 {
+    let step = factor.log2() / 2.0;
+    if step == 0.0 { 0.5 } else { 0.5 + step * (0.5 - NEUTRAL) + NEUTRAL.copysign(step) }
+}
+
 /// A channel of a control map as -1..=1, 0 where it is neutral or not a number.
 #[inline(always)]
 pub fn step<S: Simd>(value: f32x8<S>) -> f32x8<S> {

@@ -1,0 +1,140 @@
+//! Rules of presets for things in pictures, found by Cryptomattes and by object ids.
+
+#[path = "support/mattes.rs"]
+mod mattes;
+mod support;
+
+use std::fs;
+use std::path::Path;
+use std::process::Command;
+
+use exr::prelude::*;
+
+use mattes::*;
+use support::{IN_PIXELS, fails, folder, isophote, succeeds};
+
+/// A picture with a Cryptomatte, and with numbers of objects: 3 on its right half.
+fn save_numbered(path: &Path) {
+    let listed = manifest(&["hero", "props/barrel", "props/box", "a,b*"]);
+    let number = |at: usize| if at % SIZE.0 < SIZE.0 / 2 { 1.0 } else { 3.0 };
+    let ids = ("object_id.id".to_owned(), FlatSamples::F32((0..PIXELS).map(number).collect()));
+    let channels = [colours(), matte("crypto_object", ["R", "G", "B", "A"]), vec![ids]].concat();
+    save(path, vec![("", channels, attributes("f834d0a", "crypto_object", ("manifest", &listed)))]);
+}
+
+/// `isophote apply` in a folder, with a preset of a style and its rules.
+fn apply(folder: &Path, (style, rules): (&str, &str), arguments: &[&str]) -> Command {
+    let preset = format!(r#"{{"style": "{style}", "objects": [{rules}]}}"#);
+    fs::write(folder.join("rules.json"), preset).expect("the folder is writable");
+    let mut command = isophote();
+    command.current_dir(folder).args(["apply", "--preset", "rules.json"]).args(arguments);
+    command.args(["--force", "--backend", "cpu"]).args(IN_PIXELS);
+    command
+}
+
+#[test]
+fn rules_direct_the_things_that_they_match() {
+    let folder = folder();
+    let at = |name: &str| folder.path().join(name);
+    save_numbered(&at("in.exr"));
+    let ruled = |style: &str, rules: &str| {
+        succeeds(&mut apply(folder.path(), (style, rules), &["in.exr", "out.exr"]));
+        rgb(&at("out.exr"))
+    };
+    let changed = |style: &str, rules: &str| -> Vec<bool> {
+        ruled(style, "").iter().zip(&ruled(style, rules)).map(|(a, b)| a != b).collect()
+    };
+    // What changes nothing changes no bit.
+    let neutral =
+        r#"{"match": "cryptomatte:*", "detail": 1, "line_width": 1}, {"match": "id:3", "lines": true}"#;
+    assert!(!changed("cartoon", neutral).contains(&true));
+    // Pigment has no reach but for what has bled; far from the things nothing changes.
+    for (things, near) in [
+        ("cryptomatte:hero", coverage(&["hero"])),
+        ("id:1", { (0..PIXELS).map(|at| f32::from(at % SIZE.0 < SIZE.0 / 2)).collect() }),
+    ] {
+        let changed = changed("watercolor", &format!(r#"{{"match": "{things}", "medium": 4}}"#));
+        let inside = (0..PIXELS).filter(|at| near[*at] == 1.0 && changed[*at]).count();
+        assert!(inside * 2 > near.iter().filter(|covered| **covered == 1.0).count(), "{things}: {inside}");
+        assert!((0..PIXELS).filter(|at| at % SIZE.0 == SIZE.0 - 1).all(|at| !changed[at]), "{things}");
+    }
+    // The last rule counts, and takes back what one before it wants.
+    let both = r#"{"match": "cryptomatte:*", "detail": 4}, {"match": "id:1,3", "detail": 1}"#;
+    assert!(!changed("cartoon", both).contains(&true));
+    assert!(changed("cartoon", r#"{"match": "cryptomatte:*", "detail": 4}"#).contains(&true));
+}
+
+#[test]
+fn a_rule_does_what_a_painted_map_does() {
+    let folder = folder();
+    let at = |name: &str| folder.path().join(name);
+    save_numbered(&at("in.exr"));
+    let rule = r#"{"match": "id:1,3", "lines": false}"#;
+    let run = |rules: &str, more: &[&str]| {
+        let arguments = [&["in.exr", "out.exr"], more].concat();
+        succeeds(&mut apply(folder.path(), ("cartoon", rules), &arguments));
+        rgb(&at("out.exr"))
+    };
+    let [wide, high] = [SIZE.0, SIZE.1].map(|side| side as u32);
+    let painted = |name: &str, blue: u8| {
+        let map = image::RgbaImage::from_pixel(wide, high, image::Rgba([128, 128, blue, 255]));
+        map.save(at(name)).expect("it can be written");
+    };
+    painted("none.png", 0);
+    painted("most.png", 255);
+    let ruled = run(rule, &[]);
+    assert_eq!(ruled, run("", &["--control", "none.png"]));
+    assert_ne!(ruled, run("", &[]));
+    // A painted map brings back no lines that a rule takes, and has no less where there is no rule.
+    assert_eq!(ruled, run(rule, &["--control", "most.png"]));
+    assert_ne!(ruled, run("", &["--control", "most.png"]));
+}
+
+#[test]
+fn rules_that_cannot_be_followed_say_why() {
+    let folder = folder();
+    let at = |name: &str| folder.path().join(name);
+    save_numbered(&at("in.exr"));
+    save_usual(&at("unnumbered.exr"));
+    support::picture(24, 16).save(at("in.png")).expect("it can be written");
+    for (style, rules, input, words) in [
+        ("cartoon", r#"{"match": "hero"}"#, "in.exr", &["object 1", "'hero'", "cryptomatte:NAME"][..]),
+        ("cartoon", r#"{"match": "id:hero"}"#, "in.exr", &["object 1", "id:3"]),
+        ("cartoon", r#"{"match": "cryptomatte:villain"}"#, "in.exr", &["no 'villain'"]),
+        ("cartoon", r#"{"match": "material:skin"}"#, "in.exr", &["crypto_material"]),
+        ("cartoon", r#"{"match": "id:3"}"#, "unnumbered.exr", &["no layer or channel of object ids"]),
+        ("cartoon", r#"{"match": "id:3"}"#, "in.png", &["in.png"]),
+        ("gaussian", r#"{"match": "id:3"}"#, "in.exr", &["objects", "does not follow"]),
+        ("cartoon", r#"{"match": "id:3", "detail": 9}"#, "in.exr", &["object 1", "from 0.25 to 4"]),
+    ] {
+        let mut command = apply(folder.path(), (style, rules), &[input, "none.png"]);
+        fails(&mut command, 2, words);
+        assert!(!at("none.png").exists());
+    }
+    // Names that some frames do not have are allowed as those of masks are.
+    let absent = r#"{"match": "cryptomatte:villain", "lines": false}"#;
+    let more = ["in.exr", "out.exr", "--on-unknown", "empty"];
+    succeeds(&mut apply(folder.path(), ("cartoon", absent), &more));
+    let one_of_several = r#"[{"style": "watercolor"}, {"preset": "rules.json", "mask": "cryptomatte:hero"}]"#;
+    fs::write(at("looks.json"), one_of_several).expect("the folder is writable");
+    let mut command = isophote();
+    command.current_dir(folder.path()).args("apply --layered looks.json in.exr none.exr".split(' '));
+    fails(&mut command, 2, &["objects", "one of several looks"]);
+}
+
+#[test]
+fn saving_a_preset_keeps_its_rules() {
+    let folder = folder();
+    let rules = r#"{"match": "cryptomatte:hero/*", "detail": 2.0, "lines": false}"#;
+    let preset = format!(r#"{{"style": "cartoon", "objects": [{rules}]}}"#);
+    fs::write(folder.path().join("rules.json"), preset).expect("the folder is writable");
+    let mut command = isophote();
+    let save = "preset save rules.json kept.json --set posterize=3";
+    succeeds(command.current_dir(folder.path()).args(save.split(' ')));
+    let kept = fs::read_to_string(folder.path().join("kept.json")).expect("it was written");
+    let kept: serde_json::Value = serde_json::from_str(&kept).expect("a preset");
+    assert_eq!(
+        kept["objects"],
+        serde_json::from_str::<serde_json::Value>(&format!("[{rules}]")).expect("as above")
+    );
+}

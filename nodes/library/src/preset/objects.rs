@@ -1,0 +1,135 @@
+//! Rules of a preset for things in a picture: how much detail they have, how wide and how many their lines are, and how strong
+//! the medium is on them. A host that knows where things are makes a control map of them.
+
+use super::fault::Fault;
+use crate::error::nearest_name;
+use crate::kernels::shared::control::value_of;
+use serde::{Deserialize, Serialize};
+use serde_json::{Map, Value};
+
+/// The key of the rules in a preset.
+pub(super) const KEY: &str = "objects";
+/// Most rules of a preset.
+const MOST: usize = 256;
+/// Keys of a rule: what names the things, what turns lines off, and its factors in the order of a map's channels.
+const MATCH: &str = "match";
+const LINES: &str = "lines";
+const FACTORS: [&str; 4] = ["detail", "line_width", "line_amount", "medium"];
+/// Channel of the amount of lines.
+const AMOUNT: usize = 2;
+/// Least and most of a factor.
+const RANGE: [f64; 2] = [0.25, 4.0];
+
+/// A rule for things.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct ObjectRule {
+    /// The things, in the words of the host that finds them.
+    pub things: String,
+    /// False where they have no lines.
+    pub lines: Option<bool>,
+    /// Factors from 1/4 to 4 on detail, width of lines, their amount and strength of the medium.
+    pub factors: [Option<f64>; 4],
+    /// What a control map has where the things are: detail, width of lines, their amount and strength of the medium.
+    #[serde(skip_deserializing)]
+    pub control: [Option<f32>; 4],
+}
+
+impl ObjectRule {
+    /// Takes the rules out of the file `place`. Their faults are added to `faults`.
+    pub(super) fn take(place: &str, file: &mut Map<String, Value>, faults: &mut Vec<Fault>) -> Vec<Self> {
+        let list = match file.remove(KEY) {
+            None => return Vec::new(),
+            Some(Value::Array(list)) if list.len() <= MOST => list,
+            Some(Value::Array(list)) => {
+                let problem = format!("has {} rules for objects, and there may be {MOST}", list.len());
+                faults.push(Fault::format(place, problem, "leave some of them out"));
+                return Vec::new();
+            }
+            Some(_) => {
+                let fix = "write \"objects\": [{\"match\": \"cryptomatte:hero\", \"detail\": 2}]";
+                faults.push(Fault::format(place, "its objects are no list", fix));
+                return Vec::new();
+            }
+        };
+        let one = |(number, rule)| Self::new(&format!("{place}: object {}", number + 1), rule, faults);
+        list.into_iter().enumerate().filter_map(one).collect()
+    }
+
+    fn new(place: &str, json: Value, faults: &mut Vec<Fault>) -> Option<Self> {
+        let before = faults.len();
+        let Value::Object(mut rule) = json else {
+            let fix = "write {\"match\": \"cryptomatte:hero\", \"detail\": 2}";
+            faults.push(Fault::format(place, "is no object of JSON", fix));
+            return None;
+        };
+        let things = match rule.remove(MATCH) {
+            Some(Value::String(things)) if !things.trim().is_empty() => things,
+            _ => {
+                let fix = "add \"match\": \"cryptomatte:NAME\"";
+                faults.push(Fault::format(place, "names no things", fix));
+                String::new()
+            }
+        };
+        let lines = match rule.remove(LINES) {
+            None => None,
+            Some(Value::Bool(lines)) => Some(lines),
+            Some(_) => {
+                faults.push(Fault::value(place, "does not say whether it has lines", "write true or false"));
+                None
+            }
+        };
+        let factors = FACTORS.map(|key| factor(place, key, rule.remove(key), faults));
+        if lines == Some(false) && factors[AMOUNT].is_some() {
+            let fix = format!("leave out \"{LINES}\" or \"{}\"", FACTORS[AMOUNT]);
+            faults.push(Fault::format(place, "has no lines, and an amount of them", fix));
+        }
+        faults.extend(rule.keys().map(|key| unknown(place, key)));
+        let control = control(lines, factors);
+        (faults.len() == before).then_some(Self { things, lines, factors, control })
+    }
+
+    /// Adds rules to a file, if there are any.
+    pub(super) fn put(rules: &[Self], file: &mut Map<String, Value>) {
+        let object = |rule: &Self| {
+            let mut object = Map::new();
+            object.insert(MATCH.into(), rule.things.as_str().into());
+            object.extend(rule.lines.map(|lines| (LINES.to_owned(), lines.into())));
+            let factors = FACTORS.into_iter().zip(rule.factors);
+            object.extend(factors.filter_map(|(key, factor)| Some((key.to_owned(), factor?.into()))));
+            Value::Object(object)
+        };
+        if !rules.is_empty() {
+            file.insert(KEY.into(), rules.iter().map(object).collect());
+        }
+    }
+}
+
+/// What a control map says by a rule.
+fn control(lines: Option<bool>, factors: [Option<f64>; 4]) -> [Option<f32>; 4] {
+    let mut control = factors.map(|factor| factor.map(|factor| value_of(factor as f32)));
+    if lines == Some(false) {
+        control[AMOUNT] = Some(0.0);
+    }
+    control
+}
+
+fn factor(place: &str, key: &str, value: Option<Value>, faults: &mut Vec<Fault>) -> Option<f64> {
+    let value = value?;
+    let [least, most] = RANGE;
+    let factor = value.as_f64().filter(|factor| (least..=most).contains(factor));
+    if factor.is_none() {
+        let fix = format!("write a factor from {least} to {most}; 1 changes nothing");
+        faults.push(Fault::value(place, format!("its {key} cannot be {value}"), fix));
+    }
+    factor
+}
+
+fn unknown(place: &str, key: &str) -> Fault {
+    let keys = [&[MATCH, LINES], &FACTORS[..]].concat();
+    let fix = nearest_name(key, keys.iter().copied()).map_or_else(
+        || format!("the keys are {}", keys.join(", ")),
+        |near| format!("did you mean '{near}'?"),
+    );
+    Fault::format(place, format!("has an unknown key '{}'", key.escape_default()), fix)
+}
