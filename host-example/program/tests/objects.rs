@@ -111,6 +111,12 @@ fn rules_that_cannot_be_followed_say_why() {
         fails(&mut command, 2, words);
         assert!(!at("none.png").exists());
     }
+    // A check finds words that no file could know, and all of them at once.
+    let wrong = r#"{"style": "cartoon", "objects": [{"match": "hero"}, {"match": "id:x"}]}"#;
+    fs::write(at("wrong.json"), wrong).expect("the folder is writable");
+    let mut check = isophote();
+    check.current_dir(folder.path()).args(["preset", "check", "wrong.json"]);
+    fails(&mut check, 2, &["object 1", "object 2"]);
     // Names that some frames do not have are allowed as those of masks are.
     let absent = r#"{"match": "cryptomatte:villain", "lines": false}"#;
     let more = ["in.exr", "out.exr", "--on-unknown", "empty"];

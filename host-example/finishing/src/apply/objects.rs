@@ -4,9 +4,9 @@
 //! of both multiply, and where there are to be no lines there are none.
 
 use super::masks::MaskChoice;
+use crate::stylize::preset;
 use crate::stylize::style::Style;
-use isophote_files::error::{Error, Result};
-use isophote_pictures::exr::MaskSource;
+use isophote_files::error::Result;
 
 /// What a control map has where nothing is wanted.
 const NEUTRAL: f32 = 0.5;
@@ -24,20 +24,10 @@ pub type Control = [Option<f32>; 4];
 /// Where the things of a style's rules are, by rule.
 ///
 /// # Errors
-/// [`Error::Input`] for things that no file could name.
+/// As [`preset::things`].
 pub fn choices(style: &Style) -> Result<Vec<MaskChoice>> {
-    let choice = |(number, rule): (usize, &crate::stylize::preset::ObjectRule)| {
-        let fix = || "write cryptomatte:NAME, material:NAME or id:NUMBER".to_owned();
-        let source = rule.things.parse().and_then(|source| match source {
-            MaskSource::File(_) | MaskSource::Layer(_) => Err(fix()),
-            source => Ok(source),
-        });
-        let place = format!("{}: object {}", style.name, number + 1);
-        let wrong =
-            |fix| Error::input(place, format!("matches '{}', which names no things", rule.things), fix);
-        Ok(MaskChoice { source: source.map_err(wrong)?, invert: false })
-    };
-    style.objects.iter().enumerate().map(choice).collect()
+    let sources = preset::things(&style.name, &style.objects);
+    sources.map(|source| Ok(MaskChoice { source: source?, invert: false })).collect()
 }
 
 /// Coverage of the things of a rule, and what it says.

@@ -8,6 +8,7 @@ use super::suggest;
 use isophote_files::error::{AtPlace, Error, Result};
 use isophote_loader::Library;
 pub use isophote_loader::preset::{LOOK, Lengths, Look, ObjectRule, Preset, StyleText, Title, Track};
+use isophote_pictures::exr::MaskSource;
 
 /// Way to put most presets right.
 const FIX: &str = "correct the preset";
@@ -35,6 +36,23 @@ pub fn examine(path: &Path, text: &str) -> Result<(Preset, Vec<Error>)> {
             Ok((preset, faults.into_iter().map(|fault| Error::of_fault(fault, &place, FIX)).collect()))
         }
     }
+}
+
+/// Where the things are that the rules of the preset `place` match, by rule.
+///
+/// # Errors
+/// [`Error::Input`] for words that name no things of a file.
+pub fn things(place: &str, rules: &[ObjectRule]) -> impl Iterator<Item = Result<MaskSource>> {
+    rules.iter().enumerate().map(move |(number, rule)| {
+        let source = rule.things.parse().and_then(|source| match source {
+            MaskSource::File(_) | MaskSource::Layer(_) => {
+                Err("write cryptomatte:NAME, material:NAME or id:NUMBER".to_owned())
+            }
+            source => Ok(source),
+        });
+        let problem = || format!("matches '{}', which names no things", rule.things.escape_default());
+        source.map_err(|fix| Error::input(format!("{place}: object {}", number + 1), problem(), fix))
+    })
 }
 
 /// The text of a file that holds a preset.

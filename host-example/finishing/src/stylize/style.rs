@@ -128,7 +128,9 @@ impl Style {
         let place = path.display().to_string();
         let failed = |e: isophote_loader::Error| e.at(&place, FIX);
         let all = library.check_preset(&place, text, graph.as_deref()).map_err(failed)?;
-        Ok((preset, all.into_iter().map(|fault| Error::of_fault(fault, &place, FIX)).collect()))
+        let all = all.into_iter().map(|fault| Error::of_fault(fault, &place, FIX));
+        let things: Vec<Error> = preset::things(&place, &preset.objects).filter_map(Result::err).collect();
+        Ok((preset, all.chain(things).collect()))
     }
 
     fn of(tracks: Tracks, name: &OsStr, objects: Vec<ObjectRule>) -> Result<Self> {

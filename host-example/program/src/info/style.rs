@@ -37,6 +37,8 @@ pub fn add(facts: &mut Facts, path: &Path) -> Result<()> {
         }
     };
     facts.add("parameters", preset.params.iter().map(param).collect::<Vec<_>>());
+    let objects: Vec<&str> = preset.objects.iter().map(|rule| rule.things.as_str()).collect();
+    facts.add("objects", (!objects.is_empty()).then_some(objects));
     let frames: Vec<i64> = preset.params.iter().flat_map(|(_, track)| track.frames()).collect();
     facts.add("keyframes", frames.iter().min().zip(frames.iter().max()).map(|(a, b)| json!([a, b])));
     if faults.is_empty() {
