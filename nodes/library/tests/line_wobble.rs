@@ -2,7 +2,7 @@
 
 mod result;
 
-use isophote::engine::Image;
+use isophote::engine::{Image, Rect};
 use isophote::{ColourSpace, Graph, Planned, Request};
 use result::Inputs;
 
@@ -183,6 +183,25 @@ fn on_twos_a_drawing_lasts_two_frames() {
             assert!(first == at(7) && second == at(9), "{style}: two frames are one drawing");
             assert!(apart(&first, &second) > 0.2, "{style}: the next drawing is another");
             assert!(at(6) == first && at(-2) == at(-1), "{style}: in any order");
+        }
+    }
+}
+
+#[test]
+fn a_tile_is_the_same_part_of_the_picture() {
+    let (color, rest) = (bar(0), points(0));
+    let tile = Rect { x0: BAR[0] - 9, y0: 31, x1: BAR[0] + 6, y1: 60 };
+    for style in STYLES {
+        let request = request();
+        for wobble in ["0.3", "2.5", "6"] {
+            for inputs in [&[("color", &color)][..], &[("color", &color), ("rest_position", &rest)]] {
+                let settings = [("wobble", wobble)];
+                let whole = result::at(style, &settings, request, inputs).crop(tile).unwrap();
+                let alone = result::part(style, &settings, request, inputs, tile);
+                assert_eq!(whole.window(), alone.window());
+                let same = whole.data().iter().zip(alone.data()).all(|(a, b)| a.to_bits() == b.to_bits());
+                assert!(same, "{style} {wobble}");
+            }
         }
     }
 }

@@ -16,6 +16,17 @@ pub fn of(node: &str, settings: &[(&str, &str)], space: ColourSpace, inputs: Inp
 
 /// The same for a request, whose guides are those that there are.
 pub fn at(node: &str, settings: &[(&str, &str)], request: Request, inputs: Inputs<'_>) -> Image {
+    part(node, settings, request, inputs, Rect::of_size(request.width, request.height))
+}
+
+/// A region of it, computed alone.
+pub fn part(
+    node: &str,
+    settings: &[(&str, &str)],
+    request: Request,
+    inputs: Inputs<'_>,
+    region: Rect,
+) -> Image {
     let mut graph = Graph::single(node).unwrap();
     let id = graph.node(0).unwrap();
     for (param, value) in settings {
@@ -24,14 +35,17 @@ pub fn at(node: &str, settings: &[(&str, &str)], request: Request, inputs: Input
     let has = |name: &str| inputs.iter().any(|(n, _)| *n == name);
     let request = Request { guides: Guides::of(|input| has(input.id())), ..request };
     let planned = Planned::new(&graph, request).unwrap();
-    let whole = Rect::of_size(request.width, request.height);
-    let read = planned.plan().windows(whole);
-    let is_read = |name: &str| {
-        planned.plan().inputs().iter().any(|port| port.name == name && !read[port.image.index()].is_empty())
-    };
-    let parts: Vec<(&str, &Image)> = inputs.iter().filter(|(name, _)| is_read(name)).copied().collect();
+    let windows = planned.plan().windows(region);
+    let read = planned.plan().inputs().iter().filter(|port| !windows[port.image.index()].is_empty());
+    let parts: Vec<(&str, Image)> = read
+        .filter_map(|port| {
+            let (name, image) = inputs.iter().find(|(name, _)| *name == port.name)?;
+            Some((*name, image.crop(windows[port.image.index()]).unwrap()))
+        })
+        .collect();
+    let parts: Vec<(&str, &Image)> = parts.iter().map(|(name, image)| (*name, image)).collect();
     CpuExecutor::new()
-        .run(planned.plan(), &parts, whole, &CallingThread, Control::default())
+        .run(planned.plan(), &parts, region, &CallingThread, Control::default())
         .unwrap()
         .remove(0)
 }
