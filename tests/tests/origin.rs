@@ -77,9 +77,10 @@ fn a_box_shows_the_marks_of_the_whole(spec: &'static NodeSpec) {
 fn noise_lasts_as_long_as_it_is_held(spec: &'static NodeSpec) {
     let picture = stripes(72, 60);
     let mut setup = cases::setup(spec, false);
-    if spec.id == "ink" {
-        // Its default draws no strokes.
-        setup.graph.set_text(setup.node, "style", "woodcut").unwrap();
+    // By their defaults ink draws no strokes, and lines stay where they are.
+    let set = if spec.id == "ink" { [("style", "woodcut")] } else { [("wobble", "2")] };
+    for (param, value) in set.into_iter().filter(|(param, _)| spec.param(param).is_some()) {
+        setup.graph.set_text(setup.node, param, value).unwrap();
     }
     let mut at = |hold: i32, frame: i64| {
         setup.graph.set_text(setup.node, "hold", &hold.to_string()).unwrap();

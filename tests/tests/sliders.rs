@@ -18,8 +18,10 @@ const LEAST: f64 = 1.4 / 255.0;
 const LEAST_STEP: f64 = 0.03;
 
 /// Sliders whose positions are patterns of their own, each as far from the first as any other, or that begin at off.
-const PATTERNS: [(&str, &str); 9] = [
+const PATTERNS: [(&str, &str); 11] = [
     ("blueprint", "grid"),
+    ("blueprint", "wobble"),
+    ("cartoon", "wobble"),
     ("oil_paint", "stroke_length"),
     ("oil_paint", "stroke_width"),
     ("oil_paint", "light_angle"),

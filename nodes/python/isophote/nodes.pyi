@@ -17,6 +17,7 @@ def blueprint(
     normal: Any = None,
     depth: Any = None,
     object_id: Any = None,
+    rest_position: Any = None,
     mask: Any = None,
     flow: Any = None,
     motion: Any = None,
@@ -29,6 +30,7 @@ def blueprint(
     crease_width: float = 1.0,
     far_width: float = 1.0,
     texture_lines: float = 1.0,
+    wobble: float = 0.0,
     line_color: Color = (0.92, 0.96, 1.0, 1.0),
     paper_color: Color = (0.0706, 0.251, 0.4824, 1.0),
     grid: float = 32.0,
@@ -52,6 +54,7 @@ def blueprint(
     far: float = 20.0,
     steadiness: float = 0.0,
     window: int = 2,
+    hold: int = 0,
     local_contrast: float = 1.0,
     inhibition: float = 1.0,
     colour_edges: float = 0.0,
@@ -71,6 +74,8 @@ def blueprint(
         depth: Distance from the camera; jumps draw lines, relative to the distance and never on
             planes.
         object_id: Object numbers; borders between objects draw lines.
+        rest_position: Points of the undeformed objects, in any unit and 32 bits a channel: the
+            wobble of lines moves with things. It is read where `wobble` is above 0.
         mask: How much of the result is used, 0..=1, times `mix`; all of it when open.
         flow: A flow map (see `flow_map`) that bends the orientation which the node follows, if it
             follows any.
@@ -99,6 +104,10 @@ def blueprint(
             evenly with the distance. No line is narrower than a pixel. 0 to 4.
         texture_lines: How many lines come from the picture itself: 0 leaves outlines and creases
             alone. 0 to 1.
+        wobble: How far lines waver, as if a hand had drawn them; 0 for not at all. On each axis;
+            what is between lines stays. They waver in waves of about 70 pixels of a picture 1080
+            lines high, and in longer ones where they waver by more than 4, so that none folds. The
+            waves belong to things where rest positions are known, else to the screen. 0 to 6 px.
         line_color: Colour and opacity of the lines and the grid.
         paper_color: Colour of the paper.
         grid: Spacing of the grid, whose every fifth line is stronger; 0 for none. 0 to 4096 px.
@@ -148,6 +157,8 @@ def blueprint(
             of the window count alike. 0 to 1.
         window: Neighbouring frames that count, to each side. They count as far as they and the
             motion from them are known. 0 to 8.
+        hold: Frames that wavering lines last: 2 draws them anew on twos, as in animation by hand, 0
+            keeps them for ever. Lines waver where `wobble` is above 0. 0 to 1000.
         local_contrast: Judges edges against what is around them, so that soft light has lines and
             hard light is not black. Share by which the response is divided by the local deviation
             of lightness, in a window of about 16 pixels with a floor (Heeger 1992); 0 leaves it as
@@ -173,6 +184,7 @@ def cartoon(
     normal: Any = None,
     depth: Any = None,
     object_id: Any = None,
+    rest_position: Any = None,
     mask: Any = None,
     flow: Any = None,
     motion: Any = None,
@@ -185,6 +197,7 @@ def cartoon(
     crease_width: float = 1.0,
     far_width: float = 1.0,
     texture_lines: float = 1.0,
+    wobble: float = 0.0,
     line_color: Color = (0.0, 0.0, 0.0, 1.0),
     detail: float = 0.5,
     posterize: int = 8,
@@ -220,6 +233,7 @@ def cartoon(
     sigma_a: float = 1.5,
     steadiness: float = 0.0,
     window: int = 2,
+    hold: int = 0,
     local_contrast: float = 1.0,
     inhibition: float = 1.0,
     colour_edges: float = 0.5,
@@ -242,6 +256,8 @@ def cartoon(
         depth: Distance from the camera; jumps draw lines, relative to the distance and never on
             planes.
         object_id: Object numbers; borders between objects draw lines.
+        rest_position: Points of the undeformed objects, in any unit and 32 bits a channel: the
+            wobble of lines moves with things. It is read where `wobble` is above 0.
         mask: How much of the result is used, 0..=1, times `mix`; all of it when open.
         flow: A flow map (see `flow_map`) that bends the orientation which the node follows, if it
             follows any.
@@ -270,6 +286,10 @@ def cartoon(
             evenly with the distance. No line is narrower than a pixel. 0 to 4.
         texture_lines: How many lines come from the picture itself: 0 leaves outlines and creases
             alone. 0 to 1.
+        wobble: How far lines waver, as if a hand had drawn them; 0 for not at all. On each axis;
+            what is between lines stays. They waver in waves of about 70 pixels of a picture 1080
+            lines high, and in longer ones where they waver by more than 4, so that none folds. The
+            waves belong to things where rest positions are known, else to the screen. 0 to 6 px.
         line_color: Colour and opacity of the lines.
         detail: How much of the picture's detail stays: low values give flat areas, high ones keep
             small things. Scales `sigma_r` from 3 to 1/3 times and `sigma_d` from 2 to 1/2. 0 to 1.
@@ -352,6 +372,8 @@ def cartoon(
             of the window count alike. 0 to 1.
         window: Neighbouring frames that count, to each side. They count as far as they and the
             motion from them are known. 0 to 8.
+        hold: Frames that wavering lines last: 2 draws them anew on twos, as in animation by hand, 0
+            keeps them for ever. Lines waver where `wobble` is above 0. 0 to 1000.
         local_contrast: Judges edges against what is around them, so that soft light has lines and
             hard light is not black. Share by which the response is divided by the local deviation
             of lightness, in a window of about 16 pixels with a floor (Heeger 1992); 0 leaves it as

@@ -193,6 +193,12 @@ pub fn controls_become_usable_with_what_they_need(binary: &Binary, effect: Expec
         connect(&instance, "Normal", layout);
         assert!(instance.is_enabled("guide_weight"), "{identifier}");
     }
+    if instance.has("wobble") && instance.has("hold") {
+        assert!(!instance.is_enabled("hold"), "{identifier}");
+        instance.set("wobble", 2.0);
+        instance.changed(kOfxTypeParameter, kOfxChangeUserEdited, 0.0);
+        assert!(instance.is_enabled("hold"), "{identifier}");
+    }
     let opaque = Layout { alpha: Some(kOfxImageOpaque), ..layout };
     for (layout, enabled) in [(layout, true), (opaque, false), (layout, true)] {
         connect(&instance, "Source", layout);

@@ -16,6 +16,8 @@ use isophote_loader::abi::IsophoteRequest;
 
 /// Side of the picture that plans are compared for.
 const SIDE: u32 = 512;
+/// Number of the frame that plans are compared for: marks that are held, however long, are others than those that stay.
+const FRAME: i64 = 1 << 20;
 
 /// A look about whose controls something is to be known.
 struct IdleRequest {
@@ -79,6 +81,7 @@ fn find(IdleRequest { library, look, request }: &IdleRequest) -> Result<HashSet<
         canonical_height,
         ..request
     });
+    let request = IsophoteRequest { frame: FRAME, ..request };
     // One frame before shows what all show.
     let known = style.named().past(library, &request)?.frames.min(1);
     let now = Work::of(&style.named().plan(library, &request, known)?);

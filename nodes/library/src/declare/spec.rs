@@ -385,11 +385,9 @@ impl Scope<'_> {
     }
 
     /// Frames for which motion carries marks, an even number, and the number of the frame that is described; none where
-    /// they stay on the screen.
+    /// they stay on the screen, as those of nodes without this parameter do.
     pub(crate) fn renewal(&self) -> Option<(i32, i64)> {
-        let period = even(self.int(RENEWAL.id));
-        (self.float(STEADINESS.id) > 0.0 && period > 0 && self.around.is_carrying)
-            .then_some((period, self.frame))
+        self.around.is_carrying.then(|| (even(self.int(RENEWAL.id)), self.frame))
     }
 
     /// The motion of the frame so many before the one that is described, where that is known.

@@ -48,17 +48,31 @@ pub(crate) fn clouds(scope: &mut Scope<'_>, layers: [Layer; 2]) -> Option<ImageI
             layers.map(|(f, share, seed)| (f, share, seed.wrapping_add(number).wrapping_sub(layers[0].2)));
         smooth_noise::pass(scope.plan, layers, scale, origin)
     };
-    // Of the smooth step between cells: standard deviations of a value's weights, in cells, and of the noise.
+    // Standard deviation of the smooth step between cells, in cells.
     const WIDTH: f32 = 0.365;
-    const DEVIATION: f32 = 0.2144;
     // Standard deviation of the smoothing at silhouettes, pixels of the full-size picture.
     const BORDER: f32 = 4.0;
     let [(f, a, seed), (g, b, _)] = layers;
     let sigma = WIDTH * (a / f + b / g) / (a + b);
-    let marks = Marks { sigma: sigma * scale, deviation: DEVIATION * math::hypot(a, b), seed };
+    let marks = Marks { sigma: sigma * scale, deviation: deviation(layers), seed };
     let clouds = on_things(scope, screen, &marks);
     // Outlines waver, and clouds of things must not end beside them; leaves make no crumbs.
     Some(gaussian_blur::pass(scope.plan, clouds, BORDER * scale, Class::Colour))
+}
+
+/// The same, and where they are to stay on the screen its own: smooth noise, 0..=1 about the half of both shares.
+pub(crate) fn waves(scope: &mut Scope<'_>, layers: [Layer; 2]) -> ImageId {
+    clouds(scope, layers).unwrap_or_else(|| {
+        let (scale, origin) = (scope.scale(), scope.origin());
+        smooth_noise::pass(scope.plan, layers, scale, origin)
+    })
+}
+
+/// Standard deviation of the values of smooth noise of two layers.
+pub(crate) fn deviation([(_, a, _), (_, b, _)]: [Layer; 2]) -> f32 {
+    // That of a layer whose share is 1.
+    const DEVIATION: f32 = 0.2144;
+    DEVIATION * math::hypot(a, b)
 }
 
 /// Standard deviation of the heights of [`hatching`].

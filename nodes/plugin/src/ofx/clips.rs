@@ -40,6 +40,18 @@ pub fn guides() -> impl Iterator<Item = GraphInput> {
     CLIPS.iter().map(|clip| clip.guide)
 }
 
+/// Guides that effects of nodes came to take when projects of users existed, in the order in which they came.
+const LATER: [(&str, GraphInput); 2] =
+    [("cartoon", GraphInput::RestPosition), ("blueprint", GraphInput::RestPosition)];
+
+/// The guides among these of the effect of a node, in the order of its inputs: those that came later are the last, since
+/// projects store the numbers of inputs.
+pub fn guides_of(node: &str, takes: impl Fn(GraphInput) -> bool) -> Vec<GraphInput> {
+    let mut taken: Vec<GraphInput> = guides().filter(|guide| takes(*guide)).collect();
+    taken.sort_by_key(|guide| LATER.iter().position(|later| *later == (node, *guide)));
+    taken
+}
+
 /// Name of the clip that gives a guide.
 pub fn guide_clip(guide: GraphInput) -> Option<&'static CStr> {
     CLIPS.iter().find(|clip| clip.guide == guide).map(|clip| clip.name.as_c_str())

@@ -24,6 +24,8 @@ use std::ptr::null_mut;
 
 /// Side of the picture that plans are compared for.
 const SIDE: u32 = 1024;
+/// Number of the frame that plans are compared for: marks that are held, however long, are others than those that stay.
+const FRAME: i64 = 1 << 20;
 
 /// Tells the host everything of a new instance, which may have the values of a saved project.
 pub fn created(effect: &Effect, host: &Host, instance: Handle) -> Outcome {
@@ -111,7 +113,7 @@ fn refresh(effect: &Effect, host: &Host, instance: Handle, time: f64, tiles: boo
     let scene = Surroundings::of(effect, host, instance, &settings);
     let plan = |graph: &Graph| {
         let Surroundings { guides, frames, .. } = scene;
-        Planned::new(graph, Request { guides, frames, ..Request::new(SIDE, SIDE) })
+        Planned::new(graph, Request { guides, frames, frame: FRAME, ..Request::new(SIDE, SIDE) })
     };
     let now = plan(&settings.graph).map_err(|_| kOfxStatFailed)?;
     let params = host.params(instance)?;

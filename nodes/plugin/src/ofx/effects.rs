@@ -9,7 +9,7 @@ use super::card::{
     CARD, CARD_HINT, CARD_OPTIONS, COMPUTE_HINT, COMPUTE_ON, COMPUTE_OPTIONS, PRECISION, PRECISION_HINT,
     PRECISION_OPTIONS,
 };
-use super::clips::guides;
+use super::clips::{guides, guides_of};
 use super::colours::{AS_IS, SPACES};
 use super::look_effect::{FILE, FROM_FILE, LOOK, RELOAD, TIMES_READ, own_numbers, stand_in};
 use super::mask::MASK_OPTIONS;
@@ -271,7 +271,7 @@ impl Effect {
             groups: Vec::new(),
             controls: Vec::new(),
             // The second node, if there is one, works on what the first makes.
-            guides: guides().filter(|guide| reads(nodes[0], *guide)).collect(),
+            guides: guides_of(nodes[0].id, |guide| reads(nodes[0], guide)),
             temporal: nodes.iter().any(|node| node.is_steady()),
             local: [true; 2],
             nodes,

@@ -11,7 +11,7 @@ use crate::stages::control::Control;
 use crate::stages::lines::{SHOW, Show};
 use crate::stages::steady::{Agreement, COLOUR_AGREEMENT, steadied};
 use crate::stages::{
-    ADVANCED, LOOK, difference_of_gaussians as dog, flow_dog, flow_map, line_context, lines,
+    ADVANCED, LOOK, difference_of_gaussians as dog, flow_dog, flow_map, line_context, line_wobble, lines,
 };
 use isophote_engine::ImageId;
 
@@ -24,7 +24,7 @@ pub static NODE: NodeSpec = NodeSpec {
     doc: "Light lines on blue paper with a grid: the flow-based difference of Gaussians of lightness and, \
           where given, of the breaks of normals, depth and object ids.",
     section: "1.2, 4.5",
-    inputs: &[ports::COLOR, flow_dog::NORMAL, flow_dog::DEPTH, flow_dog::OBJECT_ID],
+    inputs: &[ports::COLOR, flow_dog::NORMAL, flow_dog::DEPTH, flow_dog::OBJECT_ID, line_wobble::REST_POSITION],
     output: ports::color_output("The blueprint."),
     own_params: &[
         lines::LINE_WIDTH,
@@ -34,6 +34,7 @@ pub static NODE: NodeSpec = NodeSpec {
         lines::CREASE_WIDTH,
         lines::FAR_WIDTH,
         lines::TEXTURE_LINES,
+        line_wobble::WOBBLE,
         Param::color("line_color", "Line colour", [0.92, 0.96, 1.0, 1.0])
             .group(LOOK)
             .hint("Colour and opacity of the lines and the grid."),
@@ -71,6 +72,7 @@ pub static NODE: NodeSpec = NodeSpec {
         lines::FAR,
         STEADINESS,
         WINDOW,
+        line_wobble::HOLD,
         line_context::LOCAL_CONTRAST.with_default(Value::Float(1.0)).group(ADVANCED),
         line_context::INHIBITION.with_default(Value::Float(1.0)).group(ADVANCED),
         line_context::COLOUR_EDGES.group(ADVANCED),
@@ -96,6 +98,7 @@ fn build(scope: &mut Scope<'_>) -> ImageId {
         let seen = flow_dog::Seen { lightness, lab: Some(smooth), control };
         [smooth, flow.edges(scope.plan, seen, tensor, &guides)]
     });
+    let edges = line_wobble::wavering(scope, edges);
     let line = scope.color("line_color");
     if scope.option::<Show>(SHOW.id) == Show::Lines {
         let source = scope.required("color");

@@ -14,7 +14,7 @@ use crate::stages::steady::{Agreement, COLOUR_AGREEMENT, steadied};
 use crate::stages::tensor_options::Guides;
 use crate::stages::{
     ADVANCED, LOOK, difference_of_gaussians as dog, flow_dog, flow_map, line_context,
-    line_integral_convolution as lic, line_on_dark, lines, quantization as levels,
+    line_integral_convolution as lic, line_on_dark, line_wobble, lines, quantization as levels,
     quantize_luminance as quantization, tone, warp_sharpen,
 };
 use isophote_engine::ImageId;
@@ -31,7 +31,7 @@ pub static NODE: NodeSpec = NodeSpec {
           only where tones change. Normals, depth and object ids, where given, draw lines of \
           their own.",
     section: "4.6",
-    inputs: &[ports::COLOR, flow_dog::NORMAL, flow_dog::DEPTH, flow_dog::OBJECT_ID],
+    inputs: &[ports::COLOR, flow_dog::NORMAL, flow_dog::DEPTH, flow_dog::OBJECT_ID, line_wobble::REST_POSITION],
     output: ports::color_output("The cartoon."),
     own_params: &[
         lines::LINE_WIDTH,
@@ -41,6 +41,7 @@ pub static NODE: NodeSpec = NodeSpec {
         lines::CREASE_WIDTH,
         lines::FAR_WIDTH,
         lines::TEXTURE_LINES,
+        line_wobble::WOBBLE,
         LINE_COLOR,
         abstraction::DETAIL,
         levels::POSTERIZE,
@@ -83,6 +84,7 @@ pub static NODE: NodeSpec = NodeSpec {
         SIGMA_A,
         STEADINESS,
         WINDOW,
+        line_wobble::HOLD,
         line_context::LOCAL_CONTRAST.with_default(Value::Float(1.0)).group(ADVANCED),
         line_context::INHIBITION.with_default(Value::Float(1.0)).group(ADVANCED),
         line_context::COLOUR_EDGES.with_default(Value::Float(0.5)).group(ADVANCED),
@@ -163,6 +165,7 @@ fn build(scope: &mut Scope<'_>) -> ImageId {
         let sigma = warp_sharpen::SIGMA_W.default_float() * scope.scale();
         rgb = warp_sharpen::warped(scope.plan, rgb, sigma, warp);
     }
+    let edges = line_wobble::wavering(scope, edges);
     let drawn = lined(scope, [rgb, edges, smooth], flow.guide_weight);
     let opacity = scope.color("line_color")[3];
     let drawn = lines::shown(scope, [drawn, rgb, edges], opacity);
