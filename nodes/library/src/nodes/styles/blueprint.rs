@@ -24,7 +24,13 @@ pub static NODE: NodeSpec = NodeSpec {
     doc: "Light lines on blue paper with a grid: the flow-based difference of Gaussians of lightness and, \
           where given, of the breaks of normals, depth and object ids.",
     section: "1.2, 4.5",
-    inputs: &[ports::COLOR, flow_dog::NORMAL, flow_dog::DEPTH, flow_dog::OBJECT_ID, line_wobble::REST_POSITION],
+    inputs: &[
+        ports::COLOR,
+        flow_dog::NORMAL,
+        flow_dog::DEPTH,
+        flow_dog::OBJECT_ID,
+        line_wobble::REST_POSITION,
+    ],
     output: ports::color_output("The blueprint."),
     own_params: &[
         lines::LINE_WIDTH,

@@ -31,7 +31,13 @@ pub static NODE: NodeSpec = NodeSpec {
           only where tones change. Normals, depth and object ids, where given, draw lines of \
           their own.",
     section: "4.6",
-    inputs: &[ports::COLOR, flow_dog::NORMAL, flow_dog::DEPTH, flow_dog::OBJECT_ID, line_wobble::REST_POSITION],
+    inputs: &[
+        ports::COLOR,
+        flow_dog::NORMAL,
+        flow_dog::DEPTH,
+        flow_dog::OBJECT_ID,
+        line_wobble::REST_POSITION,
+    ],
     output: ports::color_output("The cartoon."),
     own_params: &[
         lines::LINE_WIDTH,
