@@ -91,6 +91,32 @@ fn a_rule_does_what_a_painted_map_does() {
 }
 
 #[test]
+fn frames_follow_rules_by_themselves_and_beside_others() {
+    let folder = folder();
+    let at = |name: &str| folder.path().join(name);
+    for frame in 1..=3 {
+        save_numbered(&at(&format!("in.{frame:04}.exr")));
+    }
+    let run = |rules: &str, more: &[&str]| {
+        let arguments = [&["in.####.exr", "out.####.exr"], more].concat();
+        succeeds(&mut apply(folder.path(), ("cartoon", rules), &arguments));
+        [1, 2, 3].map(|frame| rgb(&at(&format!("out.{frame:04}.exr"))))
+    };
+    let rule = r#"{"match": "cryptomatte:*", "lines": false}"#;
+    let ruled = run(rule, &[]);
+    assert!(ruled.iter().all(|frame| *frame == ruled[0]));
+    assert_ne!(ruled, run("", &[]));
+    // Neighbours are read with their own rules, in whatever order.
+    let steady = ["--steadiness", "0.5", "--motion", "estimate"];
+    let all = run(rule, &steady);
+    assert_ne!(all, run("", &steady));
+    fs::remove_file(at("out.0002.exr")).expect("it was written");
+    let one = [&["in.####.exr", "out.####.exr", "--frames", "2"], &steady[..]].concat();
+    succeeds(&mut apply(folder.path(), ("cartoon", rule), &one));
+    assert_eq!(rgb(&at("out.0002.exr")), all[1]);
+}
+
+#[test]
 fn rules_that_cannot_be_followed_say_why() {
     let folder = folder();
     let at = |name: &str| folder.path().join(name);
@@ -103,7 +129,7 @@ fn rules_that_cannot_be_followed_say_why() {
         ("cartoon", r#"{"match": "cryptomatte:villain"}"#, "in.exr", &["no 'villain'"]),
         ("cartoon", r#"{"match": "material:skin"}"#, "in.exr", &["crypto_material"]),
         ("cartoon", r#"{"match": "id:3"}"#, "unnumbered.exr", &["no layer or channel of object ids"]),
-        ("cartoon", r#"{"match": "id:3"}"#, "in.png", &["in.png"]),
+        ("cartoon", r#"{"match": "id:3"}"#, "in.png", &["rules for objects", "in.png"]),
         ("gaussian", r#"{"match": "id:3"}"#, "in.exr", &["objects", "does not follow"]),
         ("cartoon", r#"{"match": "id:3", "detail": 9}"#, "in.exr", &["object 1", "from 0.25 to 4"]),
     ] {
@@ -116,7 +142,12 @@ fn rules_that_cannot_be_followed_say_why() {
     fs::write(at("wrong.json"), wrong).expect("the folder is writable");
     let mut check = isophote();
     check.current_dir(folder.path()).args(["preset", "check", "wrong.json"]);
-    fails(&mut check, 2, &["object 1", "object 2"]);
+    let output = check.output().expect("the program can be started");
+    let said = support::errors(&output);
+    assert!(
+        output.status.code() == Some(2) && said.contains("object 1") && said.contains("object 2"),
+        "{said}"
+    );
     // Names that some frames do not have are allowed as those of masks are.
     let absent = r#"{"match": "cryptomatte:villain", "lines": false}"#;
     let more = ["in.exr", "out.exr", "--on-unknown", "empty"];

@@ -19,7 +19,7 @@ use isophote_window::state::settings::Settings;
 use isophote_window::state::work::Request;
 use isophote_window::widgets;
 
-use support::{cube, fails, folder, isophote, succeeds};
+use support::{cube, fails, folder, isophote, succeeds, video_folder};
 
 const THREE: [[u8; 3]; 3] = [[16, 32, 48], [176, 64, 40], [240, 232, 216]];
 const GPL: &str = "GIMP Palette\nName: Three\n#\n16 32 48\n176 64 40\n240 232 216\tPaper\n";
@@ -73,6 +73,28 @@ fn results_have_exactly_the_colours_of_the_file() {
     let by_hand = ["--set", "color_1=#000000", "--set", "count=2"];
     succeeds(&mut program(folder, &[&["apply"], cases[0], &by_hand].concat()));
     assert_eq!(colours(folder, "out.png"), BTreeSet::from([[0; 3], THREE[1]]));
+}
+
+#[test]
+fn all_frames_have_the_colours_of_the_file() {
+    let Some(folder) = video_folder() else { return };
+    let folder = folder.path();
+    let mut command =
+        program(folder, &["apply", "palette", "in.####.png", "out.####.png", "--palette", "three.gpl"]);
+    for frame in 1..=3 {
+        fs::copy(folder.join("in.png"), folder.join(format!("in.{frame:04}.png"))).unwrap();
+    }
+    succeeds(&mut command);
+    for frame in 1..=3 {
+        assert_eq!(colours(folder, &format!("out.{frame:04}.png")), BTreeSet::from(THREE), "{frame}");
+    }
+    let film = ["apply", "gaussian", "in.####.png", "film.mkv", "--set", "sigma=0"];
+    succeeds(&mut program(folder, &film));
+    let of_film = ["apply", "palette", "film.mkv", "of_film.####.png", "--palette", "three.gpl"];
+    succeeds(&mut program(folder, &of_film));
+    for frame in 1..=3 {
+        assert_eq!(colours(folder, &format!("of_film.{frame:04}.png")), BTreeSet::from(THREE), "{frame}");
+    }
 }
 
 #[test]

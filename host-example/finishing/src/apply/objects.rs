@@ -1,12 +1,7 @@
-//! Rules of a preset for things in pictures: where the things are, and the control map that is made of it.
+//! Rules of a preset for things in pictures, as a control map.
 //!
 //! A rule counts as much as its things cover of a pixel, and over those before it. What an artist painted is refined by it: factors
 //! of both multiply, and where there are to be no lines there are none.
-
-use super::masks::MaskChoice;
-use crate::stylize::preset;
-use crate::stylize::style::Style;
-use isophote_files::error::Result;
 
 /// What a control map has where nothing is wanted.
 const NEUTRAL: f32 = 0.5;
@@ -20,15 +15,6 @@ const BEHIND: f32 = 0.01;
 
 /// What a control map has where things are: detail, width of lines, their amount and strength of the medium.
 pub type Control = [Option<f32>; 4];
-
-/// Where the things of a style's rules are, by rule.
-///
-/// # Errors
-/// As [`preset::things`].
-pub fn choices(style: &Style) -> Result<Vec<MaskChoice>> {
-    let sources = preset::things(&style.name, &style.objects);
-    sources.map(|source| Ok(MaskChoice { source: source?, invert: false })).collect()
-}
 
 /// Coverage of the things of a rule, and what it says.
 #[derive(Clone, Copy, Debug)]

@@ -36,6 +36,8 @@ pub struct Selection {
     pub convention: Option<Convention>,
     /// Sources of masks.
     pub masks: Vec<MaskSource>,
+    /// Number of those, the last, that are of a preset's rules for objects.
+    pub rules: usize,
     /// Treatment of frames that do not know a name of a mask.
     pub on_unknown: OnUnknown,
 }
@@ -43,6 +45,8 @@ pub struct Selection {
 impl Selection {
     /// The first option that asks for something that only EXR files have.
     pub fn option(&self) -> Option<&'static str> {
+        let (own, ruled) = self.masks.split_at(self.masks.len().saturating_sub(self.rules));
+        let is_within = |mask: &MaskSource| !matches!(mask, MaskSource::File(_));
         let asked = [
             ("--layer", self.layer.is_some()),
             ("--view", self.view.is_some()),
@@ -50,7 +54,8 @@ impl Selection {
             ("--into", self.into.is_some()),
             ("--guide", self.guides.iter().any(|g| g.layer.is_some())),
             ("--motion-convention", self.convention.is_some()),
-            ("--mask", self.masks.iter().any(|mask| !matches!(mask, MaskSource::File(_)))),
+            ("--mask", own.iter().any(is_within)),
+            ("the preset's rules for objects", ruled.iter().any(is_within)),
         ];
         asked.into_iter().find(|(_, asked)| *asked).map(|(name, _)| name)
     }

@@ -215,8 +215,7 @@ pub fn run(args: &ApplyArgs) -> Result<()> {
     let written = args.written(&library, args.entries()?)?;
     let looks = args.looks(&library, files.style, &written)?;
     tasks.warn_of_keys_beyond(&looks);
-    let mut choices = args.masks(&written.entries);
-    choices.extend(args.things(&looks)?);
+    let choices = [args.masks(&written.entries), args.things(&looks)?].concat();
     let masks = args.maps(&choices, &looks)?;
     masks.check(Some(&tasks))?;
     let selection = args.selection(&library, &looks, &choices, format)?;
@@ -457,6 +456,7 @@ impl ApplyArgs {
                 .iter()
                 .map(|mask| self.mask_from.clone().map_or(mask.source.clone(), MaskSource::File))
                 .collect(),
+            rules: looks.iter().map(|look| look.style.objects.len()).sum(),
             on_unknown: self.on_unknown,
         })
     }

@@ -7,8 +7,8 @@ use isophote_files::output;
 use isophote_finishing::apply::filter::{MaskedStyle, Planner};
 use isophote_finishing::apply::looks::Entry;
 use isophote_finishing::apply::masks::{MaskChoice, Masks};
-use isophote_finishing::apply::objects;
 use isophote_finishing::apply::tasks::Tasks;
+use isophote_finishing::stylize::preset;
 use isophote_loader::Library;
 use isophote_pictures::exr::{Guide, MaskSource, Selection};
 use isophote_pictures::read::Opened;
@@ -34,7 +34,7 @@ impl ApplyArgs {
     /// Where the things are that the rules of the style's preset are for.
     ///
     /// # Errors
-    /// As [`objects::choices`]; [`Error::Input`] for rules of a style that follows none, and of one of several looks.
+    /// As [`preset::things`]; [`Error::Input`] for rules of a style that follows none, and of one of several looks.
     pub(super) fn things(&self, looks: &[MaskedStyle]) -> Result<Vec<MaskChoice>> {
         let Some(MaskedStyle { style, .. }) = looks.iter().find(|look| !look.style.objects.is_empty()) else {
             return Ok(Vec::new());
@@ -47,7 +47,8 @@ impl ApplyArgs {
             let fix = "choose another style, or connect @control in its graph";
             return wrong("are rules that the style does not follow", fix);
         }
-        objects::choices(style)
+        let sources = preset::things(&style.name, &style.objects);
+        sources.map(|source| Ok(MaskChoice { source: source?, invert: false })).collect()
     }
 
     /// Maps over the pictures: masks, those that are painted, and rules for things, whose masks are the last of the choices.
