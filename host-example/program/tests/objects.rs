@@ -9,6 +9,12 @@ use std::path::Path;
 use std::process::Command;
 
 use exr::prelude::*;
+use isophote_finishing::stylize::preset::Title;
+use isophote_loader::Library;
+use isophote_window::state::look::EditedLook;
+use isophote_window::state::outcome::{Opened, Outcome};
+use isophote_window::state::session::Session;
+use isophote_window::state::settings::Settings;
 
 use mattes::*;
 use support::{IN_PIXELS, fails, folder, isophote, succeeds};
@@ -174,4 +180,28 @@ fn saving_a_preset_keeps_its_rules() {
         kept["objects"],
         serde_json::from_str::<serde_json::Value>(&format!("[{rules}]")).expect("as above")
     );
+}
+
+#[test]
+fn what_follows_no_rules_says_so_and_keeps_them() {
+    let folder = folder();
+    let at = |name: &str| folder.path().join(name);
+    let preset = r#"{"style": "cartoon", "objects": [{"match": "id:3", "detail": 2.0}]}"#;
+    fs::write(at("rules.json"), preset).expect("the folder is writable");
+    support::cube(folder.path());
+    let mut command = isophote();
+    let render = "render cube.gltf cube.png --size 48x32 --style rules.json --backend cpu";
+    let (_, warnings) = succeeds(command.current_dir(folder.path()).args(render.split(' ')));
+    assert!(warnings.contains("its rules for objects are left out"), "{warnings}");
+    let library = Library::from_file(support::library()).expect("the library");
+    let open = |name: &Path| EditedLook::open(&library, name).expect("the look");
+    let looks = vec![open(Path::new("none"))];
+    let mut session = Session::new(library.clone(), looks, Settings::default()).expect("a session");
+    session.take_over(Outcome::Opened(Opened::Look(Box::new(open(&at("rules.json"))))));
+    let said: Vec<&str> = session.notes.present().iter().map(|note| note.text.as_str()).collect();
+    assert!(said.iter().any(|text| text.contains("rules for objects")), "{said:?}");
+    let mut look = session.look().clone();
+    let before = look.preset.objects.clone();
+    look.save(&at("kept.json"), Title::default()).expect("it can be written");
+    assert!(before.len() == 1 && open(&at("kept.json")).preset.objects == before);
 }
