@@ -1191,14 +1191,15 @@ typedef struct IsophotePresetsApi {
   // four numbers R, G, B, A, gamma-encoded sRGB, 0 to 1.
   IsophoteStatus (ISOPHOTE_ABI *color)(const char *text, float *rgba, struct IsophoteFault *fault);
   // [any-thread] Reads a preset, and writes what it holds as JSON of one form into the caller's buffer:
-  // `{"preset": {"title": {"name", "about", "tags"}, "style", "lengths", "params"}, "faults": [...]}`. A parameter is its
-  // name and `{"still": text}` or `{"keys": {"keys": [[frame, text], ...], "step"}}`, a fault its four parts. The preset is null
-  // where the text is a graph. Fails for text that is no JSON object.
+  // `{"preset": {"title": {"name", "about", "tags"}, "style", "lengths", "params", "objects"}, "faults": [...]}`. A parameter is
+  // its name and `{"still": text}` or `{"keys": {"keys": [[frame, text], ...], "step"}}`, a fault its four parts. An object is
+  // `{"rule", "things", "control"}`: the rule as the file has it, the things that it matches, and what a control map has where
+  // they are, four numbers or nulls. The preset is null where the text is a graph. Fails for text that is no JSON object.
   IsophoteStatus (ISOPHOTE_ABI *read)(const char *json,
                          const char *place,
                          struct IsophoteText *report,
                          struct IsophoteFault *fault);
-  // [any-thread] Writes the text of a file from a preset in the form of `read`.
+  // [any-thread] Writes the text of a file from a preset in the form of `read`, where objects have their rule alone.
   IsophoteStatus (ISOPHOTE_ABI *write)(const char *preset, struct IsophoteText *json, struct IsophoteFault *fault);
   // [any-thread] All faults of a preset, also those that the nodes find in its values, as a JSON array like that of `read`.
   // `graph` is the text of the graph file that the preset names, or null where it names none.

@@ -66,16 +66,17 @@ pub struct IsophotePresetsApi {
     ) -> IsophoteStatus,
 
     /// [any-thread] Reads a preset, and writes what it holds as JSON of one form into the caller's buffer:
-    /// `{"preset": {"title": {"name", "about", "tags"}, "style", "lengths", "params"}, "faults": [...]}`. A parameter is its
-    /// name and `{"still": text}` or `{"keys": {"keys": [[frame, text], ...], "step"}}`, a fault its four parts. The preset is null
-    /// where the text is a graph. Fails for text that is no JSON object.
+    /// `{"preset": {"title": {"name", "about", "tags"}, "style", "lengths", "params", "objects"}, "faults": [...]}`. A parameter is
+    /// its name and `{"still": text}` or `{"keys": {"keys": [[frame, text], ...], "step"}}`, a fault its four parts. An object is
+    /// `{"rule", "things", "control"}`: the rule as the file has it, the things that it matches, and what a control map has where
+    /// they are, four numbers or nulls. The preset is null where the text is a graph. Fails for text that is no JSON object.
     pub read: unsafe extern "C" fn(
         json: *const c_char,
         place: *const c_char,
         report: *mut IsophoteText,
         fault: *mut IsophoteFault,
     ) -> IsophoteStatus,
-    /// [any-thread] Writes the text of a file from a preset in the form of `read`.
+    /// [any-thread] Writes the text of a file from a preset in the form of `read`, where objects have their rule alone.
     pub write: unsafe extern "C" fn(
         preset: *const c_char,
         json: *mut IsophoteText,

@@ -312,8 +312,8 @@ const LONG: [&str; 15] = [
 /// Programs that measure time, and run when nothing else does.
 const ALONE: [&str; 1] = ["openfx_faults"];
 
-/// Programs that wait for most of their time, as for browsers, and begin at once. The others leave them the processor when
-/// they want it.
+/// Programs that leave a core idle, as they wait for browsers, and begin at once. The others leave them the processor when they
+/// want it.
 const FIRST: [&str; 1] = ["web"];
 
 /// Other programs that run at a time. Each has as many threads as there are cores; while one waits for a

@@ -57,7 +57,7 @@ fn rules_direct_the_things_that_they_match() {
     // Pigment has no reach but for what has bled; far from the things nothing changes.
     for (things, near) in [
         ("cryptomatte:hero", coverage(&["hero"])),
-        ("id:1", { (0..PIXELS).map(|at| f32::from(at % SIZE.0 < SIZE.0 / 2)).collect() }),
+        ("id:1", (0..PIXELS).map(|at| f32::from(at % SIZE.0 < SIZE.0 / 2)).collect()),
     ] {
         let changed = changed("watercolor", &format!(r#"{{"match": "{things}", "medium": 4}}"#));
         let inside = (0..PIXELS).filter(|at| near[*at] == 1.0 && changed[*at]).count();
@@ -68,6 +68,8 @@ fn rules_direct_the_things_that_they_match() {
     let both = r#"{"match": "cryptomatte:*", "detail": 4}, {"match": "id:1,3", "detail": 1}"#;
     assert!(!changed("cartoon", both).contains(&true));
     assert!(changed("cartoon", r#"{"match": "cryptomatte:*", "detail": 4}"#).contains(&true));
+    let both = r#"{"match": "cryptomatte:*", "lines": false}, {"match": "id:1,3", "lines": true}"#;
+    assert!(!changed("cartoon", both).contains(&true));
 }
 
 #[test]
@@ -91,7 +93,7 @@ fn a_rule_does_what_a_painted_map_does() {
     let ruled = run(rule, &[]);
     assert_eq!(ruled, run("", &["--control", "none.png"]));
     assert_ne!(ruled, run("", &[]));
-    // A painted map brings back no lines that a rule takes, and has no less where there is no rule.
+    // A painted map brings back no lines that a rule takes, and counts where there is no rule.
     assert_eq!(ruled, run(rule, &["--control", "most.png"]));
     assert_ne!(ruled, run("", &["--control", "most.png"]));
 }

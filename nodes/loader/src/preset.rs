@@ -37,15 +37,13 @@ pub struct Preset {
 /// A rule for things in a picture.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct ObjectRule {
-    /// The things, in the words of the host that finds them.
+    /// The rule as the file has it.
+    pub rule: serde_json::Map<String, serde_json::Value>,
+    /// The things, in the words of the host that finds them. The library tells them and the next with the preset that it reads.
+    #[serde(skip_serializing)]
     pub things: String,
-    /// False where they have no lines.
-    pub lines: Option<bool>,
-    /// Factors from 1/4 to 4 on detail, width of lines, their amount and strength of the medium.
-    pub factors: [Option<f64>; 4],
-    /// What a control map has where the things are: detail, width of lines, their amount and strength of the medium. The library
-    /// tells it with the preset that it reads.
-    #[serde(skip_serializing, default)]
+    /// What a control map has where the things are: detail, width of lines, their amount and strength of the medium.
+    #[serde(skip_serializing)]
     pub control: [Option<f32>; 4],
 }
 

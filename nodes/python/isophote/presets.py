@@ -52,6 +52,8 @@ class Preset:
     name: str = ""
     about: str = ""
     tags: tuple[str, ...] = ()
+    objects: tuple[Mapping[str, Any], ...] = ()
+    """Rules for things in pictures, which `isophote apply` follows; here they are kept."""
 
     def values(self, node: Node, frame: int = 0) -> dict[str, Value]:
         """The parameters at a frame as values of the node that is the style."""
@@ -74,6 +76,8 @@ class Preset:
         file = {key: value for key, value in file.items() if value}
         file.update(style=self.style, lengths=self.lengths)
         file["parameters"] = {name: _written(value) for name, value in self.parameters.items()}
+        if self.objects:
+            file["objects"] = list(self.objects)
         return as_json(file)
 
     @classmethod
@@ -105,6 +109,7 @@ class Preset:
             style=json.loads(style) if style.lstrip().startswith("{") else style,
             parameters={name: _track(track) for name, track in file["params"]},
             lengths=file["lengths"] or "relative",
+            objects=tuple(rule["rule"] for rule in file["objects"]),
             **{**title, "tags": tuple(title["tags"])},
         )
 

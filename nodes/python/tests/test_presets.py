@@ -74,6 +74,19 @@ def test_all_looks_are_there_and_open() -> None:
         assert isophote.Style(f"look:{id}").output_kind == "color"
 
 
+def test_rules_for_things_are_kept(tmp_path: Path) -> None:
+    file = tmp_path / "rules.json"
+    rules = [{"match": "cryptomatte:hero", "lines": False, "detail": 2}]
+    file.write_text(json.dumps({"style": "cartoon", "objects": rules}), encoding="utf-8")
+    preset = isophote.Preset.load(file)
+    assert list(preset.objects) == rules
+    assert json.loads(preset.to_json())["objects"] == rules
+    assert isophote.Style(file).output_kind == "color"
+    wrong = {"style": "cartoon", "objects": [{"match": "id:1", "detail": 9}]}
+    with pytest.raises(isophote.InvalidValueError, match="object 1"):
+        isophote.Preset.from_dict(wrong)
+
+
 def test_graphs_are_the_same_files(small: np.ndarray, host: Path, tmp_path: Path) -> None:
     for file in sorted((ROOT / "host-example/graphs").glob("*.json")):
         result = isophote.apply(file, small, frame=1)

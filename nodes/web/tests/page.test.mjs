@@ -96,6 +96,7 @@ test("the edge, the key for the original, defaults and going back", async () => 
 test("presets are opened and saved; what is none is told", async () => {
   const page = await open();
   const preset = { name: "Mine", style: "ink", lengths: "relative", parameters: { style: "woodcut", line_width: 3 } };
+  preset.objects = [{ match: "cryptomatte:hero", lines: false }];
   await drop(page, [{ name: "mine.json", type: "application/json", data: JSON.stringify(preset) }]);
   await addressSays(page, '"style":"ink"');
   await settled(page);

@@ -275,7 +275,7 @@ mod tests {
         let control: Vec<_> = preset.objects.iter().map(|rule| rule.control).collect();
         assert!(matches!(control[0], [Some(a), Some(b), None, None] if a > 0.7 && b < 0.3), "{control:?}");
         assert_eq!(control[1], [None, None, Some(0.0), Some(0.5)]);
-        assert_eq!(control[2], [None; 4]);
+        assert_eq!(control[2], [None, None, Some(0.5), None]);
         assert_eq!(parse(&preset.to_json()), Ok(preset));
     }
 

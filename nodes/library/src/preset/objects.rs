@@ -24,12 +24,11 @@ const RANGE: [f64; 2] = [0.25, 4.0];
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct ObjectRule {
+    /// The rule as the file has it.
+    pub rule: Map<String, Value>,
     /// The things, in the words of the host that finds them.
+    #[serde(skip_deserializing)]
     pub things: String,
-    /// False where they have no lines.
-    pub lines: Option<bool>,
-    /// Factors from 1/4 to 4 on detail, width of lines, their amount and strength of the medium.
-    pub factors: [Option<f64>; 4],
     /// What a control map has where the things are: detail, width of lines, their amount and strength of the medium.
     #[serde(skip_deserializing)]
     pub control: [Option<f32>; 4],
@@ -58,49 +57,42 @@ impl ObjectRule {
 
     fn new(place: &str, json: Value, faults: &mut Vec<Fault>) -> Option<Self> {
         let before = faults.len();
-        let Value::Object(mut rule) = json else {
+        let Value::Object(rule) = json else {
             let fix = "write {\"match\": \"cryptomatte:hero\", \"detail\": 2}";
             faults.push(Fault::format(place, "is no object of JSON", fix));
             return None;
         };
-        let things = match rule.remove(MATCH) {
-            Some(Value::String(things)) if !things.trim().is_empty() => things,
+        let things = match rule.get(MATCH) {
+            Some(Value::String(things)) if !things.trim().is_empty() => things.clone(),
             _ => {
                 let fix = "add \"match\": \"cryptomatte:NAME\"";
                 faults.push(Fault::format(place, "names no things", fix));
                 String::new()
             }
         };
-        let lines = match rule.remove(LINES) {
+        let lines = match rule.get(LINES) {
             None => None,
-            Some(Value::Bool(lines)) => Some(lines),
+            Some(Value::Bool(lines)) => Some(*lines),
             Some(_) => {
                 faults.push(Fault::value(place, "does not say whether it has lines", "write true or false"));
                 None
             }
         };
-        let factors = FACTORS.map(|key| factor(place, key, rule.remove(key), faults));
+        let factors = FACTORS.map(|key| factor(place, key, rule.get(key), faults));
         if lines == Some(false) && factors[AMOUNT].is_some() {
             let fix = format!("leave out \"{LINES}\" or \"{}\"", FACTORS[AMOUNT]);
             faults.push(Fault::format(place, "has no lines, and an amount of them", fix));
         }
-        faults.extend(rule.keys().map(|key| unknown(place, key)));
+        let is_known = |key: &str| key == MATCH || key == LINES || FACTORS.contains(&key);
+        faults.extend(rule.keys().filter(|key| !is_known(key)).map(|key| unknown(place, key)));
         let control = control(lines, factors);
-        (faults.len() == before).then_some(Self { things, lines, factors, control })
+        (faults.len() == before).then_some(Self { rule, things, control })
     }
 
     /// Adds rules to a file, if there are any.
     pub(super) fn put(rules: &[Self], file: &mut Map<String, Value>) {
-        let object = |rule: &Self| {
-            let mut object = Map::new();
-            object.insert(MATCH.into(), rule.things.as_str().into());
-            object.extend(rule.lines.map(|lines| (LINES.to_owned(), lines.into())));
-            let factors = FACTORS.into_iter().zip(rule.factors);
-            object.extend(factors.filter_map(|(key, factor)| Some((key.to_owned(), factor?.into()))));
-            Value::Object(object)
-        };
         if !rules.is_empty() {
-            file.insert(KEY.into(), rules.iter().map(object).collect());
+            file.insert(KEY.into(), rules.iter().map(|rule| rule.rule.clone()).collect());
         }
     }
 }
@@ -108,13 +100,12 @@ impl ObjectRule {
 /// What a control map says by a rule.
 fn control(lines: Option<bool>, factors: [Option<f64>; 4]) -> [Option<f32>; 4] {
     let mut control = factors.map(|factor| factor.map(|factor| value_of(factor as f32)));
-    if lines == Some(false) {
-        control[AMOUNT] = Some(0.0);
-    }
+    // A thing that has lines has those that a rule before took from it.
+    control[AMOUNT] = control[AMOUNT].or(lines.map(|lines| if lines { value_of(1.0) } else { 0.0 }));
     control
 }
 
-fn factor(place: &str, key: &str, value: Option<Value>, faults: &mut Vec<Fault>) -> Option<f64> {
+fn factor(place: &str, key: &str, value: Option<&Value>, faults: &mut Vec<Fault>) -> Option<f64> {
     let value = value?;
     let [least, most] = RANGE;
     let factor = value.as_f64().filter(|factor| (least..=most).contains(factor));

@@ -18,6 +18,19 @@ export interface Preset {
   lengths?: "relative" | "pixels";
   /** By id; `node.id` where the style is a graph. */
   parameters?: Record<string, Value | Keys>;
+  /** Rules for things in pictures, which `isophote apply` follows; here they are read and left out. */
+  objects?: ObjectRule[];
+}
+
+/** A rule for things: what is done where they are. Factors from 1/4 to 4. */
+export interface ObjectRule {
+  /** `cryptomatte:NAME`, `material:NAME` or `id:NUMBER`. */
+  match: string;
+  lines?: boolean;
+  detail?: number;
+  line_width?: number;
+  line_amount?: number;
+  medium?: number;
 }
 
 /** Nodes and how they are connected: a graph file. */

@@ -1,9 +1,10 @@
-// Looks as the page holds them: `{style, lengths, parameters}`, where the parameters are those that differ from their defaults.
+// Looks as the page holds them: `{style, lengths, parameters}`, where the parameters are those that differ from their defaults, and
+// `objects` where there are rules for things, which are kept and not followed.
 
 /** The keys of a look that say what is computed, without those for people. */
 export function bare(look) {
-  const { style, lengths = "relative", parameters = {} } = look;
-  return { style, lengths, parameters: { ...parameters } };
+  const { style, lengths = "relative", parameters = {}, objects } = look;
+  return { style, lengths, parameters: { ...parameters }, ...(objects && { objects }) };
 }
 
 /** A look out of what a file or a link holds: a preset, or a graph. */
@@ -20,7 +21,7 @@ export function titleOf(json, file) {
   return { name: text(json.name) || file.replace(/\.json$/i, ""), about: text(json.about) };
 }
 
-/** Whether two looks compute the same. */
+/** Whether two looks compute the same: here rules for things do nothing. */
 export function isSame(a, b) {
   return JSON.stringify(canonical(a)) === JSON.stringify(canonical(b));
 }
