@@ -4,7 +4,8 @@ use std::io::{Seek, Write};
 
 use exr::meta::attribute::Chromaticities;
 use exr::prelude::{
-    AnyChannel, AnyChannels, Encoding, FlatSamples, Image, Layer, LayerAttributes, Text, Vec2, WritableImage,
+    AnyChannel, AnyChannels, AttributeValue, Encoding, FlatSamples, Image, Layer, LayerAttributes, Text,
+    Vec2, WritableImage,
 };
 
 use crate::content::Plane;
@@ -31,13 +32,15 @@ pub struct Picture {
     pub world_to_camera: Option<[f32; 16]>,
     /// Row vectors times this matrix lead from the world to the window, each side from -1 to 1 (`worldToNDC`).
     pub world_to_ndc: Option<[f32; 16]>,
+    /// Names and values of further attributes, whose type is `string`.
+    pub texts: Vec<(String, String)>,
 }
 
 /// Writes a file of scan lines under ZIP compression, 16 rows in a chunk.
 ///
 /// # Errors
 /// [`Error::Argument`] for channels whose number of samples does not fit, that are twice there, or that have names that
-/// are no ASCII; [`Error::Write`].
+/// are no ASCII, and for texts that are none; [`Error::Write`].
 pub fn write(picture: &Picture, out: &mut (impl Write + Seek)) -> Result<()> {
     let mut channels = Vec::with_capacity(picture.channels.len());
     for (name, plane) in &picture.channels {
@@ -64,6 +67,7 @@ pub fn write(picture: &Picture, out: &mut (impl Write + Seek)) -> Result<()> {
         comments: picture.comments.as_deref().map(text).transpose()?,
         world_to_camera: picture.world_to_camera,
         world_to_normalized_device: picture.world_to_ndc,
+        other: picture.texts.iter().map(attribute).collect::<Result<_>>()?,
         ..LayerAttributes::default()
     };
     let size = (picture.width, picture.height);
@@ -77,6 +81,10 @@ pub fn write(picture: &Picture, out: &mut (impl Write + Seek)) -> Result<()> {
         exr::error::Error::Io(error) => Error::Write(error),
         other => Error::Argument(other.to_string()),
     })
+}
+
+fn attribute((name, value): &(String, String)) -> Result<(Text, AttributeValue)> {
+    Ok((text(name)?, AttributeValue::Text(text(value)?)))
 }
 
 fn text(name: &str) -> Result<Text> {

@@ -10,6 +10,7 @@ use isophote_example::kernels::Kernels;
 use isophote_example::plan_runner::ALL;
 use isophote_files::error::Result;
 use isophote_loader::Library;
+use isophote_pictures::exr::MadeMatte;
 use isophote_pictures::floats::Picture;
 use isophote_render::background::Background;
 use isophote_render::gpu::Gpu;
@@ -20,6 +21,9 @@ use isophote_render::targets::{Target, Targets};
 use isophote_scene::Scene;
 use isophote_scene::camera::{Direction, Framing, Orbit, View, Viewpoint};
 use isophote_scene::pose::Pose;
+
+/// Samples of a pixel that a Cryptomatte is made of, a power of 2.
+const SAMPLES: u32 = 16;
 
 /// Options of a shot, which say what is rendered of a scene.
 #[derive(Clone, Debug)]
@@ -260,6 +264,32 @@ impl Shot {
     pub fn read(&mut self, choose: impl FnOnce(&Targets) -> Option<&Target>) -> Result<Option<Picture>> {
         let target = choose(self.renderer.targets());
         target.map(|target| self.readback.read(&self.gpu, &target.texture)).transpose()
+    }
+
+    /// Cryptomattes of the objects and of the materials of the frame drawn last; nothing before a frame was drawn. From then
+    /// on, what is known of the pixels is that of another sample of them.
+    ///
+    /// # Errors
+    /// [`isophote_files::error::Error::Failure`] when the device fails.
+    pub fn read_mattes(&mut self) -> Result<Vec<MadeMatte>> {
+        let Some((_, view)) = self.drawn else { return Ok(Vec::new()) };
+        let mut samples = Vec::with_capacity(SAMPLES as usize);
+        for sample in 0..SAMPLES {
+            // Places in a pixel by Hammersley: no two of them in one row or column.
+            let place = [sample, sample.reverse_bits() >> (32 - SAMPLES.ilog2())];
+            let shift = place.map(|step| (step as f32 + 0.5) / SAMPLES as f32 - 0.5);
+            let mut encoder = self.gpu.device.create_command_encoder(&Default::default());
+            let shown = (&self.scene, &self.pose, &view, &self.lighting);
+            self.renderer.encode_shifted(&mut encoder, shown, shift);
+            self.gpu.queue.submit([encoder.finish()]);
+            let numbers = self.read(|targets| Some(&targets.object_id))?;
+            samples.extend(numbers.map(|picture| picture.data.iter().map(|v| *v as u32).collect::<Vec<_>>()));
+        }
+        let things =
+            [("crypto_object", self.scene.object_names()), ("crypto_material", self.scene.material_names())];
+        let made =
+            |(name, names): (_, Vec<String>)| MadeMatte::new(name, self.options.size, &samples, &names);
+        Ok(things.map(made).into())
     }
 
     /// Pixels from where points of the frame drawn last are to where they will be in the frame that follows; nothing before

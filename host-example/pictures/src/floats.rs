@@ -147,18 +147,22 @@ pub struct Layer<'a> {
     pub precision: Precision,
 }
 
-/// Saves several layers as one linear EXR file, compressed without loss. `world_to_camera` is the camera's matrix
-/// for row vectors, row by row.
+/// What the header of an EXR file says beside its channels.
+#[derive(Clone, Debug, Default)]
+pub struct Header {
+    /// The camera's matrix for row vectors, row by row.
+    pub world_to_camera: Option<[f32; 16]>,
+    /// Names and values of further attributes.
+    pub texts: Vec<(String, String)>,
+}
+
+/// Saves several layers as one linear EXR file, compressed without loss.
 ///
 /// # Errors
 /// As [`files::write()`]; [`Error::Input`] for layers that do not fit together.
-pub fn save_layers(
-    path: &Path,
-    existing: Existing,
-    layers: &[Layer<'_>],
-    world_to_camera: Option<[f32; 16]>,
-) -> Result<()> {
-    write_exr(path, existing, &create::Picture { world_to_camera, ..created(layers) })
+pub fn save_layers(path: &Path, existing: Existing, layers: &[Layer<'_>], header: Header) -> Result<()> {
+    let Header { world_to_camera, texts } = header;
+    write_exr(path, existing, &create::Picture { world_to_camera, texts, ..created(layers) })
 }
 
 fn created(layers: &[Layer<'_>]) -> create::Picture {

@@ -317,5 +317,5 @@ fn write_layers(file: &std::path::Path) {
         Layer { picture: &main, names: &["R", "G", "B"], precision },
         Layer { picture: &beauty, names: &["beauty.R", "beauty.G", "beauty.B"], precision },
     ];
-    floats::save_layers(file, Existing::Replace, &layers, None).unwrap();
+    floats::save_layers(file, Existing::Replace, &layers, floats::Header::default()).unwrap();
 }

@@ -5,7 +5,7 @@
 //! geometry buffer with one sample per pixel, and the tone mapping. They are recorded into the caller's
 //! command encoder; nothing is allocated once every pipeline that the scene needs has been used.
 
-use glam::Mat4;
+use glam::{Mat4, Vec3};
 
 use crate::animated::{fill_joints, fill_weights, joint_offsets, weight_offsets};
 use crate::background::{Backdrop, Background};
@@ -248,6 +248,22 @@ impl Renderer {
         lighting: &Lighting,
     ) {
         self.pass_over(scene, pose, view, lighting);
+        self.geometry_passes(encoder, scene);
+    }
+
+    /// Records the geometry of the frame that was encoded last once more, moved by a part of a pixel, x to the right and y
+    /// down: another sample of each pixel. Its encoder must have been submitted.
+    pub fn encode_shifted(
+        &mut self,
+        encoder: &mut wgpu::CommandEncoder,
+        (scene, pose, view, lighting): (&Scene, &Pose, &View, &Lighting),
+        [x, y]: [f32; 2],
+    ) {
+        let mut frame = self.write_buffers(scene, pose, view, lighting);
+        // A pixel is so much of the picture, which is 2 wide and high where shaders see it, y up.
+        let shift = Vec3::new(2.0 * x * frame.size.z, -2.0 * y * frame.size.w, 0.0);
+        frame.view_projection = Mat4::from_translation(shift) * frame.view_projection;
+        self.queue.write_buffer(&self.buffers.frame, 0, bytemuck::bytes_of(&frame));
         self.geometry_passes(encoder, scene);
     }
 

@@ -155,6 +155,31 @@ fn the_geometry_buffer_says_what_is_where() {
     assert_eq!(covered, 24);
 }
 
+#[test]
+fn shifted_geometry_is_another_sample_of_the_frame() {
+    let Some(gpu) = gpu() else { return };
+    let nodes = vec![Node { mesh: Some(0), ..Node::default() }];
+    let scene = scene(vec![square()], nodes, vec![]);
+    let mut renderer = Renderer::new(&gpu.device, &gpu.queue, &scene, SIZE).unwrap();
+    let (pose, lighting) = (Pose::at_rest(&scene), Lighting::default());
+    let mut encoder = gpu.device.create_command_encoder(&Default::default());
+    renderer.encode(&mut encoder, &scene, &pose, &view(), &lighting);
+    gpu.queue.submit([encoder.finish()]);
+    let mut readback = Readback::default();
+    let still = readback.read(&gpu, &renderer.targets().object_id.texture).unwrap();
+    let mut encoder = gpu.device.create_command_encoder(&Default::default());
+    renderer.encode_shifted(&mut encoder, (&scene, &pose, &view(), &lighting), [3.0, 2.0]);
+    gpu.queue.submit([encoder.finish()]);
+    let moved = readback.read(&gpu, &renderer.targets().object_id.texture).unwrap();
+    let places = (0..SIZE.1 - 2).flat_map(|y| (0..SIZE.0 - 3).map(move |x| (x, y)));
+    assert!(still.data.contains(&1.0));
+    assert!(
+        places.clone().all(|(x, y)| pixel(&moved, x + 3, y + 2) == pixel(&still, x, y)),
+        "three pixels to the right and two down"
+    );
+    assert!(places.clone().any(|(x, y)| pixel(&moved, x, y) != pixel(&still, x, y)));
+}
+
 /// The position at rest of the surface at every covered pixel of a frame at time 0.5 must be what `at_rest` says of
 /// where it is.
 fn assert_rest(gpu: &Gpu, scene: &Scene, what: &str, at_rest: impl Fn(Vec2) -> Vec2) {

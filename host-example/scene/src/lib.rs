@@ -2,7 +2,7 @@
 //!
 //! | module | content |
 //! |---|---|
-//! | [`model`] | meshes, nodes and lights of a scene, and their bounds |
+//! | [`model`], `names` | meshes, nodes and lights of a scene, and their bounds; names of what is drawn |
 //! | [`material`] | materials, textures and images |
 //! | [`geometry`] | normals and tangents where a file has none |
 //! | [`gltf_file`], [`obj_file`] | readers of the two formats |
@@ -33,6 +33,7 @@ mod ktx2;
 mod load;
 pub mod material;
 pub mod model;
+mod names;
 pub mod obj_file;
 mod phrases;
 pub mod pose;

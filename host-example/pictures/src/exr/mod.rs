@@ -19,6 +19,7 @@ mod offers;
 mod picture;
 
 pub use self::choose::Selection;
+pub use self::cryptomatte::Made as MadeMatte;
 pub use self::file::{ExrFile, Opened, is_whole, mask_of, motion_of};
 pub use self::guide_list::Guide;
 pub use self::guides::GuideChoice;

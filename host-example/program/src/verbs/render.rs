@@ -24,7 +24,7 @@ use isophote_finishing::stylize::style::{Setting, Style};
 use isophote_finishing::video::{self, Film};
 use isophote_finishing::writing::{Depth, FileArgs};
 use isophote_loader::Library;
-use isophote_pictures::floats::{self, Layer, Picture, Precision};
+use isophote_pictures::floats::{self, Header, Layer, Picture, Precision};
 use isophote_pictures::read;
 use isophote_render::targets::{Target, Targets};
 use isophote_scene::Scene;
@@ -81,6 +81,10 @@ pub struct RenderArgs {
     /// graphics driver computes on the CPU.
     #[arg(long)]
     no_light: bool,
+    /// Writes Cryptomattes of objects and materials into EXR files, of 16 samples a pixel: which things cover how much of it, by
+    /// their names, for masks and for rules of presets.
+    #[arg(long)]
+    cryptomatte: bool,
     /// Style of the frames: none, a style, a look, or a preset or graph file (.json).
     #[arg(long, default_value = "none")]
     style: PathBuf,
@@ -168,7 +172,7 @@ impl RenderArgs {
                 let picture = shot.draw(number, &mut |done| report.progress(done))?;
                 let made = Made { from: None, to: &file };
                 self.consent().write(made, read::is_whole, |existing| match floats::is_exr(&file) {
-                    true => save_layers(shot, (&file, existing), &picture, self.file.depth),
+                    true => self.save_layers(shot, (&file, existing), &picture),
                     false => {
                         floats::save_png(&file, existing, &picture, self.file.depth == Some(Depth::Sixteen))
                     }
@@ -178,6 +182,34 @@ impl RenderArgs {
             report.frame(&self.task(number, file), &outcome);
         }
         Ok(())
+    }
+
+    /// Writes a frame with everything that is known of it into one file.
+    fn save_layers(
+        &self,
+        shot: &mut Shot,
+        (file, existing): (&Path, Existing),
+        color: &Picture,
+    ) -> Result<()> {
+        let (names, usual): (&[&str], _) = match color.channels {
+            1 => (&["Y"], Precision::Float),
+            _ => (&["R", "G", "B", "A"], Precision::Half),
+        };
+        let precision = match self.file.depth {
+            Some(Depth::Half) => Precision::Half,
+            Some(Depth::Float) => Precision::Float,
+            _ => usual,
+        };
+        let known = Layers::read(shot, self.cryptomatte)?;
+        let named: Vec<Vec<&str>> =
+            known.pictures.iter().map(|(_, names, _)| names.iter().map(String::as_str).collect()).collect();
+        let mut layers = vec![Layer { picture: color, names, precision }];
+        layers.extend(known.pictures.iter().zip(&named).map(|((picture, _, precision), names)| Layer {
+            picture,
+            names,
+            precision: *precision,
+        }));
+        floats::save_layers(file, existing, &layers, known.header)
     }
 
     /// Numbers and files of the results; of a video there is one file for all.
@@ -270,6 +302,13 @@ impl RenderArgs {
             floats::check_extension(&self.out)?;
         }
         self.file.check(&self.out)?;
+        if self.cryptomatte && !floats::is_exr(&self.out) {
+            return Err(Error::input(
+                "--cryptomatte",
+                "is written into EXR files",
+                "leave it out, or name an .exr file",
+            ));
+        }
         if self.encode.is_some() && !is_video {
             return Err(Error::input(
                 "--encode",
@@ -353,43 +392,46 @@ const GUIDES: [Guide; 7] = [
 const BACKWARD: &[&str] = &["backward.u", "backward.v"];
 const FORWARD: &[&str] = &["forward.u", "forward.v"];
 
-/// Writes a frame with everything that is known of it into one file.
-fn save_layers(
-    shot: &mut Shot,
-    (file, existing): (&Path, Existing),
-    color: &Picture,
-    depth: Option<Depth>,
-) -> Result<()> {
-    let (names, usual): (&[&str], _) = match color.channels {
-        1 => (&["Y"], Precision::Float),
-        _ => (&["R", "G", "B", "A"], Precision::Half),
-    };
-    let precision = match depth {
-        Some(Depth::Half) => Precision::Half,
-        Some(Depth::Float) => Precision::Float,
-        _ => usual,
-    };
-    let mut guides = Vec::with_capacity(GUIDES.len() + 2);
-    for (target, names, precision) in GUIDES {
-        if let Some(picture) = shot.read(target)? {
-            guides.push((picture, names, precision));
-        }
+/// A frame's layers beside its colour.
+#[derive(Default)]
+struct Layers {
+    pictures: Vec<(Picture, Vec<String>, Precision)>,
+    header: Header,
+}
+
+impl Layers {
+    fn add(&mut self, picture: Picture, names: &[&str], precision: Precision) {
+        self.pictures.push((picture, names.iter().map(|name| (*name).to_owned()).collect(), precision));
     }
-    let motion = shot.read(|targets| Some(&targets.motion))?;
-    let forward = shot.read_motion_forward()?;
-    for (motion, names) in [(motion, BACKWARD), (forward, FORWARD)] {
-        if let Some(mut picture) = motion {
-            // Compositors count rows from below.
-            picture.data.iter_mut().skip(1).step_by(2).for_each(|v| *v = 0.0 - *v);
-            guides.push((picture, names, Precision::Float));
+
+    /// Everything that is known of the frame drawn last.
+    fn read(shot: &mut Shot, with_mattes: bool) -> Result<Self> {
+        let mut layers = Self::default();
+        for (target, names, precision) in GUIDES {
+            if let Some(picture) = shot.read(target)? {
+                layers.add(picture, names, precision);
+            }
         }
+        let motion = shot.read(|targets| Some(&targets.motion))?;
+        let forward = shot.read_motion_forward()?;
+        for (motion, names) in [(motion, BACKWARD), (forward, FORWARD)] {
+            if let Some(mut picture) = motion {
+                // Compositors count rows from below.
+                picture.data.iter_mut().skip(1).step_by(2).for_each(|v| *v = 0.0 - *v);
+                layers.add(picture, names, Precision::Float);
+            }
+        }
+        // After all else, since they move the picture by parts of a pixel.
+        let mattes = if with_mattes { shot.read_mattes()? } else { Vec::new() };
+        for matte in mattes {
+            for (index, picture) in matte.layers.into_iter().enumerate() {
+                let names = ["R", "G", "B", "A"].map(|channel| format!("{}{index:02}.{channel}", matte.name));
+                layers.pictures.push((picture, names.into(), Precision::Float));
+            }
+            layers.header.texts.extend(matte.texts);
+        }
+        // A matrix column by column is the same for row vectors row by row.
+        layers.header.world_to_camera = shot.view().map(|view| view.world_to_view.to_cols_array());
+        Ok(layers)
     }
-    let mut layers = vec![Layer { picture: color, names, precision }];
-    layers.extend(guides.iter().map(|(picture, names, precision)| Layer {
-        picture,
-        names,
-        precision: *precision,
-    }));
-    // A matrix column by column is the same for row vectors row by row.
-    floats::save_layers(file, existing, &layers, shot.view().map(|view| view.world_to_view.to_cols_array()))
 }
