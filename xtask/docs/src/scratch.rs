@@ -40,7 +40,7 @@ pub struct Counts {
 
 impl Seed<'_> {
     /// Renders the demo scene as `photo.png` and as the sequence `shot.1001.exr` to `shot.1004.exr`, and puts the scene
-    /// (`scene.gltf`), the program, the header, the library, the wheel and the Blender extension beside them.
+    /// (`scene.gltf`), a painted control map (`focus.png`), the program, the header, the library, the wheel and the Blender extension beside them.
     fn make(&self) -> Result<()> {
         let folder = &self.folder;
         for name in ["bin", "include", "lib"] {
@@ -63,6 +63,7 @@ impl Seed<'_> {
             copy(&path, &folder.join(path.file_name().unwrap_or_default()))?;
         }
         copy(self.scene, &folder.join("scene.gltf"))?;
+        copy(&self.root.join("xtask/docs/pictures/focus.png"), &folder.join("focus.png"))?;
         let render = |out: &str, more: &[&str]| {
             let mut command = Command::new(self.host);
             command.arg("render").arg("scene.gltf").arg(out).args(more).current_dir(folder);
