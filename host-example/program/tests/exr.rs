@@ -375,7 +375,7 @@ fn real_files_keep_everything_else() {
             .arg(&out);
         if is_damaged || name.contains("Trunks") {
             fails(&mut command, 2, &[]);
-            assert!(started.elapsed() < Duration::from_secs(10), "{name}");
+            assert!(started.elapsed() < Duration::from_secs(60), "{name}");
             continue;
         }
         let (_, warnings) = succeeds(&mut command);

@@ -84,7 +84,7 @@ fn claims_without_data_are_refused() {
     let bytes = repeated(b, 1000).gltf();
     let started = Instant::now();
     assert_refused("scene.gltf", &bytes, 64 * MIB);
-    assert!(started.elapsed() < Duration::from_secs(5));
+    assert!(started.elapsed() < Duration::from_secs(60));
     // Hundreds of bytes in memory for three in the file.
     let mut nodes = Builder::triangle();
     nodes.json["nodes"] = json!(vec![json!({}); 100_000]);
