@@ -59,7 +59,7 @@ fn rendered_things_are_found_by_their_names() {
     let [mut edges, mut off, mut between] = [0.0f32; 3];
     for pixel in 0..WIDE * HIGH {
         assert!((near[pixel] + far[pixel] - all[pixel]).abs() < 1e-6, "the tiles share all that is covered");
-        // Inside and outside all samples agree; the one in the middle of a pixel is among its things.
+        // What lies in the middle of a pixel is among its things.
         match ids[pixel] {
             1.0 => assert!(near[pixel] > 0.0, "{pixel}"),
             2.0 => assert!(far[pixel] > 0.0, "{pixel}"),
