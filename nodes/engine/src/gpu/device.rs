@@ -312,8 +312,9 @@ impl Device {
 
     /// Waits until the submission is done; without one, until everything submitted is done.
     pub(super) fn wait(&self, submission: Option<wgpu::SubmissionIndex>) -> Result<()> {
-        // Short waits, so that a device that is lost meanwhile is noticed.
-        let timeout = Some(Duration::from_millis(500));
+        // Longer than a busy machine needs for any submission: wgpu 30 panics where a wait runs out at the moment at which
+        // another thread's finds the queue empty (gfx-rs/wgpu#9958). The loss of a device ends a wait.
+        let timeout = Some(Duration::from_secs(60));
         loop {
             self.check()?;
             let poll = wgpu::PollType::Wait { submission_index: submission.clone(), timeout };

@@ -3,15 +3,12 @@
 
 use super::device::Device;
 use super::prepared::Prepared;
+use super::timing::answer;
 use super::transfer::{RowWriter, extent};
 use crate::error::{Error, Result};
 use crate::image::{Image, Rect};
 use crate::program::{Program, Role, Texture};
 use std::sync::mpsc::{Receiver, channel};
-use std::time::Duration;
-
-/// Longest time that a thread which took a callback may be held up before it calls it.
-const LATEST: Duration = Duration::from_secs(10);
 
 /// A buffer whose memory was asked back from the device.
 #[derive(Debug)]
@@ -57,7 +54,7 @@ impl Upload {
 
     /// Waits until it is mapped. The device is done with it.
     pub fn mapped(self) -> Option<wgpu::Buffer> {
-        self.mapped.recv_timeout(LATEST).ok()?.ok().map(|()| self.buffer)
+        answer(&self.mapped).ok()?.ok().map(|()| self.buffer)
     }
 }
 

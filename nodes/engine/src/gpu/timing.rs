@@ -3,12 +3,20 @@
 use super::device::{Device, count};
 use crate::error::{Error, Result};
 use std::sync::Arc;
+use std::sync::mpsc::{Receiver, RecvTimeoutError};
 use std::time::Duration;
 
 const BYTES: u64 = wgpu::QUERY_SIZE as u64;
 
-/// Longest time that a thread which took a callback may be held up before it calls it.
-const LATEST: Duration = Duration::from_secs(10);
+/// Longest time that a thread which took a callback may be held up before it calls it: on a busy machine those of the lowest
+/// priority wait for many seconds.
+const LATEST: Duration = Duration::from_secs(120);
+
+/// Answer of the device, which is done with what was asked. Of several threads that wait at once another one may have taken the
+/// callback, and be about to call it.
+pub(super) fn answer<T>(receiver: &Receiver<T>) -> std::result::Result<T, RecvTimeoutError> {
+    receiver.recv_timeout(LATEST)
+}
 
 /// Two timestamps a dispatch, and the way back to the CPU.
 #[derive(Debug)]
@@ -110,8 +118,7 @@ pub(super) fn read_buffer<T>(
     })?;
     device.wait(submission)?;
     let failed = |e: String| Error::Device(format!("cannot read back from '{}': {e}", device.name()));
-    // Of several threads that wait at once another one may have taken the callback, and be about to call it.
-    match receiver.recv_timeout(LATEST) {
+    match answer(&receiver) {
         Ok(Ok(())) => {}
         Ok(Err(e)) => return Err(failed(e.to_string())),
         Err(e) => return Err(failed(e.to_string())),
