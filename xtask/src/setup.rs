@@ -64,10 +64,26 @@ pub const BROWSER: Need = Need {
 /// The compiler of the system, of Debian's package for browsers: newer than its others, and with its sources.
 pub const SYSTEM_RUSTC: &str = "/usr/bin/rustc";
 
+/// Browsers, as compilers name them.
+pub const WASM_TARGET: &str = "wasm32-unknown-unknown";
+
+/// 64-bit ARM with Linux, as compilers name it.
+pub const AARCH64_TARGET: &str = "aarch64-unknown-linux-gnu";
+
+/// What compiles, links and runs programs for 64-bit ARM.
+pub const AARCH64: Need = Need {
+    what: "a cross compiler and an emulator for ARM",
+    present: || {
+        let compiles = has_target(AARCH64_TARGET) || Path::new(SYSTEM_RUSTC).is_file();
+        compiles && program("aarch64-linux-gnu-gcc") && program("qemu-aarch64")
+    },
+    packages: &["rustc-web", "gcc-aarch64-linux-gnu", "libc6-dev-arm64-cross", "qemu-user"],
+};
+
 /// A standard library of Rust for browsers, or its sources. `rustup target add wasm32-unknown-unknown` brings it, too.
 pub const WASM: Need = Need {
     what: "Rust for WebAssembly (rustup target add wasm32-unknown-unknown)",
-    present: || has_wasm_target() || has_wasm_sources(),
+    present: || has_target(WASM_TARGET) || has_wasm_sources(),
     packages: &["rustc-web", "rust-web-src"],
 };
 
@@ -238,9 +254,9 @@ fn apt() -> Option<&'static [&'static str]> {
     }
 }
 
-/// True where the compiler of this build can compile for browsers.
-pub fn has_wasm_target() -> bool {
-    sysroot("rustc").is_some_and(|sysroot| sysroot.join("lib/rustlib/wasm32-unknown-unknown/lib").is_dir())
+/// True where the compiler of this build has the standard library of a target.
+pub fn has_target(name: &str) -> bool {
+    sysroot("rustc").is_some_and(|sysroot| sysroot.join("lib/rustlib").join(name).join("lib").is_dir())
 }
 
 /// True where the compiler of the system could, from the sources of its standard library.

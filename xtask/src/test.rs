@@ -7,10 +7,15 @@ use crate::setup::{
 };
 use crate::tools::{cargo, cargo_command, heading, library_file, root, target_dir};
 use crate::{cases, python, web};
-use std::path::{Path, PathBuf};
-use std::process::{Command, Output, Stdio};
-use std::sync::Mutex;
+use programs::Program;
+use report::Ran;
+use std::process::{Command, Output};
+use std::sync::{Mutex, PoisonError};
 use std::time::Instant;
+
+mod programs;
+mod report;
+mod target;
 
 /// Options of `cargo xtask test`.
 #[derive(clap::Args)]
@@ -26,6 +31,10 @@ pub struct Options {
     #[arg(long)]
     tests_only: bool,
 
+    /// Only engine, library, plugin and the bits of all nodes, on another kind of processor
+    #[arg(long, conflicts_with_all = ["list", "tests_only"])]
+    target: Option<target::Target>,
+
     /// Only the job of this name, of those that a whole run starts beside the programs; all is built
     #[arg(long, hide = true)]
     job: Option<String>,
@@ -39,6 +48,9 @@ pub fn run(options: &Options) -> Result<()> {
     if let Some(name) = &options.job {
         let job = OUTSIDE_TESTS.iter().find(|test| test.name == name);
         return job.map_or_else(|| Err(Failure(format!("there is no job {name}"))), |job| (job.run)());
+    }
+    if let Some(target) = options.target {
+        return target::run(target, options.filter.as_deref());
     }
     setup::ensure(&[
         &C_COMPILER,
@@ -66,14 +78,14 @@ pub fn run(options: &Options) -> Result<()> {
     }
     heading("build");
     cargo(&["build", "--workspace", "--quiet"])?;
-    let programs = programs()?;
+    let programs = programs::build(cargo_command(&["test", "--workspace"]))?;
     if options.list {
         return list(&programs, options.filter.as_deref());
     }
     heading("tests");
     let failed = match &options.filter {
         Some(filter) => run_named(&programs, filter)?,
-        None => run_all(programs)?,
+        None => run_all(programs),
     };
     heading("end");
     if failed.is_empty() { Ok(()) } else { Err(Failure(format!("these tests fail: {}", failed.join(", ")))) }
@@ -145,87 +157,9 @@ impl OutsideTest {
     }
 }
 
-/// A program of tests.
-struct Program {
-    /// Stem of its file.
-    name: String,
-    path: PathBuf,
-    /// Folder of its package, where it runs.
-    folder: PathBuf,
-    arguments: Vec<&'static str>,
-}
-
-impl Program {
-    fn command(&self) -> Command {
-        let mut command = Command::new(&self.path);
-        self.set_up(&mut command);
-        command
-    }
-
-    /// The same, behind all other processes.
-    fn patient(&self) -> Command {
-        let mut command = Command::new("nice");
-        command.args(["-n", "19"]).arg(&self.path);
-        self.set_up(&mut command);
-        command
-    }
-
-    fn set_up(&self, command: &mut Command) {
-        command
-            .args(&self.arguments)
-            .current_dir(&self.folder)
-            .env("CARGO_MANIFEST_DIR", &self.folder)
-            .env("ISOPHOTE_LIBRARY", library_file("debug"))
-            .env("ISOPHOTE_REQUIRE_GPU", "1")
-            .env("NODEVICE_SELECT", "1");
-    }
-
-    /// Its tests whose name contains the filter, or all of them when its own name does.
-    fn tests(&self, filter: &str) -> Result<Vec<String>> {
-        let output = self.command().arg("--list").output();
-        let output = output.context(|| format!("{} cannot be started", self.path.display()))?;
-        let text = String::from_utf8_lossy(&output.stdout).into_owned();
-        let names = text.lines().filter_map(|line| line.strip_suffix(": test"));
-        let is_meant = self.name.contains(filter);
-        Ok(names.filter(|name| is_meant || name.contains(filter)).map(str::to_owned).collect())
-    }
-}
-
-/// Builds all programs of tests.
-fn programs() -> Result<Vec<Program>> {
-    let mut build = cargo_command(&["test", "--workspace", "--no-run", "--quiet"]);
-    build.arg("--message-format=json-render-diagnostics").stderr(Stdio::inherit());
-    let output = build.output().context(|| "cargo cannot be started".into())?;
-    if !output.status.success() {
-        return Err(Failure("the tests cannot be built".into()));
-    }
-    let messages = String::from_utf8_lossy(&output.stdout).into_owned();
-    let programs = messages.lines().filter(|line| is_test(line)).filter_map(|line| {
-        let path = PathBuf::from(field(line, "executable")?);
-        let folder = Path::new(&field(line, "manifest_path")?).parent()?.to_owned();
-        // Cargo adds a hash.
-        let name = path.file_stem()?.to_str()?.rsplit_once('-')?.0.to_owned();
-        Some(Program { name, path, folder, arguments: Vec::new() })
-    });
-    Ok(programs.collect())
-}
-
-/// True where one of cargo's messages is about something compiled as a test.
-fn is_test(message: &str) -> bool {
-    let profile = message.split_once(r#""profile":{"#).and_then(|(_, rest)| rest.split_once('}'));
-    profile.is_some_and(|(profile, _)| profile.contains(r#""test":true"#))
-}
-
-/// A text of one of cargo's messages.
-fn field(message: &str, name: &str) -> Option<String> {
-    let (_, rest) = message.split_once(&format!(r#""{name}":""#))?;
-    let (value, _) = rest.split_once('"')?;
-    Some(value.replace(r"\\", r"\"))
-}
-
 fn list(programs: &[Program], filter: Option<&str>) -> Result<()> {
     for program in programs {
-        for test in program.tests(filter.unwrap_or_default())? {
+        for test in program.tests(filter.unwrap_or_default(), &[])? {
             println!("{}: {test}", program.name);
         }
     }
@@ -263,12 +197,12 @@ impl Suite {
 fn run_named(programs: &[Program], filter: &str) -> Result<Vec<String>> {
     let (mut failed, mut found) = (Vec::new(), 0);
     for program in programs {
-        let tests = program.tests(filter)?;
+        let tests = program.tests(filter, &[])?;
         if tests.is_empty() {
             continue;
         }
         found += tests.len();
-        let mut command = program.command();
+        let mut command = prepared(program.command(&[]));
         if !program.name.contains(filter) {
             command.arg(filter);
         }
@@ -320,74 +254,67 @@ const FIRST: [&str; 1] = ["web"];
 /// device, or for its last test, the other computes.
 const LANES: usize = 2;
 
-/// Number of the slowest programs that are named at the end.
-const SLOWEST: usize = 20;
+/// Priority of the others, so that they leave the first the processor. The lowest would leave them nearly nothing of two busy
+/// cores, and a thread that holds what others wait for would be held up for seconds.
+const PATIENT: [&str; 3] = ["nice", "-n", "10"];
+
+/// A program of tests with the library that it loads, which must find a graphics adapter.
+fn prepared(mut command: Command) -> Command {
+    command.env("ISOPHOTE_LIBRARY", library_file("debug")).env("ISOPHOTE_REQUIRE_GPU", "1");
+    command
+}
 
 /// Runs all programs. Returns those that fail.
-fn run_all(mut programs: Vec<Program>) -> Result<Vec<String>> {
+fn run_all(mut programs: Vec<Program>) -> Vec<String> {
     programs.extend(OUTSIDE_TESTS.iter().map(OutsideTest::program));
     programs.sort_by_key(|p| LONG.iter().position(|long| *long == p.name).unwrap_or(LONG.len()));
     let (alone, together): (Vec<Program>, Vec<Program>) =
         programs.into_iter().partition(|p| ALONE.contains(&p.name.as_str()));
     let (first, together): (Vec<Program>, Vec<Program>) =
         together.into_iter().partition(|p| FIRST.contains(&p.name.as_str()));
-    let (failed, times) = (Mutex::new(Vec::new()), Mutex::new(Vec::new()));
-    let run = |program: Program, is_patient: bool| {
-        let started = Instant::now();
-        let output = if is_patient { program.patient().output() } else { program.command().output() };
-        let seconds = started.elapsed().as_secs_f64();
-        lock(&times).push((seconds, program.name.clone()));
+    let ran = Mutex::new(Vec::new());
+    let run = |program: Program, runner: &[&str]| {
+        let (output, seconds) = timed(&program, runner);
         // Locked, so that what two programs print stays apart.
-        let mut failed = lock(&failed);
-        if !show(&program, &output, seconds) {
-            failed.push(program.name);
-        }
+        let mut ran = lock(&ran);
+        ran.push(report::show(program, &output, seconds));
     };
     let waiting = Mutex::new(together.into_iter());
     std::thread::scope(|scope| {
-        scope.spawn(|| first.into_iter().for_each(|program| run(program, false)));
+        scope.spawn(|| first.into_iter().for_each(|program| run(program, &[])));
         for _ in 0..LANES {
             scope.spawn(|| {
                 loop {
                     // Not in the head of a `while let`: its guard would be held while the program runs.
                     let Some(program) = lock(&waiting).next() else { break };
-                    run(program, true);
+                    run(program, &PATIENT);
                 }
             });
         }
     });
-    alone.into_iter().for_each(|program| run(program, false));
-    show_slowest(times.into_inner().unwrap_or_default());
-    Ok(failed.into_inner().unwrap_or_default())
+    alone.into_iter().for_each(|program| run(program, &[]));
+    let ran = ran.into_inner().unwrap_or_else(PoisonError::into_inner);
+    report::sum_up(ran.into_iter().map(tried_again).collect())
 }
 
-/// Prints the programs that took longest. Those of generated trials name their slowest trials themselves.
-fn show_slowest(mut times: Vec<(f64, String)>) {
-    times.sort_by(|(a, _), (b, _)| b.total_cmp(a));
-    println!("\n-- the slowest programs");
-    for (seconds, name) in times.iter().take(SLOWEST) {
-        println!("{seconds:7.1} s  {name}");
-    }
+/// A program that failed beside others, run once more by itself. What fails on a busy machine alone is told at the end as well,
+/// and is no failure of the change.
+fn tried_again(ran: Ran) -> Ran {
+    let Some(why) = ran.failure else { return ran };
+    println!("\n-- {} failed beside others, and runs again: {why}", ran.program.name);
+    let (output, seconds) = timed(&ran.program, &[]);
+    Ran { is_second: true, ..report::show(ran.program, &output, ran.seconds + seconds) }
 }
 
-/// Prints what a program printed; whether its tests hold.
-fn show(program: &Program, output: &std::io::Result<Output>, seconds: f64) -> bool {
-    println!("\n-- {} ({seconds:.1} s)", program.name);
-    match output {
-        Ok(output) => {
-            print!("{}", String::from_utf8_lossy(&output.stdout));
-            eprint!("{}", String::from_utf8_lossy(&output.stderr));
-            output.status.success()
-        }
-        Err(error) => {
-            eprintln!("{} cannot be started: {error}", program.path.display());
-            false
-        }
-    }
+/// What a program prints, and the seconds that it takes.
+fn timed(program: &Program, runner: &[&str]) -> (std::io::Result<Output>, f64) {
+    let started = Instant::now();
+    let output = prepared(program.command(runner)).output();
+    (output, started.elapsed().as_secs_f64())
 }
 
 fn lock<T>(mutex: &Mutex<T>) -> std::sync::MutexGuard<'_, T> {
-    mutex.lock().unwrap_or_else(std::sync::PoisonError::into_inner)
+    mutex.lock().unwrap_or_else(PoisonError::into_inner)
 }
 
 /// Makes the golden images anew. Look at them before they are committed.
@@ -397,26 +324,4 @@ fn lock<T>(mutex: &Mutex<T>) -> std::sync::MutexGuard<'_, T> {
 pub fn bless() -> Result<()> {
     let mut command = cargo_command(&["test", "--workspace", "--test", "goldens", "--test", "bits"]);
     crate::tools::run(command.env("ISOPHOTE_BLESS", "1"))
-}
-
-#[cfg(test)]
-mod tests {
-    use super::{field, is_test};
-
-    #[test]
-    fn fields_of_messages_are_found() {
-        let message =
-            r#"{"reason":"compiler-artifact","manifest_path":"C:\\a b\\Cargo.toml","executable":null}"#;
-        assert_eq!(field(message, "manifest_path").as_deref(), Some(r"C:\a b\Cargo.toml"));
-        assert_eq!(field(message, "executable"), None);
-    }
-
-    #[test]
-    fn programs_of_tests_are_told_from_programs_that_have_tests() {
-        let message = |is_test: bool| {
-            format!(r#"{{"target":{{"test":true}},"profile":{{"test":{is_test}}},"executable":"/a/x-0"}}"#)
-        };
-        assert!(is_test(&message(true)) && !is_test(&message(false)));
-        assert!(!is_test(r#"{"reason":"build-finished","success":true}"#));
-    }
 }

@@ -7,7 +7,7 @@
 use crate::address;
 use crate::error::{Context, Failure, Result};
 use crate::packing;
-use crate::setup::{self, BROWSER, C_COMPILER, NODE, WASM};
+use crate::setup::{self, BROWSER, C_COMPILER, NODE, WASM, WASM_TARGET};
 use crate::tools::{
     build as build_programs, cargo_command, heading, host_file, library_file, root, run as run_command,
     target_dir,
@@ -15,8 +15,6 @@ use crate::tools::{
 use std::fs;
 use std::path::{Path, PathBuf};
 use std::process::{Command, Stdio};
-
-const TARGET: &str = "wasm32-unknown-unknown";
 
 /// A module of WebAssembly.
 struct Module {
@@ -206,9 +204,9 @@ fn compiled(module: &Module) -> Result<PathBuf> {
     let mut command = cargo_command(&["rustc", "--quiet", "--lib", "--crate-type", "cdylib"]);
     // Features are those of the package whose folder it is.
     command.current_dir(folder()).args(module.features);
-    command.args(["--profile", module.profile, "--target", TARGET, "--target-dir"]).arg(&target);
+    command.args(["--profile", module.profile, "--target", WASM_TARGET, "--target-dir"]).arg(&target);
     command.env("CARGO_TARGET_WASM32_UNKNOWN_UNKNOWN_RUSTFLAGS", module.flags);
-    if !setup::has_wasm_target() {
+    if !setup::has_target(WASM_TARGET) {
         // A compiler of the system has the sources of its standard library, and another one's linker will do.
         command
             .arg("-Zbuild-std=std,panic_abort")
@@ -217,7 +215,7 @@ fn compiled(module: &Module) -> Result<PathBuf> {
         command.env("CARGO_TARGET_WASM32_UNKNOWN_UNKNOWN_LINKER", linker()?);
     }
     run_command(&mut command)?;
-    Ok(target.join(TARGET).join(module.profile).join("isophote_web.wasm"))
+    Ok(target.join(WASM_TARGET).join(module.profile).join("isophote_web.wasm"))
 }
 
 /// The linker that comes with the compiler of this build.
