@@ -17,3 +17,10 @@ fn control_factor(value: f32) -> f32 {
     let step = control_step(value);
     return select(exp2(2.0 * step), 1.0, step == 0.0);
 }
+
+// A channel with so many steps more, -1..1.
+fn control_sum(value: f32, more: f32) -> f32 {
+    let step = clamp(control_step(value) + more, -1.0, 1.0);
+    let past = 0.5 + step * (0.5 - CONTROL_NEUTRAL) + select(CONTROL_NEUTRAL, -CONTROL_NEUTRAL, step < 0.0);
+    return select(past, 0.5, step == 0.0);
+}

@@ -125,6 +125,7 @@ const RECOLOURING: &[(&str, &str)] = &[
     ("toon_shading", "steps of light have tones of their own"),
     ("palette", "colours become those of a palette"),
     ("halftone", "tones become ink or paper"),
+    ("importance", "a picture becomes a map of what matters in it"),
 ];
 
 /// Filters that give a flat picture a texture.
@@ -134,6 +135,7 @@ const TEXTURED: &[(&str, &str)] = &[
     ("watercolor", "granulation is part of the style"),
     ("halftone", "screens are the style"),
     ("oil_paint", "brush strokes begin with noise"),
+    ("importance", "the middle matters more"),
 ];
 
 fn is_listed(spec: &NodeSpec, list: &[(&str, &str)]) -> bool {

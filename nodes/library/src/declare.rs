@@ -2,6 +2,7 @@
 //! describes its passes.
 
 pub mod choice;
+pub(crate) mod direction;
 pub mod param;
 pub(crate) mod ports;
 pub mod spec;

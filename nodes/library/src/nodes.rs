@@ -29,6 +29,7 @@ nodes! {
         structure_tensor,
         edge_tangent_flow,
         flow_map,
+        importance,
         tensor_view,
     }
     painting {

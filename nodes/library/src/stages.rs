@@ -16,6 +16,7 @@ pub(crate) mod flow_bilateral;
 pub(crate) mod flow_dog;
 pub(crate) mod flow_map;
 pub(crate) mod generalized_kuwahara;
+pub(crate) mod importance;
 pub(crate) mod line_context;
 pub(crate) mod line_integral_convolution;
 pub(crate) mod line_on_dark;

@@ -7,11 +7,12 @@ use isophote_loader::catalogue::Node;
 use isophote_loader::preset::LOOK;
 
 /// Words of artists and of other programs, with the style, the look or the medium that comes nearest.
-pub const WORDS: [(&str, &str); 75] = [
+pub const WORDS: [(&str, &str); 77] = [
     ("abstract", "painting"),
     ("acrylic", "painting"),
     ("anime", "cartoon"),
     ("aquarelle", "watercolor"),
+    ("attention", "importance"),
     ("bayer", "palette"),
     ("ben_day", "halftone"),
     ("blur", "gaussian"),
@@ -70,6 +71,7 @@ pub const WORDS: [(&str, &str); 75] = [
     ("posterize", "quantize_luminance"),
     ("retro", "palette"),
     ("riso", "look:two_colour_riso"),
+    ("saliency", "importance"),
     ("screen_print", "halftone"),
     ("screentone", "halftone"),
     ("sharpen", "warp_sharpen"),

@@ -2,6 +2,7 @@
 //! this declaration.
 
 use crate::declare::choice::Selectable;
+pub(crate) use crate::declare::direction::{CENTRE, IMPORTANCE};
 use crate::declare::param::paragraphs;
 pub use crate::declare::param::{Param, Unit};
 pub use crate::declare::time::animates_marks;
@@ -184,11 +185,13 @@ impl NodeSpec {
         self.own_params.iter().find(|param| self.group == "styles" && param.id == MEDIUM)
     }
 
-    /// All parameters in the order of panels: the node's own, then `mix` where it applies.
+    /// All parameters in the order of panels: the node's own, then `importance` and `mix` where they apply.
     pub fn params(&self) -> impl Iterator<Item = &'static Param> + use<> {
         static COMMON: [Param; 1] = [MIX];
         let common: &'static [Param] = if self.has_mix() { &COMMON } else { &[] };
-        self.own_params.iter().chain(common)
+        static DIRECTION: [Param; 2] = [IMPORTANCE, CENTRE];
+        let direction: &'static [Param] = if self.group == "styles" { &DIRECTION } else { &[] };
+        self.own_params.iter().chain(direction).chain(common)
     }
 
     /// All inputs: the node's own, then `mask`, `flow`, those of the group `time`, and `control`, where they apply.

@@ -1,10 +1,12 @@
 //! Control maps: places of a picture directed by an artist, as the guide `control` says (MNPR and its successors have such
-//! maps of parameters; the thesis has one value for the whole picture).
+//! maps of parameters; the thesis has one value for the whole picture), or by what is found to matter.
 
-use crate::declare::spec::{CONTROL, Scope};
+use crate::declare::spec::{CONTROL, IMPORTANCE, Scope};
 use crate::kernels::colour::{control_density, control_difference, control_marks};
 use crate::kernels::lines::line_amount;
 use crate::kernels::structure::control_field::{self, Params};
+use crate::kernels::structure::control_importance;
+use crate::stages::importance::importance;
 use isophote_engine::{ImageId, PlanBuilder};
 
 /// The map of a node, where it has one and something is connected.
@@ -19,9 +21,15 @@ pub(crate) struct Directed {
 }
 
 impl Control {
-    /// The map that is connected to a node.
-    pub(crate) fn of(scope: &Scope<'_>) -> Self {
-        Self(scope.spec.input(CONTROL.id).and_then(|_| scope.input(CONTROL.id)))
+    /// The map that is connected to a node, and that of what matters where the node looks for it.
+    pub(crate) fn of(scope: &mut Scope<'_>) -> Self {
+        let painted = scope.spec.input(CONTROL.id).and_then(|_| scope.input(CONTROL.id));
+        let strength = scope.spec.param(IMPORTANCE.id).map_or(0.0, |_| scope.float(IMPORTANCE.id));
+        if strength <= 0.0 {
+            return Self(painted);
+        }
+        let importance = importance(scope);
+        Self(Some(control_importance::pass(scope.plan, importance, painted, strength)))
     }
 
     /// The field that smoothing follows, with factors on `sigma_r`: more detail, less tolerance.

@@ -22,6 +22,15 @@ pub fn step<S: Simd>(value: f32x8<S>) -> f32x8<S> {
     v.simd_lt(zero).select(-past, past)
 }
 
+/// A channel with so many steps more, -1..=1.
+#[inline(always)]
+pub fn sum<S: Simd>(value: f32x8<S>, more: f32x8<S>) -> f32x8<S> {
+    let zero = f32x8::splat(value.simd, 0.0);
+    let step = (step(value) + more).within(-1.0, 1.0);
+    let sign = step.simd_lt(zero).select(zero - NEUTRAL, zero + NEUTRAL);
+    step.simd_eq(zero).select(zero + 0.5, step * (0.5 - NEUTRAL) + 0.5 + sign)
+}
+
 /// Factors of 1/4 to 4 of a channel, exactly 1 where it is neutral.
 #[inline(always)]
 pub fn factor<S: Simd>(value: f32x8<S>) -> f32x8<S> {

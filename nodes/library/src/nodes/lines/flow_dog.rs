@@ -117,5 +117,6 @@ fn build(scope: &mut Scope<'_>) -> ImageId {
     });
     let lightness = lightness::pass(scope.plan, color);
     let lab = (lines.colour > 0.0).then(|| rgb_to_lab::pass(scope.plan, color, 1.0));
-    lines.edges(scope.plan, Seen { lightness, lab, control: Control::of(scope) }, tensor, &guides)
+    let control = Control::of(scope);
+    lines.edges(scope.plan, Seen { lightness, lab, control }, tensor, &guides)
 }
