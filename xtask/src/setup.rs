@@ -83,8 +83,15 @@ pub const AARCH64: Need = Need {
 /// A standard library of Rust for browsers, or its sources. `rustup target add wasm32-unknown-unknown` brings it, too.
 pub const WASM: Need = Need {
     what: "Rust for WebAssembly (rustup target add wasm32-unknown-unknown)",
-    present: || has_target(WASM_TARGET) || has_wasm_sources(),
+    present: || has_target(WASM_TARGET) || has_std_sources(),
     packages: &["rustc-web", "rust-web-src"],
+};
+
+/// The sources of Rust's standard library, with the compiler that they belong to.
+pub const STD_SOURCES: Need = Need {
+    what: "the sources of Rust's standard library",
+    present: has_std_sources,
+    packages: WASM.packages,
 };
 
 /// Programs that bundle and test pages.
@@ -259,8 +266,8 @@ pub fn has_target(name: &str) -> bool {
     sysroot("rustc").is_some_and(|sysroot| sysroot.join("lib/rustlib").join(name).join("lib").is_dir())
 }
 
-/// True where the compiler of the system could, from the sources of its standard library.
-fn has_wasm_sources() -> bool {
+/// True where the compiler of the system has the sources of its standard library.
+fn has_std_sources() -> bool {
     sysroot(SYSTEM_RUSTC)
         .is_some_and(|sysroot| sysroot.join("lib/rustlib/src/rust/library/Cargo.lock").is_file())
 }

@@ -1,4 +1,5 @@
-//! `cargo xtask test --target`: the tests of pixels on another kind of processor, emulated.
+//! `cargo xtask test --target`: the tests of pixels on another kind of processor, emulated, and what can be said of systems
+//! that are not there.
 //!
 //! What must be the same everywhere is run as it is run here: engine, library, plugin, and the program `bits`, which compares
 //! the bits of every node with the committed table. Nothing of it needs a graphics device.
@@ -10,7 +11,7 @@
 use super::programs::{self, Program};
 use super::report;
 use crate::error::{Context, Failure, Result};
-use crate::setup::{self, AARCH64, AARCH64_TARGET, C_COMPILER, SYSTEM_RUSTC};
+use crate::setup::{self, AARCH64, AARCH64_TARGET, C_COMPILER, STD_SOURCES, SYSTEM_RUSTC};
 use crate::tools::{cargo_command, heading, run as run_command, target_dir};
 use std::fs;
 use std::path::{Path, PathBuf};
@@ -22,7 +23,15 @@ use std::time::Instant;
 pub enum Target {
     /// 64-bit ARM with Linux, in QEMU
     Aarch64,
+    /// Only types: the library, the plugin and the program for macOS on ARM and for Windows by Microsoft's compiler
+    Check,
 }
+
+/// Targets whose types are checked.
+const CHECKED: [&str; 2] = ["aarch64-apple-darwin", "x86_64-pc-windows-msvc"];
+
+/// What is checked for them: all that users install but the wheel, which asks the interpreter of the target.
+const INSTALLED: [&str; 3] = ["isophote", "isophote-plugin", "isophote-program"];
 
 /// What runs its programs, with the system's libraries of the cross compiler.
 const RUNNER: [&str; 3] = ["qemu-aarch64", "-L", "/usr/aarch64-linux-gnu"];
@@ -52,7 +61,29 @@ const STD: &str = "libstd-rust-web-dev";
 /// # Errors
 /// What is missing, and the programs that fail.
 pub fn run(target: Target, filter: Option<&str>) -> Result<()> {
-    let Target::Aarch64 = target;
+    match target {
+        Target::Aarch64 => emulate(filter),
+        Target::Check => CHECKED.iter().try_for_each(|target| check(target)),
+    }
+}
+
+/// Checks types. Where the compiler lacks the target's standard library, that of Debian's compiler is checked along.
+fn check(target: &str) -> Result<()> {
+    setup::ensure(&[&C_COMPILER])?;
+    heading(target);
+    let mut check = cargo_command(&["check", "--quiet", "--target", target]);
+    check.args(INSTALLED.iter().flat_map(|package| ["--package", package]));
+    check.env("CARGO_TARGET_DIR", target_dir("checks"));
+    if !setup::has_target(target) {
+        setup::ensure(&[&STD_SOURCES])?;
+        check.arg("-Zbuild-std=std,panic_abort,panic_unwind");
+        check.env("RUSTC", SYSTEM_RUSTC).env("RUSTC_BOOTSTRAP", "1");
+    }
+    run_command(&mut check)
+}
+
+/// Runs the tests of ARM.
+fn emulate(filter: Option<&str>) -> Result<()> {
     setup::ensure(&[&C_COMPILER, &AARCH64])?;
     let mut build = cargo_command(&["test", "--target", AARCH64_TARGET, "--lib"]);
     build.args(PACKAGES.iter().flat_map(|package| ["--package", package]));

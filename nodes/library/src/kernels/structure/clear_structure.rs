@@ -1,7 +1,7 @@
 //! How much of what is around a pixel is clear structure, in place of texture and blur, and how much there is at all.
 //!
 //! Across an edge the energy of gradients, a square, falls with the first power of the width over which they are taken, and
-//! with the third in noise, where neighbours tell nothing of each other; across a soft edge it hardly falls. Their ratio at two
+//! with the fourth in noise, where neighbours tell nothing of each other; across a soft edge it hardly falls. Their ratio at two
 //! scales therefore tells lone edges from texture and from what is out of focus (as edges of scale space do: Lindeberg, *Edge
 //! detection and ridge detection with automatic scale selection*, 1998).
 //!

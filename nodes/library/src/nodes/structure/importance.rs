@@ -13,8 +13,8 @@ pub static NODE: NodeSpec = NodeSpec {
     group: "structure",
     hint: "Finds what matters: clear, sharp shapes near the middle are light, textures and what is out of focus dark.",
     doc: "Finds what matters in a picture, by its gradients at two scales. Across a lone sharp edge their energy falls with \
-          the first power of the scale, in texture and noise with the third, and across what is out of focus it hardly \
-          falls; the ratio tells them apart, and is averaged over what is around, by contrast. 0.5 is neutral. Styles \
+          the first power of the scale, in texture with higher ones, up to the fourth in noise, and across what is out of \
+          focus it hardly falls; the ratio tells them apart, and is averaged over what is around, by contrast. 0.5 is neutral. Styles \
           take it as a control map by their parameter `importance`; the picture of it may serve as a mask.",
     section: "2.8",
     inputs: &[ports::COLOR],
