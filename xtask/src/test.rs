@@ -31,7 +31,7 @@ pub struct Options {
     #[arg(long)]
     tests_only: bool,
 
-    /// Only engine, library, plugin and the bits of all nodes, on another kind of processor
+    /// Only what can be said of another machine
     #[arg(long, conflicts_with_all = ["list", "tests_only"])]
     target: Option<target::Target>,
 

@@ -18,7 +18,7 @@ use std::path::{Path, PathBuf};
 use std::process::{Command, Stdio};
 use std::time::Instant;
 
-/// Another kind of processor.
+/// Machines other than this one.
 #[derive(Clone, Copy, clap::ValueEnum)]
 pub enum Target {
     /// 64-bit ARM with Linux, in QEMU
@@ -39,12 +39,13 @@ const RUNNER: [&str; 3] = ["qemu-aarch64", "-L", "/usr/aarch64-linux-gnu"];
 const PACKAGES: [&str; 4] = ["isophote-engine", "isophote", "isophote-plugin", "isophote-tests"];
 
 /// Programs of tests beside the packages' own.
-const PROGRAMS: [&str; 11] = [
+const PROGRAMS: [&str; 12] = [
     "plan",
     "control",
     "cpu",
     "directives",
     "graph",
+    "importance",
     "line_wobble",
     "lines",
     "smoothing",
