@@ -449,8 +449,6 @@ def coherent(
     sigma_a: float = 3.0,
     steadiness: float = 0.0,
     window: int = 2,
-    importance: float = 0.0,
-    importance_centre: float = 0.5,
     mix: float = 1.0,
     out: Any = None,
     frame: int = 0,
@@ -537,13 +535,6 @@ def coherent(
             of the window count alike. 0 to 1.
         window: Neighbouring frames that count, to each side. They count as far as they and the
             motion from them are known. 0 to 8.
-        importance: Keeps detail where shapes are clear and sharp, and calms textures, blur and what
-            is far from the middle. Strength of a control map that is found in the picture (see the
-            node `importance`), with factors of 1/4 to 2 on detail; lines become fewer where detail
-            does. What an artist painted in `control` adds to it. 0 to 1.
-        importance_centre: How much less things count that are far from the middle of the picture.
-            Share by which a Gaussian weighs what is found; its standard deviation is 0.3 of the
-            diagonal. 0 to 1.
         mix: Blends the result with the picture: 0 leaves the picture as it was, 1 shows the result
             alone. 0 to 1.
 
@@ -1284,8 +1275,6 @@ def painting(
     limit_range: bool = True,
     steadiness: float = 0.0,
     window: int = 2,
-    importance: float = 0.0,
-    importance_centre: float = 0.5,
     mix: float = 1.0,
     out: Any = None,
     frame: int = 0,
@@ -1365,13 +1354,6 @@ def painting(
             of the window count alike. 0 to 1.
         window: Neighbouring frames that count, to each side. They count as far as they and the
             motion from them are known. 0 to 8.
-        importance: Keeps detail where shapes are clear and sharp, and calms textures, blur and what
-            is far from the middle. Strength of a control map that is found in the picture (see the
-            node `importance`), with factors of 1/4 to 2 on detail; lines become fewer where detail
-            does. What an artist painted in `control` adds to it. 0 to 1.
-        importance_centre: How much less things count that are far from the middle of the picture.
-            Share by which a Gaussian weighs what is found; its standard deviation is 0.3 of the
-            diagonal. 0 to 1.
         mix: Blends the result with the picture: 0 leaves the picture as it was, 1 shows the result
             alone. 0 to 1.
 

@@ -1,4 +1,4 @@
-//! Parameters of every style that direct places of a picture by a map which is found in it.
+//! Parameters of styles that direct places of a picture by a map which is found in it.
 
 use crate::declare::param::Param;
 

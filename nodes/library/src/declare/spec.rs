@@ -190,7 +190,9 @@ impl NodeSpec {
         static COMMON: [Param; 1] = [MIX];
         let common: &'static [Param] = if self.has_mix() { &COMMON } else { &[] };
         static DIRECTION: [Param; 2] = [IMPORTANCE, CENTRE];
-        let direction: &'static [Param] = if self.group == "styles" { &DIRECTION } else { &[] };
+        // Styles without a tolerance bring detail back by places, and lose none.
+        let loses_detail = self.group == "styles" && self.own_params.iter().any(|p| p.id == "sigma_r");
+        let direction: &'static [Param] = if loses_detail { &DIRECTION } else { &[] };
         self.own_params.iter().chain(direction).chain(common)
     }
 
