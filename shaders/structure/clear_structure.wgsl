@@ -1,4 +1,4 @@
-// How much of what is around a pixel is clear structure, in place of texture and blur, and how much there is at all.
+// Share of what is around a pixel that is clear structure, in place of texture and blur, and its weight.
 // Cost: two loads, a square root and two divisions.
 #import gpu/grid
 

@@ -16,9 +16,9 @@ struct Params {
 
 // Importance that changes nothing.
 const NEUTRAL_IMPORTANCE: f32 = 0.5;
-// How far detail grows where importance is greatest, of what it falls by where there is none.
+// Growth of detail where importance is greatest, of what it falls by where there is none.
 const MORE: f32 = 0.5;
-// How far lines become fewer for what detail is lost.
+// Share by which lines become fewer for what detail is lost.
 const FEWER: f32 = 0.6;
 
 fn of_pixel(id: vec3u, importance: vec4f, control: vec4f) -> vec4f {

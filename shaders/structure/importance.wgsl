@@ -1,4 +1,4 @@
-// How much places of a picture matter, 0..1: as far as structure is clear around them, and near the middle.
+// Importance of places of a picture, 0..1: as far as structure is clear around them, and near the middle.
 // Cost: a load, an exponential and a division.
 #import gpu/grid
 

@@ -70,7 +70,7 @@ pub const WASM_TARGET: &str = "wasm32-unknown-unknown";
 /// 64-bit ARM with Linux, as compilers name it.
 pub const AARCH64_TARGET: &str = "aarch64-unknown-linux-gnu";
 
-/// What compiles, links and runs programs for 64-bit ARM.
+/// Compiler, linker and emulator for 64-bit ARM.
 pub const AARCH64: Need = Need {
     what: "a cross compiler and an emulator for ARM",
     present: || {

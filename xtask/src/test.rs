@@ -306,7 +306,7 @@ fn tried_again(ran: Ran) -> Ran {
     Ran { is_second: true, ..report::show(ran.program, &output, ran.seconds + seconds) }
 }
 
-/// What a program prints, and the seconds that it takes.
+/// Output of a program, and the seconds that it takes.
 fn timed(program: &Program, runner: &[&str]) -> (std::io::Result<Output>, f64) {
     let started = Instant::now();
     let output = prepared(program.command(runner)).output();

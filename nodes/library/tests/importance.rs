@@ -1,4 +1,4 @@
-//! What matters in a picture on the CPU executor: shapes, texture and blur, the middle, and what styles make of it.
+//! Importance on the CPU executor: shapes, texture and blur, the middle, and what styles make of it.
 
 mod result;
 

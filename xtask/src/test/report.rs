@@ -1,4 +1,4 @@
-//! What is printed of programs of tests.
+//! Reports of programs of tests, as they are printed.
 
 use super::programs::Program;
 use std::process::Output;

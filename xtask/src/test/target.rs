@@ -1,8 +1,8 @@
 //! `cargo xtask test --target`: the tests of pixels on another kind of processor, emulated, and what can be said of systems
 //! that are not there.
 //!
-//! What must be the same everywhere is run as it is run here: engine, library, plugin, and the program `bits`, which compares
-//! the bits of every node with the committed table. Nothing of it needs a graphics device.
+//! Tests of what must be the same everywhere are run as they are run here: engine, library, plugin, and the program `bits`,
+//! which compares the bits of every node with the committed table. Nothing of it needs a graphics device.
 //!
 //! The target's standard library is that of the compiler, where `rustup target add` brought it. Otherwise compiler and
 //! library are Debian's; the library's package is unpacked beside the build, since to install it would need a second
@@ -30,10 +30,10 @@ pub enum Target {
 /// Targets whose types are checked.
 const CHECKED: [&str; 2] = ["aarch64-apple-darwin", "x86_64-pc-windows-msvc"];
 
-/// What is checked for them: all that users install but the wheel, which asks the interpreter of the target.
+/// Packages that are checked for them: all that users install but the wheel, which asks the interpreter of the target.
 const INSTALLED: [&str; 3] = ["isophote", "isophote-plugin", "isophote-program"];
 
-/// What runs its programs, with the system's libraries of the cross compiler.
+/// Emulator of its programs, with the system's libraries of the cross compiler.
 const RUNNER: [&str; 3] = ["qemu-aarch64", "-L", "/usr/aarch64-linux-gnu"];
 
 const PACKAGES: [&str; 4] = ["isophote-engine", "isophote", "isophote-plugin", "isophote-tests"];
@@ -60,7 +60,7 @@ const STD: &str = "libstd-rust-web-dev";
 /// Runs the tests of a target whose names contain the filter; without one all.
 ///
 /// # Errors
-/// What is missing, and the programs that fail.
+/// Things that are missing, and the programs that fail.
 pub fn run(target: Target, filter: Option<&str>) -> Result<()> {
     match target {
         Target::Aarch64 => emulate(filter),

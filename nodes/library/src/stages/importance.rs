@@ -1,4 +1,4 @@
-//! What matters in a picture, found in it: clear and sharp shapes in place of texture and blur, and what is near the middle.
+//! Importance of places, found in a picture: clear and sharp shapes in place of texture and blur, and what is near the middle.
 
 use crate::declare::spec::{CENTRE, Scope};
 use crate::kernels::colour::rgb_to_lab;
@@ -22,7 +22,7 @@ const HALF_GRADIENT: f32 = 0.008;
 /// Standard deviation of the Gaussian around the middle, of half the diagonal.
 const MIDDLE: f32 = 0.6;
 
-/// How much the places of a node's picture matter, one channel, 0..=1. The node has the parameter [`CENTRE`].
+/// Importance of the places of a node's picture, one channel, 0..=1. The node has the parameter [`CENTRE`].
 pub(crate) fn importance(scope: &mut Scope<'_>) -> ImageId {
     let (scale, share) = (scope.scale(), scope.float(CENTRE.id));
     let color = scope.required("color");

@@ -1,4 +1,4 @@
-//! How much of what is around a pixel is clear structure, in place of texture and blur, and how much there is at all.
+//! Share of what is around a pixel that is clear structure, in place of texture and blur, and its weight.
 //!
 //! Across an edge the energy of gradients, a square, falls with the first power of the width over which they are taken, and
 //! with the fourth in noise, where neighbours tell nothing of each other; across a soft edge it hardly falls. Their ratio at two

@@ -24,10 +24,10 @@ crate::kernel!(control_importance {
 
 /// Importance that changes nothing.
 const NEUTRAL: f32 = 0.5;
-/// How far detail grows where importance is greatest, of what it falls by where there is none: too much of it is the picture
+/// Growth of detail where importance is greatest, of what it falls by where there is none: too much of it is the picture
 /// itself.
 const MORE: f32 = 0.5;
-/// How far lines become fewer for what detail is lost.
+/// Share by which lines become fewer for what detail is lost.
 const FEWER: f32 = 0.6;
 
 /// The map of an [importance](super::importance) and of what an artist painted, by a factor of 0..=1.

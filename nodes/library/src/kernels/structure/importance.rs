@@ -1,4 +1,4 @@
-//! How much places of a picture matter, 0..=1: as far as structure is clear around them, and near the middle.
+//! Importance of places of a picture, 0..=1: as far as structure is clear around them, and near the middle.
 //!
 //! Cost: an exponential and a division per pixel.
 
@@ -22,7 +22,7 @@ crate::kernel!(importance {
 const EMPTY: f32 = 0.03;
 const CLEAR_WHEN_EMPTY: f32 = 0.35;
 
-/// What lies near the middle.
+/// Middle of a picture, and what it counts.
 #[derive(Clone, Copy, Debug)]
 pub struct Middle {
     /// Middle of the picture, pixels.

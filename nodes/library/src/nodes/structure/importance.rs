@@ -1,4 +1,4 @@
-//! What matters in a picture, as a map.
+//! Importance of places of a picture, as a map.
 
 use crate::declare::ports;
 use crate::declare::spec::{CENTRE, NodeSpec, Scope};
