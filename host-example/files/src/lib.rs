@@ -10,6 +10,7 @@
 //! | [`input`] | opening of files that are read |
 //! | [`limits`] | memory and threads that the system may refuse |
 //! | [`output`] | messages on standard output and standard error |
+//! | [`patience`] | work that fails for a moment |
 //! | [`replacing`] | consent to replace files |
 //! | [`stop`] | early end of a run |
 
@@ -24,6 +25,7 @@ pub mod input;
 pub mod limits;
 mod list;
 pub mod output;
+pub mod patience;
 mod place;
 pub mod replacing;
 pub mod stop;

@@ -1,5 +1,8 @@
 //! Files that are written under other names than their own, locked meanwhile, by which [`sweep`] tells what is being written
 //! from what a killed program left.
+//!
+//! What another program writes is not locked itself, since on Windows nobody else may write to what is locked. An empty file
+//! beside it is, whose name is the other's without [`CONTENT`].
 
 use std::fs::{self, File, OpenOptions, TryLockError};
 use std::io::{self, ErrorKind};
@@ -7,10 +10,15 @@ use std::path::{Path, PathBuf};
 use std::sync::{Mutex, MutexGuard, PoisonError};
 use std::time::Duration;
 
-use tempfile::NamedTempFile;
+use tempfile::TempPath;
+
+use crate::patience::patiently;
 
 /// Beginning of the names of temporary files; [`kernel`] follows.
 const TEMPORARY: &str = ".isophote-";
+
+/// End of the names of those that another program writes.
+const CONTENT: &str = ".content";
 
 /// Age after which a temporary file that nobody locks was left behind, whoever wrote it: locks of other machines may
 /// not show.
@@ -32,12 +40,17 @@ pub fn sweep(folder: &Path) {
         }
         let path = entry.path();
         // Held until the file is removed, so that its writer notices; see `Temporary::in_folder`.
-        let file = OpenOptions::new().write(true).open(&path);
-        let locked = file.as_ref().ok().map(File::try_lock);
-        if matches!(locked, Some(Err(TryLockError::WouldBlock))) {
+        let file = OpenOptions::new().write(true).open(path.with_file_name(name_of_lock(name)));
+        let locked = file.as_ref().map(File::try_lock);
+        if matches!(locked, Ok(Err(TryLockError::WouldBlock))) {
             continue;
         }
-        let shows = !kernel.is_empty() && name.starts_with(&own) && matches!(locked, Some(Ok(())));
+        let is_free = match locked {
+            Ok(locked) => locked.is_ok(),
+            // Removed already, and content is never without while it is written.
+            Err(error) => error.kind() == ErrorKind::NotFound,
+        };
+        let shows = !kernel.is_empty() && name.starts_with(&own) && is_free;
         let modified = entry.metadata().and_then(|m| m.modified());
         let is_old = modified.is_ok_and(|at| at.elapsed().is_ok_and(|age| age > LEFT_BEHIND));
         if shows || is_old {
@@ -45,6 +58,11 @@ pub fn sweep(folder: &Path) {
             let _ = fs::remove_file(path);
         }
     }
+}
+
+/// Name of the file that is locked while that of this name is written.
+fn name_of_lock(name: &str) -> &str {
+    name.strip_suffix(CONTENT).unwrap_or(name)
 }
 
 /// Removes what is being written, and ends the process at once.
@@ -58,15 +76,17 @@ pub fn abandon(code: u8) -> ! {
     signal_hook::low_level::exit(code.into())
 }
 
-/// A file that is being written: locked, and deleted unless it is renamed.
+/// A file that is being written: locked, or guarded by one that is, and deleted unless it is renamed.
 pub struct Temporary {
-    file: NamedTempFile,
-    /// Dropped after the file is gone.
+    file: File,
+    path: TempPath,
+    /// Dropped after the file is gone, as the guard is.
     _listed: Listed,
+    _guard: Option<Box<Temporary>>,
 }
 
 impl Temporary {
-    /// A new one in a folder.
+    /// A new one in a folder, to be written by its handle.
     ///
     /// # Errors
     /// As the system.
@@ -76,9 +96,9 @@ impl Temporary {
         let mut attempt = 1;
         loop {
             let temporary = Self::unlocked(folder)?;
-            let is_swept = match temporary.file.as_file().try_lock() {
+            let is_swept = match temporary.file.try_lock() {
                 Err(TryLockError::WouldBlock) => true,
-                Ok(()) => !temporary.file.path().exists(),
+                Ok(()) => !temporary.path.exists(),
                 // Where files cannot be locked their age protects them.
                 Err(TryLockError::Error(_)) => false,
             };
@@ -87,6 +107,21 @@ impl Temporary {
             }
             attempt += 1;
         }
+    }
+
+    /// A new one in a folder, to be written by its path.
+    ///
+    /// # Errors
+    /// As the system.
+    pub fn for_another(folder: &Path) -> io::Result<Self> {
+        let guard = Self::in_folder(folder)?;
+        let mut path = guard.path().as_os_str().to_owned();
+        path.push(CONTENT);
+        let mut unfinished = unfinished();
+        let file = File::create_new(&path)?;
+        let path = TempPath::try_from_path(path)?;
+        let listed = Listed::new(&mut unfinished, &path);
+        Ok(Self { file, path, _listed: listed, _guard: Some(Box::new(guard)) })
     }
 
     fn unlocked(folder: &Path) -> io::Result<Self> {
@@ -100,20 +135,19 @@ impl Temporary {
             builder.permissions(fs::Permissions::from_mode(0o666));
         }
         let mut unfinished = unfinished();
-        let file = builder.tempfile_in(folder)?;
-        unfinished.push(file.path().to_owned());
-        let listed = Listed(file.path().to_owned());
-        Ok(Self { file, _listed: listed })
+        let (file, path) = builder.tempfile_in(folder)?.into_parts();
+        let listed = Listed::new(&mut unfinished, &path);
+        Ok(Self { file, path, _listed: listed, _guard: None })
     }
 
     /// Path of it for the time being.
     pub fn path(&self) -> &Path {
-        self.file.path()
+        &self.path
     }
 
     /// File that is written to.
     pub fn file(&mut self) -> &mut File {
-        self.file.as_file_mut()
+        &mut self.file
     }
 
     /// Flushes the file to the disk and gives it its name, which a file that is there only loses where it is replaced.
@@ -125,19 +159,19 @@ impl Temporary {
             self.take_permissions(target);
         }
         // A name must not appear before what it names is on the disk.
-        self.file.as_file().sync_all()?;
-        let Self { file, _listed } = self;
-        let named = match replaces {
-            true => file.persist(target),
-            false => file.persist_noclobber(target).or_else(|refused| {
-                // Some disks know no renaming that replaces nothing; there a look before it has to do.
-                if target.exists() { Err(refused) } else { refused.file.persist(target) }
-            }),
-        };
+        self.file.sync_all()?;
+        let Self { file: _open, path, _listed, _guard } = self;
+        let mut left = Some(path);
+        let named = patiently(|| {
+            let Some(path) = left.take() else { return Err(ErrorKind::NotFound.into()) };
+            named(path, target, replaces).map_err(|(path, error)| {
+                left = Some(path);
+                error
+            })
+        });
         match named {
-            Ok(_) => Ok(()),
             Err(_) if !replaces && target.exists() => Err(ErrorKind::AlreadyExists.into()),
-            Err(refused) => Err(refused.error),
+            named => named,
         }
     }
 
@@ -147,8 +181,8 @@ impl Temporary {
         use std::os::unix::fs::{MetadataExt, fchown};
         let Ok(old) = fs::metadata(target) else { return };
         // Not every disk knows permissions, and not everybody may give files away: the picture counts more.
-        let _ = fchown(self.file.as_file(), Some(old.uid()), Some(old.gid()));
-        let _ = self.file.as_file().set_permissions(old.permissions());
+        let _ = fchown(&self.file, Some(old.uid()), Some(old.gid()));
+        let _ = self.file.set_permissions(old.permissions());
     }
 
     /// Folders decide who may use the files in them.
@@ -156,8 +190,27 @@ impl Temporary {
     fn take_permissions(&self, _target: &Path) {}
 }
 
+/// Gives a file its name; where it cannot have it the file stays.
+fn named(path: TempPath, target: &Path, replaces: bool) -> Result<(), (TempPath, io::Error)> {
+    let named = match replaces {
+        true => path.persist(target),
+        false => path.persist_noclobber(target).or_else(|refused| {
+            // Some disks know no renaming that replaces nothing; there a look before it has to do.
+            if target.exists() { Err(refused) } else { refused.path.persist(target) }
+        }),
+    };
+    named.map_err(|refused| (refused.path, refused.error))
+}
+
 /// An entry of [`UNFINISHED`].
 struct Listed(PathBuf);
+
+impl Listed {
+    fn new(unfinished: &mut Vec<PathBuf>, path: &Path) -> Self {
+        unfinished.push(path.to_owned());
+        Self(path.to_owned())
+    }
+}
 
 impl Drop for Listed {
     fn drop(&mut self) {
@@ -171,8 +224,11 @@ pub fn unfinished() -> MutexGuard<'static, Vec<PathBuf>> {
 }
 
 /// The kernel that runs, whose processes see each other's locks in whatever container they are; empty where it does
-/// not tell.
+/// not tell. All machines with Windows see those of each other, on shared disks as well.
 fn kernel() -> String {
+    if cfg!(windows) {
+        return "windows".into();
+    }
     let id = fs::read_to_string("/proc/sys/kernel/random/boot_id").unwrap_or_default();
     id.chars().filter(char::is_ascii_hexdigit).take(32).collect()
 }
@@ -210,17 +266,20 @@ pub(crate) mod tests {
         let locked = [format!("{TEMPORARY}-locked"), format!("{own}locked")].map(|name| make(&name, 2));
         locked.iter().for_each(|file| file.lock().unwrap());
         drop(make(&format!("{own}killed"), 0));
+        drop(make(&format!("{own}killed{CONTENT}"), 0));
+        drop(make(&format!("{own}locked{CONTENT}"), 2));
         drop(make("a.png", 9));
         sweep(folder.path());
         let mut left: Vec<String> = others.iter().map(|name| format!(".isophote{name}")).collect();
-        left.extend([format!("{TEMPORARY}-locked"), format!("{own}locked"), "a.png".into()]);
+        let guarded = format!("{own}locked{CONTENT}");
+        left.extend([format!("{TEMPORARY}-locked"), format!("{own}locked"), guarded, "a.png".into()]);
         if kernel().is_empty() {
-            left.push(format!("{own}killed"));
+            left.extend(["", CONTENT].map(|end| format!("{own}killed{end}")));
         }
         left.sort();
         assert_eq!(names(folder.path()), left);
         drop(locked);
         sweep(folder.path());
-        assert!(!names(folder.path()).iter().any(|name| name.ends_with("locked")));
+        assert!(!names(folder.path()).iter().any(|name| name.contains("locked")));
     }
 }
