@@ -2,6 +2,7 @@
 
 use clap::ValueEnum;
 
+use super::card::Card;
 use isophote_files::error::{AtPlace, Result};
 use isophote_loader::abi::ISOPHOTE_ERROR_NO_DEVICE;
 use isophote_loader::{Device, Library};
@@ -29,21 +30,22 @@ impl Backend {
         }
     }
 
-    /// The library's own device, or nothing for the CPU.
+    /// The library's own device, or the CPU.
     ///
     /// # Errors
     /// [`isophote_files::error::Error::Failure`] when there is no such device.
-    pub fn device(self, library: &Library) -> Result<Option<Device>> {
+    pub fn card(self, library: &Library) -> Result<Card<Device>> {
         let place = "--backend";
-        match self {
-            Self::Cpu => Ok(None),
-            Self::Gpu => library.device(None).map(Some).map_err(|e| e.at(place, "use --backend cpu")),
+        let device = match self {
+            Self::Cpu => None,
+            Self::Gpu => Some(library.device(None).map_err(|e| e.at(place, "use --backend cpu"))?),
             // A driver that computes on the CPU is slower there than the library itself.
             Self::Auto => match library.device(Some("gpu")) {
-                Ok(device) => Ok(Some(device)),
-                Err(refused) if refused.status() == Some(ISOPHOTE_ERROR_NO_DEVICE) => Ok(None),
-                Err(refused) => Err(refused.at(place, "use --backend cpu")),
+                Ok(device) => Some(device),
+                Err(refused) if refused.status() == Some(ISOPHOTE_ERROR_NO_DEVICE) => None,
+                Err(refused) => return Err(refused.at(place, "use --backend cpu")),
             },
-        }
+        };
+        Ok(Card::new(device, self == Self::Gpu))
     }
 }

@@ -4,6 +4,7 @@ use std::path::Path;
 use std::sync::Arc;
 
 use super::backend::Backend;
+use super::card::Card;
 use super::frame_cache::Window;
 use super::memory::Needs;
 use super::painted::PAINTED;
@@ -48,7 +49,7 @@ impl MaskedStyle {
 pub struct Filter {
     library: Library,
     layers: Vec<Layer>,
-    device: Option<Arc<Device>>,
+    card: Arc<Card<Device>>,
     space: Option<Space>,
     output_space: Option<Space>,
     /// True where results are floats, whatever the picture's precision is.
@@ -68,10 +69,11 @@ struct Layer {
     sequences: Vec<Kept>,
 }
 
-/// State that is kept of the frames of one picture, whose size it is made for.
+/// State that is kept of the frames of one picture, for whose size and device it is made.
 #[derive(Debug)]
 struct Kept {
     size: (u32, u32),
+    is_on_card: bool,
     sequence: Sequence,
 }
 
@@ -177,15 +179,13 @@ impl Layer {
             return Ok(style.graph.process(device, &request, &all, result, control)?.replaced);
         }
         request.guides = library.guide_bits(inputs.map(|input| input.name))?;
-        let size = (request.width, request.height);
-        self.sequences.truncate(if self.sequences.get(at).is_some_and(|k| k.size != size) {
-            at
-        } else {
-            usize::MAX
-        });
+        let (size, is_on_card) = ((request.width, request.height), device.is_some());
+        if self.sequences.get(at).is_some_and(|k| (k.size, k.is_on_card) != (size, is_on_card)) {
+            self.sequences.truncate(at);
+        }
         if self.sequences.len() <= at {
             let memory = stages(library, style, &request, frames)?;
-            self.sequences.push(Kept { size, sequence: library.sequence(memory, 0.0)? });
+            self.sequences.push(Kept { size, is_on_card, sequence: library.sequence(memory, 0.0)? });
         }
         let input = self.input;
         let mut image = |name: &str, frame: i64| match (name, input) {
@@ -209,8 +209,8 @@ impl Filter {
         space: Option<Space>,
         threads: u32,
     ) -> Result<Self> {
-        let (device, layers) = (backend.device(&library)?.map(Arc::new), layers(looks)?);
-        Ok(Self { library, layers, device, space, output_space: None, is_precise: false, threads })
+        let (card, layers) = (Arc::new(backend.card(&library)?), layers(looks)?);
+        Ok(Self { library, layers, card, space, output_space: None, is_precise: false, threads })
     }
 
     /// The same with results in a space of their own.
@@ -235,8 +235,8 @@ impl Filter {
     /// # Errors
     /// As [`Filter::new`].
     pub fn beside(&self, looks: Vec<MaskedStyle>) -> Result<Self> {
-        let (library, device) = (self.library.clone(), self.device.clone());
-        Ok(Self { library, layers: layers(looks)?, device, ..*self })
+        let (library, card) = (self.library.clone(), Arc::clone(&self.card));
+        Ok(Self { library, layers: layers(looks)?, card, ..*self })
     }
 
     /// Number of them that should work on the frames of a sequence. Two on a graphics device: while it computes one
@@ -245,7 +245,7 @@ impl Filter {
     /// # Errors
     /// [`Error::Failure`] when the library fails.
     pub fn best_count(&self) -> Result<usize> {
-        Ok(if self.device.is_some() && self.frames()? == [0, 0] { 2 } else { 1 })
+        Ok(if self.card.device().is_some() && self.frames()? == [0, 0] { 2 } else { 1 })
     }
 
     /// Frames before and after its own that a frame depends on.
@@ -364,9 +364,10 @@ impl Filter {
             let mut report = |done: f32| progress((number as f32 + done) / count);
             let mut control =
                 Control { threads: self.threads, progress: Some(&mut report), ..Control::default() };
-            let bad = layer
-                .process((&self.library, self.device.as_deref()), job, &mut result, &mut control)
-                .map_err(|e| e.at(name, "choose another picture or style"))?;
+            let process = |device: Option<&Device>| {
+                layer.process((&self.library, device), job, &mut result, &mut control)
+            };
+            let bad = self.card.run(process).map_err(|e| e.at(name, "choose another picture or style"))?;
             // All of them read the same picture.
             replaced = bad.max(replaced);
             let mask = layer.look.mask.and_then(|mask| masks.get(mask)?.as_ref());

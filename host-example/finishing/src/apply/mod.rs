@@ -1,6 +1,7 @@
 //! Filtering pictures and sequences of pictures from file to file, without any scene.
 
 pub mod backend;
+mod card;
 pub mod dry_run;
 pub mod filter;
 pub mod frame_cache;
