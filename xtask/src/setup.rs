@@ -80,6 +80,23 @@ pub const AARCH64: Need = Need {
     packages: &["rustc-web", "gcc-aarch64-linux-gnu", "libc6-dev-arm64-cross", "qemu-user"],
 };
 
+/// 64-bit Windows with MinGW's libraries, as compilers name it.
+pub const WINDOWS_TARGET: &str = "x86_64-pc-windows-gnu";
+
+/// Linker and libraries for Windows.
+pub const MINGW: Need = Need {
+    what: "MinGW",
+    present: || program("x86_64-w64-mingw32-gcc"),
+    packages: &["gcc-mingw-w64-x86-64"],
+};
+
+/// What runs programs for Windows.
+pub const WINE: Need = Need {
+    what: "Wine",
+    present: || program("wine") && program("wineserver"),
+    packages: &["wine", "wine64"],
+};
+
 /// A standard library of Rust for browsers, or its sources. `rustup target add wasm32-unknown-unknown` brings it, too.
 pub const WASM: Need = Need {
     what: "Rust for WebAssembly (rustup target add wasm32-unknown-unknown)",

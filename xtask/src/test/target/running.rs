@@ -1,0 +1,59 @@
+//! Programs of tests of another machine, run by an emulator.
+
+use crate::error::{Failure, Result};
+use crate::test::programs::Program;
+use crate::test::report;
+use crate::tools::heading;
+use std::process::Command;
+use std::time::Instant;
+
+/// Runs the tests of programs whose names contain the filter, each by a command with its arguments, and tells which fail.
+///
+/// # Errors
+/// The programs that fail, or that cannot be started.
+pub fn run_programs(
+    programs: Vec<Program>,
+    filter: Option<&str>,
+    runner: &[&str],
+    prepare: impl Fn(&mut Command),
+) -> Result<()> {
+    heading("tests");
+    let ran =
+        programs.into_iter().filter_map(|program| run_program(program, filter, runner, &prepare).transpose());
+    let failed = report::sum_up(ran.collect::<Result<_>>()?);
+    heading("end");
+    if failed.is_empty() { Ok(()) } else { Err(Failure(format!("these tests fail: {}", failed.join(", ")))) }
+}
+
+/// Runs a program's tests whose names contain the filter; `None` where there are none.
+fn run_program(
+    program: Program,
+    filter: Option<&str>,
+    runner: &[&str],
+    prepare: impl Fn(&mut Command),
+) -> Result<Option<report::Ran>> {
+    let names_program = filter.is_none_or(|filter| program.name.contains(filter));
+    if !names_program && program.tests(filter.unwrap_or_default(), runner)?.is_empty() {
+        return Ok(None);
+    }
+    let mut command = program.command(runner);
+    command.args(filter.filter(|_| !names_program));
+    prepare(&mut command);
+    let started = Instant::now();
+    let output = command.output();
+    Ok(Some(report::show(program, &output, started.elapsed().as_secs_f64())))
+}
+
+/// Name of a variable that tells cargo something of a target.
+pub fn variable(target: &str, what: &str) -> String {
+    format!("CARGO_TARGET_{}_{what}", target.to_uppercase().replace('-', "_"))
+}
+
+#[cfg(test)]
+mod tests {
+    #[test]
+    fn variables_are_named_as_cargo_names_them() {
+        let name = super::variable("aarch64-unknown-linux-gnu", "LINKER");
+        assert_eq!(name, "CARGO_TARGET_AARCH64_UNKNOWN_LINUX_GNU_LINKER");
+    }
+}
