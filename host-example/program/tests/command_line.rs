@@ -36,6 +36,8 @@ fn a_file_in_the_place_of_a_verb_is_opened() {
     let folder = folder();
     save(folder.path(), &["photo.png", "shot.0001.png", "shot.0002.png"]);
     turning_triangle(folder.path());
+    // Elsewhere a window needs no display that has a name.
+    #[cfg(target_os = "linux")]
     for file in ["photo.png", "shot.####.png", "triangle.gltf", "./photo.png"] {
         let mut command = run(folder.path(), &[file]);
         for name in ["DISPLAY", "WAYLAND_DISPLAY", "WAYLAND_SOCKET"] {

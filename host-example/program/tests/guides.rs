@@ -162,5 +162,6 @@ fn jobs_for_farms_name_flow_maps_by_whole_paths() {
     let mut command = isophote();
     command.current_dir(folder.path()).args(["farm", "openjd", "--", "apply", "oil_paint"]);
     let job = succeeds(command.args(["in.####.png", "out.####.png", "--flow", "maps/flow.####.png"])).0;
-    assert!(job.contains("/maps/flow.####.png"), "{job}");
+    // Backslashes of Windows are doubled in JSON.
+    assert!(job.replace("//", "/").contains("/maps/flow.####.png"), "{job}");
 }

@@ -57,16 +57,22 @@ pub fn isophote() -> Command {
     command
 }
 
+/// What a program said, with paths as they are written on all systems but Windows.
+fn said(bytes: &[u8]) -> String {
+    let text = String::from_utf8_lossy(bytes);
+    if cfg!(windows) { text.replace('\\', "/") } else { text.into_owned() }
+}
+
 /// Standard error as text.
 pub fn errors(output: &Output) -> String {
-    String::from_utf8_lossy(&output.stderr).into_owned()
+    said(&output.stderr)
 }
 
 /// Runs the program to a good end; returns what it printed and what it warned of.
 pub fn succeeds(command: &mut Command) -> (String, String) {
     let output = command.output().expect("the program can be started");
     assert!(output.status.success(), "{command:?}: {}\n{}", output.status, errors(&output));
-    (String::from_utf8_lossy(&output.stdout).into_owned(), errors(&output))
+    (said(&output.stdout), errors(&output))
 }
 
 /// Runs the program, which must end with this code and say why on one line that holds all of `words`.
