@@ -203,14 +203,17 @@ impl Pattern {
         let mut found = Vec::new();
         for entry in fs::read_dir(self.folder())? {
             let name = entry?.file_name();
-            let rest = name.as_encoded_bytes().strip_prefix(self.before.as_encoded_bytes());
-            let text = rest.and_then(|rest| rest.strip_suffix(self.after.as_encoded_bytes()));
+            let text = between(name.as_encoded_bytes(), [&self.before, &self.after]);
             let text = text.and_then(|text| std::str::from_utf8(text).ok());
             let Some((text, number)) = text.and_then(|text| Some((text, text.parse().ok()?))) else {
                 continue;
             };
             let digits = text.bytes().filter(u8::is_ascii_digit).count();
             let is_padded = digits > 1 && text.trim_start_matches('-').starts_with('0');
+            // As the pattern has it, whatever the case of its letters on the disk.
+            let mut name = self.before.clone();
+            name.push(text);
+            name.push(&self.after);
             found.push(Numbered { number, digits, is_padded, name });
         }
         Ok(found)
@@ -253,6 +256,18 @@ impl Pattern {
         };
         Error::file(&self.path, "matches no file", fix)
     }
+}
+
+/// The part of a name between a beginning and an end, whose letters may be of another case on Windows, as names are there.
+fn between<'n>(name: &'n [u8], [before, after]: [&OsStr; 2]) -> Option<&'n [u8]> {
+    let is_same = |part: &[u8], wanted: &[u8]| match cfg!(windows) {
+        true => part.eq_ignore_ascii_case(wanted),
+        false => part == wanted,
+    };
+    let [before, after] = [before, after].map(OsStr::as_encoded_bytes);
+    let (start, rest) = name.split_at_checked(before.len())?;
+    let (middle, end) = rest.split_at_checked(rest.len().checked_sub(after.len())?)?;
+    (is_same(start, before) && is_same(end, after)).then_some(middle)
 }
 
 /// Digits of numbers that zeros pad to one length; nothing where they are as long as they are.
@@ -369,6 +384,16 @@ mod tests {
         assert_eq!(pattern("b#1@2.%04d.png").unwrap().unwrap().on_disk().unwrap(), [7]);
         assert_eq!(pattern("b#1@2.#.png").unwrap().unwrap().on_disk().unwrap(), [7]);
         assert!(pattern("#.#.png").is_err());
+    }
+
+    #[test]
+    fn letters_have_two_cases_but_on_windows() {
+        let folder = folder(&["Shot.0001.EXR", "Shot.0002.EXR"]);
+        let pattern = Pattern::new(&folder.path().join("shot.####.exr")).unwrap().unwrap();
+        match pattern.on_disk() {
+            Ok(frames) => assert!(cfg!(windows) && frames == [1, 2] && pattern.file(1).is_file()),
+            Err(refused) => assert!(!cfg!(windows), "{refused}"),
+        }
     }
 
     #[test]

@@ -1,8 +1,9 @@
 //! The command line that gives the picture that is shown.
 
-use std::path::{Path, PathBuf};
+use std::path::PathBuf;
 
 use super::playback::Playback;
+use super::quoting::{quoted, quoted_path};
 use super::scenery::Scenery;
 use super::session::Session;
 use isophote_finishing::staging::{Behind, MotionArgs, StagingArgs};
@@ -144,45 +145,5 @@ fn behind(scenery: &Scenery) -> Behind {
         (Background::Color(color), _) => Behind::Color(*color),
         (Background::Environment(_), Some(file)) => Behind::File(file.clone()),
         (Background::Environment(_), None) | (Background::Sky, _) => Behind::Sky,
-    }
-}
-
-/// A path as a shell takes it, and the program not for an option.
-fn quoted_path(path: &Path) -> String {
-    let path = path.to_string_lossy();
-    quoted(&if path.starts_with('-') { format!("./{path}") } else { path.into_owned() })
-}
-
-/// A word as a shell takes it. A terminal would obey control characters when the line is pasted.
-fn quoted(word: &str) -> String {
-    let is_plain = |c: char| c.is_ascii_alphanumeric() || "-_./=,:@%+".contains(c);
-    if !word.is_empty() && word.chars().all(is_plain) {
-        return word.to_owned();
-    }
-    if !word.chars().any(char::is_control) {
-        return format!("'{}'", word.replace('\'', r"'\''"));
-    }
-    let escaped = word.chars().map(|c| match c {
-        '\'' | '\\' => format!("\\{c}"),
-        c if c.is_control() => {
-            c.encode_utf8(&mut [0; 4]).bytes().map(|byte| format!("\\{byte:03o}")).collect()
-        }
-        c => c.into(),
-    });
-    format!("$'{}'", escaped.collect::<String>())
-}
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-
-    #[test]
-    fn words_are_quoted_where_a_shell_needs_it() {
-        assert_eq!(quoted("line_color=#102030"), "'line_color=#102030'");
-        assert_eq!(quoted("a/b-c.json"), "a/b-c.json");
-        assert_eq!(quoted("it's"), r"'it'\''s'");
-        assert_eq!(quoted(""), "''");
-        assert_eq!(quoted("a\u{1b}[2J\n'\\\u{9b}"), r"$'a\033[2J\012\'\\\302\233'");
-        assert_eq!(quoted_path(Path::new("-o.png")), "./-o.png");
     }
 }

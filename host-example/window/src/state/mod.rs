@@ -25,6 +25,7 @@ pub mod playback;
 pub mod preview;
 pub mod probed;
 pub mod progress;
+mod quoting;
 pub mod record;
 pub mod resetting;
 pub mod running;
