@@ -14,7 +14,7 @@ use crate::tools::{cargo_command, heading, run as run_command, target_dir};
 use std::fs;
 use std::path::{Path, PathBuf};
 use std::process::Command;
-use wine::Wine;
+use wine::{LINKER, Wine};
 
 mod wine;
 
@@ -75,8 +75,6 @@ const PROGRAMS: [&str; 36] = [
 
 /// Manifest of a crate of nothing.
 const CRATE: &str = "[package]\nname = \"standard\"\nedition = \"2024\"\n\n[workspace]\n";
-
-const LINKER: &str = "x86_64-w64-mingw32-gcc";
 
 /// Runs the tests of Windows whose names contain the filter; without one all.
 ///

@@ -1,6 +1,5 @@
 //! Wine with a disk of its own and a display without a screen.
 
-use super::LINKER;
 use crate::error::{Context, Failure, Result};
 use crate::tools::run as run_command;
 use std::fs;
@@ -8,6 +7,9 @@ use std::io::{BufRead, BufReader};
 use std::os::unix::fs::PermissionsExt;
 use std::path::{Path, PathBuf};
 use std::process::{Child, Command, Stdio};
+
+/// Compiler and linker of C for Windows.
+pub const LINKER: &str = "x86_64-w64-mingw32-gcc";
 
 /// Libraries of Windows that Wine does without: it would ask for the first two at its first start, and has no card that
 /// knows the last.
@@ -44,8 +46,7 @@ impl Wine {
             // The library that Rust's standard library takes random numbers from.
             compile("bcryptprimitives.c", &system.join("bcryptprimitives.dll"), &["-shared", "-ladvapi32"])?;
         }
-        let _ = fs::remove_dir_all(wine.temporary());
-        fs::create_dir_all(wine.temporary()).context(|| format!("cannot write to {}", folder.display()))?;
+        wine.clean();
         wine.add_programs()?;
         Ok(wine)
     }
@@ -56,7 +57,6 @@ impl Wine {
         command.env("WINEDEBUG", "-all").env("WINEDLLOVERRIDES", WITHOUT).env("LC_ALL", "C.UTF-8");
         command.env("WGPU_BACKEND", "vulkan").env("ISOPHOTE_ADAPTER", "llvmpipe");
         command.env("WINEPATH", path(&self.programs()));
-        command.env("WINETEMP", path(&self.temporary())).env("WINETMP", path(&self.temporary()));
     }
 
     fn run(&self, program: &str, arguments: &[&str]) -> Result<()> {
@@ -70,9 +70,13 @@ impl Wine {
         self.folder.join("programs")
     }
 
-    /// Folder of temporary files. Libraries that are loaded cannot be removed, and stay in it.
-    fn temporary(&self) -> PathBuf {
-        self.folder.join("temporary")
+    /// Empties the folders of temporary files. Libraries that are loaded cannot be removed by those who made them.
+    fn clean(&self) {
+        let users = fs::read_dir(self.folder.join("drive_c/users")).into_iter().flatten().flatten();
+        for left in users.filter_map(|user| fs::read_dir(user.path().join("Temp")).ok()).flatten().flatten() {
+            // What lies there is no result, and others may be as fast.
+            let _ = fs::remove_dir_all(left.path()).or_else(|_| fs::remove_file(left.path()));
+        }
     }
 
     /// Programs of this system under the names that they have on Windows. Paths are told to them as this system has them.
@@ -95,7 +99,7 @@ impl Drop for Wine {
         let mut end = Command::new("wineserver");
         self.prepare(&mut end);
         let _ = end.arg("--kill").status();
-        let _ = fs::remove_dir_all(self.temporary());
+        self.clean();
         let _ = self.display.kill();
         let _ = self.display.wait();
     }
@@ -108,7 +112,7 @@ const PROGRAMS: [(&str, &str); 3] = [("ffmpeg", "ffmpeg"), ("ffprobe", "ffprobe"
 const SCRIPT: &str = r#"#!/bin/bash
 arguments=()
 for argument in "$@"; do
-    if [[ $argument =~ ^(file:)?[Zz]:[\\/] ]]; then
+    if [[ $argument =~ ^(file:)?([Zz]:)?[\\/] ]]; then
         argument=${argument/[Zz]:/}
         argument=${argument//\\//}
     fi
