@@ -86,7 +86,8 @@ impl Wine {
         for (name, program) in PROGRAMS {
             compile("native.c", &folder.join(format!("{name}.exe")), &[])?;
             let file = folder.join(format!("{name}.sh"));
-            let put = fs::write(&file, SCRIPT.replace("PROGRAM", program))
+            let script = SCRIPT.replace("PROGRAM", program).replace("FOLDER", &self.folder.to_string_lossy());
+            let put = fs::write(&file, script)
                 .and_then(|()| fs::set_permissions(&file, fs::Permissions::from_mode(0o755)));
             put.context(|| format!("cannot write {}", file.display()))?;
         }
@@ -112,9 +113,10 @@ const PROGRAMS: [(&str, &str); 3] = [("ffmpeg", "ffmpeg"), ("ffprobe", "ffprobe"
 const SCRIPT: &str = r#"#!/bin/bash
 arguments=()
 for argument in "$@"; do
-    if [[ $argument =~ ^(file:)?([Zz]:)?[\\/] ]]; then
-        argument=${argument/[Zz]:/}
+    if [[ $argument =~ ^(file:)?([CcZz]:)?[\\/] ]]; then
         argument=${argument//\\//}
+        argument=${argument/[Zz]:/}
+        argument=${argument/[Cc]:/FOLDER/drive_c}
     fi
     arguments+=("$argument")
 done
