@@ -34,7 +34,7 @@ const PACKAGES: [&str; 11] = [
 ];
 
 /// Programs of tests beside the packages' own: of the program, then of the library and the plugin.
-const PROGRAMS: [&str; 36] = [
+const PROGRAMS: [&str; 34] = [
     "apply",
     "bad_input",
     "command_line",
@@ -57,8 +57,6 @@ const PROGRAMS: [&str; 36] = [
     "staging",
     "stylize",
     "time",
-    "video",
-    "video_faults",
     "view_chain",
     "view_frames",
     "view_looks",

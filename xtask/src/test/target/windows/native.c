@@ -1,6 +1,6 @@
 /* A program of Windows that runs one of the system that Wine runs on, waits for it and ends as it does: Wine starts such
- * programs, with the same standard input and output, but tells nobody when they end. The script of the same name beside it
- * is told a file first, and writes the exit code there. Tests alone use it. */
+ * programs, but tells nobody when they end, and does not hand them pipes. The script of the same name beside it is told a
+ * file first, and writes the exit code there. Tests alone use it. */
 #include <stdio.h>
 #include <windows.h>
 
