@@ -159,7 +159,7 @@ impl OutsideTest {
 
 fn list(programs: &[Program], filter: Option<&str>) -> Result<()> {
     for program in programs {
-        for test in program.tests(filter.unwrap_or_default(), &[])? {
+        for test in program.tests(filter.unwrap_or_default(), program.command(&[]))? {
             println!("{}: {test}", program.name);
         }
     }
@@ -197,7 +197,7 @@ impl Suite {
 fn run_named(programs: &[Program], filter: &str) -> Result<Vec<String>> {
     let (mut failed, mut found) = (Vec::new(), 0);
     for program in programs {
-        let tests = program.tests(filter, &[])?;
+        let tests = program.tests(filter, program.command(&[]))?;
         if tests.is_empty() {
             continue;
         }

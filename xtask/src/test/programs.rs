@@ -30,8 +30,9 @@ impl Program {
     }
 
     /// Names of its tests that contain the filter, or all of them when its own name does.
-    pub fn tests(&self, filter: &str, runner: &[&str]) -> Result<Vec<String>> {
-        let output = self.command(runner).arg("--list").output();
+    /// `run` is a command that runs it.
+    pub fn tests(&self, filter: &str, mut run: Command) -> Result<Vec<String>> {
+        let output = run.arg("--list").output();
         let output = output.context(|| format!("{} cannot be started", self.path.display()))?;
         let text = String::from_utf8_lossy(&output.stdout).into_owned();
         let names = text.lines().filter_map(|line| line.strip_suffix(": test"));

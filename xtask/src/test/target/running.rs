@@ -20,7 +20,11 @@ pub fn run_programs(
     heading("tests");
     let ran =
         programs.into_iter().filter_map(|program| run_program(program, filter, runner, &prepare).transpose());
-    let failed = report::sum_up(ran.collect::<Result<_>>()?);
+    let ran: Vec<report::Ran> = ran.collect::<Result<_>>()?;
+    if ran.is_empty() {
+        return Err(Failure(format!("no test's name contains '{}'", filter.unwrap_or_default())));
+    }
+    let failed = report::sum_up(ran);
     heading("end");
     if failed.is_empty() { Ok(()) } else { Err(Failure(format!("these tests fail: {}", failed.join(", ")))) }
 }
@@ -32,13 +36,17 @@ fn run_program(
     runner: &[&str],
     prepare: impl Fn(&mut Command),
 ) -> Result<Option<report::Ran>> {
+    let prepared = || {
+        let mut command = program.command(runner);
+        prepare(&mut command);
+        command
+    };
     let names_program = filter.is_none_or(|filter| program.name.contains(filter));
-    if !names_program && program.tests(filter.unwrap_or_default(), runner)?.is_empty() {
+    if !names_program && program.tests(filter.unwrap_or_default(), prepared())?.is_empty() {
         return Ok(None);
     }
-    let mut command = program.command(runner);
+    let mut command = prepared();
     command.args(filter.filter(|_| !names_program));
-    prepare(&mut command);
     let started = Instant::now();
     let output = command.output();
     Ok(Some(report::show(program, &output, started.elapsed().as_secs_f64())))
