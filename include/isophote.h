@@ -28,6 +28,10 @@
  *
  *   const struct IsophotePrecisionApi *precision = api->extension("isophote.precision/1");
  *
+ * Pictures of any size within bounded memory, on the CPU:
+ *
+ *   const struct IsophoteMemoryApi *memory = api->extension("isophote.memory/1");
+ *
  * The pictures that may enter a graph beside the colour, and presets, looks and colours as people write them, are those of
  *
  *   const struct IsophoteGuidesApi *guides = api->extension("isophote.guides/1");
@@ -1079,6 +1083,26 @@ typedef struct IsophotePrecisionApi {
   // `process` on; exactly, unless set. CPUs always compute exactly. It is no part of the graph as text.
   IsophoteStatus (ISOPHOTE_ABI *graph_set_precision)(struct IsophoteGraph graph, IsophotePrecision precision);
 } IsophotePrecisionApi;
+
+// The functions of the extension "isophote.memory/1". Tags and ownership are those of `IsophoteApi`.
+//
+// What `process` computes on the CPU takes memory beside the host's images. A picture for which that would be more than
+// the bound goes through all passes by rows, and then takes a copy of the result in its own format besides. The bits are
+// the same. Fewer rows at a time take longer, and there are always some: where even those need more than the bound,
+// they take it.
+typedef struct IsophoteMemoryApi {
+  // Bytes of this struct.
+  uint32_t struct_size;
+  // [any-thread] Bounds the bytes that images of a call of `process` may take on the CPU, from the next call on; 0 lets the
+  // library choose, which is what it does unless told. It is no part of the graph as text.
+  IsophoteStatus (ISOPHOTE_ABI *graph_set_memory)(struct IsophoteGraph graph, uint64_t bytes);
+  // [object-thread, not-while-processing, needs-output] Bytes that images of a call of `process` with this request take on
+  // the CPU: those of the plan, without the host's and without a copy of the result.
+  IsophoteStatus (ISOPHOTE_ABI *graph_memory)(struct IsophoteGraph graph,
+                                 const struct IsophoteRequest *request,
+                                 const struct IsophoteRect *region,
+                                 uint64_t *bytes);
+} IsophoteMemoryApi;
 
 // A picture that may enter a graph.
 typedef struct IsophoteGuide {

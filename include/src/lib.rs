@@ -9,6 +9,7 @@
 
 pub mod constants;
 pub mod guides;
+pub mod memory;
 pub mod openfx;
 pub mod pixel_aspect;
 pub mod precision;
@@ -20,6 +21,7 @@ pub mod vulkan;
 
 pub use constants::*;
 pub use guides::*;
+pub use memory::*;
 pub use pixel_aspect::*;
 pub use precision::*;
 pub use presets::*;

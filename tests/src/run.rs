@@ -1,8 +1,9 @@
 //! Running graphs and plans on the CPU.
 
 use isophote::{Graph, Planned, Request};
-use isophote_engine::cpu::{CallingThread, Control, CpuExecutor, Pool, Threads};
-use isophote_engine::{Image, Plan, Rect};
+use isophote_engine::cpu::{CallingThread, Control, CpuExecutor, Pool, Rows, Threads};
+use isophote_engine::{Error, Image, Plan, Rect, Result};
+use std::ops::Range;
 use std::sync::OnceLock;
 
 /// One pool for all tests of a binary.
@@ -49,6 +50,54 @@ pub fn region<S: AsRef<str>>(
     let borrowed: Vec<(&str, &Image)> = parts.iter().map(|(name, image)| (*name, image)).collect();
     match executor.run(plan, &borrowed, region, threads, Control::default()) {
         Ok(mut images) => images.swap_remove(0),
+        Err(e) => panic!("cannot run: {e}"),
+    }
+}
+
+/// Images that a run reads by rows, and its first output, put together of rows.
+struct ByRows<'a, S> {
+    inputs: &'a [(S, Image)],
+    result: Image,
+}
+
+impl<S: AsRef<str>> Rows for ByRows<'_, S> {
+    fn read(&mut self, name: &str, rows: Range<i32>, image: &mut Image) -> Result<()> {
+        let Some((_, input)) = self.inputs.iter().find(|(known, _)| known.as_ref() == name) else {
+            return Err(Error::Input(format!("{name} is missing")));
+        };
+        let window = image.window();
+        for y in rows {
+            let row = input.crop(Rect { y0: y, y1: y + 1, ..window })?;
+            image.row_mut(y).copy_from_slice(row.data());
+        }
+        Ok(())
+    }
+
+    fn write(&mut self, output: usize, part: Rect, image: &Image) -> Result<()> {
+        let part = image.crop(part)?;
+        for y in (part.window().y0..part.window().y1).filter(|_| output == 0) {
+            self.result.row_mut(y).copy_from_slice(part.row(y));
+        }
+        Ok(())
+    }
+}
+
+/// A region of the first output of a plan, as [`region()`], from and to images by rows that take at most `most` bytes.
+///
+/// # Panics
+/// When the executor refuses.
+pub fn by_rows<S: AsRef<str>>(
+    executor: &mut CpuExecutor,
+    plan: &Plan,
+    inputs: &[(S, Image)],
+    (region, most): (Rect, u64),
+    threads: &dyn Threads,
+) -> Image {
+    let output = plan.desc(plan.outputs()[0].image);
+    let result = Image::with_window(plan.region_at(region, output.level), output.channels);
+    let mut rows = ByRows { inputs, result: result.expect("a small image") };
+    match executor.run_rows(plan, &mut rows, (region, most), threads, Control::default()) {
+        Ok(()) => rows.result,
         Err(e) => panic!("cannot run: {e}"),
     }
 }

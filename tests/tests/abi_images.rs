@@ -8,7 +8,9 @@ mod c_images;
 use c_images::{HEIGHT, Run, WIDTH, color, floats, image, picture, target};
 use isophote_abi::*;
 use isophote_tests::library::Loaded;
+use std::ffi::c_void;
 use std::ptr::{null, null_mut};
+use std::sync::atomic::{AtomicU32, Ordering};
 
 #[test]
 fn every_format_goes_in_and_out() {
@@ -248,6 +250,115 @@ fn more_memory_than_there_is_is_a_status() {
     let (status, said, _) = run.run(&color(huge), &target(huge));
     assert_eq!(status, ISOPHOTE_ERROR_OUT_OF_MEMORY, "{said}");
     assert!(said.contains("MiB"), "{said}");
+}
+
+/// The functions that bound memory.
+fn bounds(library: &Loaded) -> &'static IsophoteMemoryApi {
+    // SAFETY: the name ends with a zero; the table lives as long as the library, which is never unloaded.
+    unsafe { (library.api.extension)(c"isophote.memory/1".as_ptr()).cast::<IsophoteMemoryApi>().as_ref() }
+        .expect("the library bounds memory")
+}
+
+/// Rows of a picture that is high against what a Gaussian reads.
+const TALL: u32 = 12 * HEIGHT;
+
+fn tall_picture() -> Vec<f32> {
+    picture().repeat(12)
+}
+
+fn tall(data: &[f32]) -> IsophoteImage {
+    IsophoteImage { height: TALL, ..floats(data) }
+}
+
+/// Bytes that the images of a run take when they may take `most`.
+fn takes(library: &Loaded, run: &Run<'_>, most: u64) -> u64 {
+    let (memory, mut bytes) = (bounds(library), 0);
+    let region = run.region.as_ref().map_or(null(), |region| &raw const *region);
+    // SAFETY: the handle is that of a graph, and the pointers lead to what the table asks for, or to null where they may.
+    unsafe {
+        assert_eq!((memory.graph_set_memory)(run.graph, most), ISOPHOTE_OK);
+        let status = (memory.graph_memory)(run.graph, &raw const run.request, region, &raw mut bytes);
+        assert_eq!(status, ISOPHOTE_OK);
+    }
+    bytes
+}
+
+#[test]
+fn little_memory_gives_the_same_bits() {
+    let library = Loaded::new();
+    let mut data = tall_picture();
+    data[400] = f32::NAN;
+    // Light without coverage far down, which is looked for in rows as well.
+    let glow = (TALL as usize - 40) * WIDTH as usize * 4;
+    data[glow..glow + 4].copy_from_slice(&[0.9, 0.2, 0.1, 0.0]);
+    for node in ["gaussian", "halftone", "flow_dog"] {
+        let mut run = Run::new(&library, node);
+        run.request.height = TALL;
+        for alpha in [ISOPHOTE_ALPHA_STRAIGHT, ISOPHOTE_ALPHA_PREMULTIPLIED] {
+            run.request.alpha = alpha;
+            for region in [None, Some(IsophoteRect { x0: 4, y0: 3, x1: 44, y1: TALL as i32 - 2 })] {
+                run.region = region;
+                let of = |most: u64| {
+                    let bytes = takes(&library, &run, most);
+                    let out = vec![-7.0_f32; data.len()];
+                    let (status, said, report) = run.run(&color(tall(&data)), &target(tall(&out)));
+                    assert_eq!((status, report.replaced), (ISOPHOTE_OK, 1), "{said}");
+                    (bytes, out)
+                };
+                let ((whole, expected), (least, found)) = (of(0), of(1));
+                assert!(2 * least < whole, "{node}: {least} of {whole}");
+                assert!(found == expected, "{node} {alpha} {region:?}");
+                // In place.
+                let memory = data.clone();
+                let both = tall(&memory);
+                assert_eq!(run.run(&color(both), &target(both)).0, ISOPHOTE_OK);
+                assert!(memory.iter().zip(&data).zip(&expected).all(|((found, source), wanted)| {
+                    if *wanted == -7.0 { found.to_bits() == source.to_bits() } else { found == wanted }
+                }));
+            }
+        }
+        // Bytes, packed as the target has them.
+        run.region = None;
+        let bytes = |most: u64| {
+            takes(&library, &run, most);
+            let mut out = vec![0_u8; (WIDTH * TALL * 3) as usize];
+            let image = image(out.as_mut_ptr().cast(), ISOPHOTE_SAMPLE_U8, 3, WIDTH as isize * 3);
+            let (status, said, _) =
+                run.run(&color(tall(&data)), &target(IsophoteImage { height: TALL, ..image }));
+            assert_eq!(status, ISOPHOTE_OK, "{said}");
+            out
+        };
+        assert!(bytes(1) == bytes(0), "{node} as bytes");
+    }
+}
+
+#[test]
+fn a_run_by_rows_that_ends_early_writes_nothing() {
+    unsafe extern "C" fn later(calls: *mut c_void) -> u32 {
+        // SAFETY: the test gave a number that threads may share.
+        let calls = unsafe { &*calls.cast::<AtomicU32>() };
+        u32::from(calls.fetch_add(1, Ordering::Relaxed) > 30)
+    }
+    let library = Loaded::new();
+    let mut run = Run::new(&library, "gaussian");
+    run.request.height = TALL;
+    takes(&library, &run, 1);
+    let calls = AtomicU32::new(0);
+    run.control = Some(IsophoteControl {
+        user: (&raw const calls).cast_mut().cast(),
+        cancelled: Some(later),
+        run: None,
+        progress: None,
+        measured: None,
+        threads: 1,
+    });
+    let (data, out) = (tall_picture(), vec![-7.0_f32; (WIDTH * TALL * 4) as usize]);
+    let (status, said, _) = run.run(&color(tall(&data)), &target(tall(&out)));
+    assert_eq!(status, ISOPHOTE_ERROR_CANCELLED, "{said}");
+    assert!(out.iter().all(|value| *value == -7.0));
+    run.control = None;
+    assert_eq!(run.run(&color(tall(&data)), &target(tall(&out))).0, ISOPHOTE_OK);
+    assert!(out.iter().all(|value| *value != -7.0));
 }
 
 #[test]

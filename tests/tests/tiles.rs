@@ -41,6 +41,7 @@ fn main() -> ExitCode {
     let mut trials = Trials::new();
     for spec in isophote::registry::nodes() {
         trials.add("tiles", spec.id, || a_tile_is_the_same_part_of_the_full_frame(spec));
+        trials.add("rows", spec.id, || rows_give_what_the_full_frame_gives(spec));
         trials.add("threads", spec.id, || the_number_of_threads_changes_nothing(spec));
         trials.add("instruction_sets", spec.id, || instruction_sets_differ_by_rounding_only(spec));
         trials.add("proxies", spec.id, || a_proxy_looks_like_the_full_frame(spec));
@@ -146,6 +147,27 @@ fn a_tile_is_the_same_part_of_the_full_frame(spec: &'static NodeSpec) -> Vec<Str
         }
     }
     println!("tiles::{}: {compared} tiles of {local} plans compared", spec.id);
+    wrong
+}
+
+fn rows_give_what_the_full_frame_gives(spec: &'static NodeSpec) -> Vec<String> {
+    let mut wrong = Vec::new();
+    for run in runs(spec, SIZE) {
+        let plan = run.planned.plan();
+        let full = run::whole(plan, &run.inputs);
+        // Executors keep memory, in which there are then other images.
+        let mut executor = CpuExecutor::new();
+        for region in [Rect::of_size(SIZE[0], SIZE[1]), Rect { x0: 3, y0: 9, x1: 60, y1: 36 }] {
+            for strip in [1, 5, 16] {
+                executor.set_strip(Some(strip));
+                let rows = run::by_rows(&mut executor, plan, &run.inputs, (region, 0), run::pool());
+                if !equal(&rows, &full.crop(rows.window()).unwrap()) {
+                    let (worst, _) = distance(&rows, &full.crop(rows.window()).unwrap());
+                    wrong.push(format!("{} {region:?} by rows differs by up to {worst:e}", run.label));
+                }
+            }
+        }
+    }
     wrong
 }
 

@@ -7,6 +7,7 @@ mod bands;
 mod control;
 mod executor;
 mod images;
+mod rows;
 mod strips;
 mod threads;
 
@@ -14,4 +15,5 @@ pub use control::{Control, PassTime};
 pub use executor::CpuExecutor;
 #[cfg(feature = "gpu")]
 pub(crate) use images::bind_inputs;
+pub use rows::Rows;
 pub use threads::{CallingThread, Pool, Threads};

@@ -3,10 +3,11 @@
 
 mod support;
 
-use isophote_engine::cpu::{CallingThread, Control, CpuExecutor};
+use isophote_engine::cpu::{CallingThread, Control, CpuExecutor, Rows};
 use isophote_engine::program::{Program, Role};
-use isophote_engine::{Class, Error, Image, ImageId, Plan, PlanBuilder, Rect, Support};
+use isophote_engine::{Class, Error, Image, ImageId, Plan, PlanBuilder, Rect, Result, Support};
 use std::collections::HashMap;
+use std::ops::Range;
 use support::{BOX, BoxParams, box_blur, describe, noise, plan, rescale, shift};
 
 fn run(plan: &Plan, inputs: &[(&str, &Image)], region: Rect) -> Vec<Image> {
@@ -140,6 +141,65 @@ fn strips_compute_what_whole_passes_do() {
             // Forty rows of so small a picture would take more memory than whole passes do.
             assert_eq!(shares.len() > 5, strip < 40, "{region:?} in strips of {strip}");
             assert!(shares.is_sorted() && shares.last() == Some(&1.0), "{shares:?}");
+        }
+    }
+}
+
+/// A picture by rows, and results that are put together of theirs.
+struct ByRows<'a> {
+    source: &'a Image,
+    next: i32,
+    results: Vec<Image>,
+}
+
+impl Rows for ByRows<'_> {
+    fn read(&mut self, name: &str, rows: Range<i32>, image: &mut Image) -> Result<()> {
+        assert_eq!((name, rows.start), ("source", self.next));
+        self.next = rows.end;
+        let window = image.window();
+        for y in rows {
+            let part = self.source.crop(Rect { y0: y, y1: y + 1, ..window })?;
+            image.row_mut(y).copy_from_slice(part.data());
+        }
+        Ok(())
+    }
+
+    fn write(&mut self, output: usize, part: Rect, image: &Image) -> Result<()> {
+        let part = image.crop(part)?;
+        let result = &mut self.results[output];
+        (part.window().y0..part.window().y1).for_each(|y| result.row_mut(y).copy_from_slice(part.row(y)));
+        Ok(())
+    }
+}
+
+#[test]
+fn rows_of_a_picture_give_what_the_whole_gives() {
+    let mut b = PlanBuilder::new(37, 320).unwrap();
+    let source = b.input("source", 4, Class::Colour);
+    let soft = box_blur(&mut b, source, 2, 1.0);
+    let half = rescale(&mut b, soft, 1);
+    let back = rescale(&mut b, half, 0);
+    let softer = box_blur(&mut b, back, 1, 1.0);
+    b.output("softer", softer);
+    b.output("half", half);
+    b.output("source", source);
+    let plan = b.finish().unwrap();
+    let source = noise(37, 320, 4);
+    for region in [rect(0, 0, 37, 320), rect(3, 11, 30, 317)] {
+        let whole = run(&plan, &[("source", &source)], region);
+        let windows = plan.windows(region);
+        let least = CpuExecutor::new().bytes_by_rows(&plan, (region, 0), &CallingThread);
+        for most in [0, 4 * least / 3, u64::MAX] {
+            let mut executor = CpuExecutor::new();
+            let bytes = executor.bytes_by_rows(&plan, (region, most), &CallingThread);
+            assert!(bytes <= most.max(least) && (most < u64::MAX || bytes > 2 * least), "{bytes} of {most}");
+            let next = windows[plan.inputs()[0].image.index()].y0;
+            // Memory that was not written would not be zero.
+            let results = whole.iter().map(|image| Image::with_window(image.window(), image.channels()));
+            let mut rows = ByRows { source: &source, next, results: results.collect::<Result<_>>().unwrap() };
+            executor.run_rows(&plan, &mut rows, (region, most), &CallingThread, Control::default()).unwrap();
+            assert!(rows.results == whole, "{region:?} in {most} bytes");
+            assert!(executor.kept() <= bytes, "{} of {bytes}", executor.kept());
         }
     }
 }

@@ -9,11 +9,14 @@ use super::error::{Result, check};
 use super::library::{Library, extension};
 use super::text;
 use isophote_abi::{
-    IsophoteApi, IsophoteGraph, IsophotePrecision, IsophotePrecisionApi, IsophoteStatus, IsophoteText,
+    IsophoteApi, IsophoteGraph, IsophoteMemoryApi, IsophotePrecision, IsophotePrecisionApi, IsophoteRequest,
+    IsophoteStatus, IsophoteText,
 };
 
 /// Name of the extension for precision.
 const PRECISION: &CStr = c"isophote.precision/1";
+/// Name of the extension for memory.
+const MEMORY: &CStr = c"isophote.memory/1";
 
 /// A graph of nodes with their parameters.
 ///
@@ -167,6 +170,33 @@ impl Graph {
             extension::<IsophotePrecisionApi>(self.api, PRECISION, "this library computes exactly alone")?;
         // SAFETY: the handle is this object's.
         self.check(unsafe { (table.graph_set_precision)(self.handle, precision) })
+    }
+
+    /// Bounds the bytes that images of a run may take on the CPU; 0 lets the library choose. Larger pictures are computed by rows,
+    /// with the same bits.
+    ///
+    /// # Errors
+    /// [`Error`](crate::Error) when the library knows no bounds.
+    pub fn set_memory(&self, bytes: u64) -> Result<()> {
+        // SAFETY: the handle is this object's.
+        self.check(unsafe { (self.bounds()?.graph_set_memory)(self.handle, bytes) })
+    }
+
+    /// Bytes that images of a run with this request take on the CPU, beside those of the caller and a copy of the result.
+    ///
+    /// # Errors
+    /// [`Error`](crate::Error) when the library knows no bounds or refuses the request.
+    pub fn memory(&self, request: &IsophoteRequest) -> Result<u64> {
+        let mut bytes = 0;
+        // SAFETY: the handle is this object's; the request is read during the call, and the number may be written.
+        let status =
+            unsafe { (self.bounds()?.graph_memory)(self.handle, request, std::ptr::null(), &raw mut bytes) };
+        self.check(status)?;
+        Ok(bytes)
+    }
+
+    fn bounds(&self) -> Result<&'static IsophoteMemoryApi> {
+        extension(self.api, MEMORY, "this library knows no bounds of memory")
     }
 
     /// Sets a parameter from text as a person writes it: `2.5`, `true`, `scharr3`, `#12407b`.

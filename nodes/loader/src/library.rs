@@ -6,8 +6,8 @@ use std::path::{Path, PathBuf};
 use super::error::{Error, Result, check};
 use super::{open, text};
 use isophote_abi::{
-    ISOPHOTE_ERROR_UNSUPPORTED, IsophoteApi, IsophoteGuidesApi, IsophotePixelAspectApi, IsophotePrecisionApi,
-    IsophotePresetsApi, IsophoteRequest, IsophoteSequenceApi, IsophoteStatus,
+    ISOPHOTE_ERROR_UNSUPPORTED, IsophoteApi, IsophoteGuidesApi, IsophoteMemoryApi, IsophotePixelAspectApi,
+    IsophotePrecisionApi, IsophotePresetsApi, IsophoteRequest, IsophoteSequenceApi, IsophoteStatus,
 };
 
 /// The library, open until the process ends.
@@ -96,6 +96,7 @@ pub(super) fn extension<T: Table>(api: &'static IsophoteApi, id: &CStr, missing:
 pub(super) trait Table: 'static {}
 
 impl Table for IsophoteGuidesApi {}
+impl Table for IsophoteMemoryApi {}
 impl Table for IsophotePixelAspectApi {}
 impl Table for IsophotePrecisionApi {}
 impl Table for IsophotePresetsApi {}

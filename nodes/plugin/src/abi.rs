@@ -6,6 +6,7 @@
 //! `vulkan` alone.
 
 pub mod args;
+pub mod by_rows;
 pub mod catalogue;
 pub mod device;
 pub mod entry;
@@ -15,6 +16,7 @@ pub mod guard;
 pub mod guides;
 pub mod handles;
 pub mod images;
+pub mod memory;
 pub mod objects;
 pub mod pixel_aspect;
 pub mod plan;
@@ -116,6 +118,7 @@ unsafe extern "C" fn extension(id: *const c_char) -> *const c_void {
         _ if id == guides::EXTENSION => (&raw const guides::API).cast(),
         _ if id == presets::EXTENSION => (&raw const presets::API).cast(),
         _ if id == pixel_aspect::EXTENSION => (&raw const pixel_aspect::API).cast(),
+        _ if id == memory::EXTENSION => (&raw const memory::API).cast(),
         _ if id == precision::EXTENSION => (&raw const precision::API).cast(),
         #[cfg(not(target_vendor = "apple"))]
         _ if id == vulkan::EXTENSION => (&raw const vulkan::API).cast(),

@@ -10,12 +10,13 @@ use std::path::{Path, PathBuf};
 use std::process::ExitCode;
 
 /// The files that declare the contract, in the order of the header.
-const SOURCES: [&str; 10] = [
+const SOURCES: [&str; 11] = [
     "include/src/constants.rs",
     "include/src/types.rs",
     "include/src/table.rs",
     "include/src/sequences.rs",
     "include/src/precision.rs",
+    "include/src/memory.rs",
     "include/src/guides.rs",
     "include/src/pixel_aspect.rs",
     "include/src/presets.rs",
@@ -53,6 +54,10 @@ const PREAMBLE: &str = "\
  * Half the bytes on graphics devices, where eleven bits of colour suffice, are asked for by
  *
  *   const struct IsophotePrecisionApi *precision = api->extension(\"isophote.precision/1\");
+ *
+ * Pictures of any size within bounded memory, on the CPU:
+ *
+ *   const struct IsophoteMemoryApi *memory = api->extension(\"isophote.memory/1\");
  *
  * The pictures that may enter a graph beside the colour, and presets, looks and colours as people write them, are those of
  *
@@ -202,6 +207,7 @@ fn generate(root: &Path) -> Result<String, Error> {
         "IsophoteEntry",
         "IsophoteSequenceApi",
         "IsophotePrecisionApi",
+        "IsophoteMemoryApi",
         "IsophoteGuidesApi",
         "IsophotePixelAspectApi",
         "IsophotePresetsApi",

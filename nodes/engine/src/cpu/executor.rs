@@ -3,6 +3,7 @@
 use super::bands::{BAND, run_bands};
 use super::control::{Control, PassTime};
 use super::images::Images;
+use super::rows::Rows;
 use super::strips::Schedule;
 use super::threads::Threads;
 use crate::error::{Error, Result};
@@ -97,15 +98,56 @@ impl CpuExecutor {
         self.spare.truncate(plan.images().len());
         let windows = plan.windows(region);
         let images = Images::bind(plan, inputs, &windows)?;
-        let rows = self.strip.unwrap_or(STRIP.max(BAND * threads.count() as i32 * 4));
-        let schedule = Schedule::new(plan, region, &windows, rows);
-        let mut run = Run { executor: self, plan, windows, schedule, images, threads, control };
-        let results = run.passes().and_then(|()| run.results(region));
+        let schedule = Schedule::new(plan, region, &windows, self.strip_rows(threads));
+        let mut run = Run { executor: self, plan, windows, region, schedule, images, threads, control };
+        let results = run.passes(None).and_then(|()| run.results());
         run.images.recycle(&mut run.executor.spare);
         if matches!(results, Err(Error::Memory(_))) {
             self.purge();
         }
         results
+    }
+
+    /// Computes `region` (level 0) of every output of `plan` from and to pictures that come and go by rows, so that
+    /// images take at most `most` bytes ([`CpuExecutor::bytes_by_rows`]). Gives the bits of [`CpuExecutor::run`].
+    ///
+    /// # Errors
+    /// Those of [`CpuExecutor::run`], and of `rows`.
+    pub fn run_rows(
+        &mut self,
+        plan: &Plan,
+        rows: &mut dyn Rows,
+        (region, most): (Rect, u64),
+        threads: &dyn Threads,
+        control: Control<'_>,
+    ) -> Result<()> {
+        plan.check_region(region)?;
+        let windows = plan.windows(region);
+        let schedule = Schedule::within(plan, region, &windows, self.strip_rows(threads), most);
+        // What another run left may be more than this may take.
+        if self.kept() > schedule.bytes(plan, &windows) {
+            self.purge();
+        }
+        let images = Images::none(plan, &windows);
+        let mut run = Run { executor: self, plan, windows, region, schedule, images, threads, control };
+        let result = run.passes(Some(rows));
+        run.images.recycle(&mut run.executor.spare);
+        if matches!(result, Err(Error::Memory(_))) {
+            self.purge();
+        }
+        result
+    }
+
+    /// Bytes that the images of [`CpuExecutor::run_rows`] take: at most `most`, or what the fewest rows take that it goes
+    /// through plans by.
+    pub fn bytes_by_rows(&self, plan: &Plan, (region, most): (Rect, u64), threads: &dyn Threads) -> u64 {
+        let windows = plan.windows(region);
+        Schedule::within(plan, region, &windows, self.strip_rows(threads), most).bytes(plan, &windows)
+    }
+
+    /// Rows of the result in a step, where memory does not matter.
+    fn strip_rows(&self, threads: &dyn Threads) -> i32 {
+        self.strip.unwrap_or(STRIP.max(BAND * threads.count() as i32 * 4))
     }
 
     /// Memory for an image that passes write: the spare one that wastes least, or a new one.
@@ -135,6 +177,7 @@ struct Run<'r> {
     executor: &'r mut CpuExecutor,
     plan: &'r Plan,
     windows: Vec<Rect>,
+    region: Rect,
     schedule: Schedule,
     images: Images<'r>,
     threads: &'r dyn Threads,
@@ -142,8 +185,8 @@ struct Run<'r> {
 }
 
 impl Run<'_> {
-    /// Runs all passes that the region needs.
-    fn passes(&mut self) -> Result<()> {
+    /// Runs all passes that the region needs; images that come and go by `rows` are read and handed on in each step.
+    fn passes(&mut self, mut rows: Option<&mut dyn Rows>) -> Result<()> {
         let plan = self.plan;
         let pixels = |pass: &Pass| self.windows[pass.outputs[0].index()].area();
         let needed: Vec<usize> =
@@ -159,7 +202,11 @@ impl Run<'_> {
         let total = plan.passes().iter().map(pixels).sum::<u64>().max(1) as f32;
         let mut done = 0;
         let steps = self.schedule.frontiers.len();
+        let mut left = vec![i32::MIN; plan.outputs().len()];
         for step in 0..steps {
+            if let Some(rows) = &mut rows {
+                self.enter(step, *rows)?;
+            }
             for (place, index) in needed.iter().enumerate() {
                 self.control.check()?;
                 // Only where times are wanted: WebAssembly has no clock of its own.
@@ -176,8 +223,45 @@ impl Run<'_> {
                     progress(done as f32 / total);
                 }
             }
+            if let Some(rows) = &mut rows {
+                self.leave(step, &mut left, *rows)?;
+            }
         }
         self.control.check()
+    }
+
+    /// Has the rows read that the step needs of images that enter.
+    fn enter(&mut self, step: usize, rows: &mut dyn Rows) -> Result<()> {
+        for port in self.plan.inputs() {
+            let (id, all) = (port.image, self.windows[port.image.index()]);
+            let (y0, y1) = (self.images.filled(id).max(all.y0), self.schedule.frontiers[step][id.index()]);
+            if !all.is_empty() && y0 < y1 {
+                self.control.check()?;
+                let mut image = self.output(step, id)?;
+                rows.read(&port.name, y0..y1, &mut image)?;
+                self.images.put(id, image, y1);
+            }
+        }
+        Ok(())
+    }
+
+    /// Hands on the rows that the step has added to images that leave; `left` says how far each was.
+    fn leave(&mut self, step: usize, left: &mut [i32], rows: &mut dyn Rows) -> Result<()> {
+        for (output, (port, left)) in self.plan.outputs().iter().zip(left).enumerate() {
+            let part = self.part(port);
+            let y1 = self.schedule.frontiers[step][port.image.index()].min(part.y1);
+            let part = Rect { y0: part.y0.max(*left), y1, ..part };
+            if !part.is_empty() {
+                rows.write(output, part, self.images.image(port.image))?;
+                *left = y1;
+            }
+        }
+        Ok(())
+    }
+
+    /// The part of an image that leaves the run.
+    fn part(&self, port: &Port) -> Rect {
+        self.plan.region_at(self.region, self.plan.desc(port.image).level)
     }
 
     /// Takes a pass from the row it has reached to that of the step; returns how many pixels that were.
@@ -224,9 +308,9 @@ impl Run<'_> {
         self.executor.spare.extend(ended.iter().filter_map(|id| self.images.take(*id)));
     }
 
-    fn results(&mut self, region: Rect) -> Result<Vec<Image>> {
-        let plan = self.plan;
-        let part = |port: &Port| plan.region_at(region, plan.desc(port.image).level);
-        plan.outputs().iter().map(|port| self.images.finish(port.image, part(port))).collect()
+    fn results(&mut self) -> Result<Vec<Image>> {
+        let parts: Vec<(ImageId, Rect)> =
+            self.plan.outputs().iter().map(|port| (port.image, self.part(port))).collect();
+        parts.into_iter().map(|(id, part)| self.images.finish(id, part)).collect()
     }
 }

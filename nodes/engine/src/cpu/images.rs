@@ -54,8 +54,13 @@ impl<'a> Images<'a> {
     /// As [`bind_inputs`].
     pub fn bind(plan: &Plan, inputs: &[(&str, &'a Image)], windows: &[Rect]) -> Result<Self> {
         let borrowed = bind_inputs(plan, inputs, windows)?;
-        let filled = windows.iter().map(|w| w.y0).collect();
-        Ok(Self { borrowed, owned: vec![None; plan.images().len()], filled })
+        Ok(Self { borrowed, owned: vec![None; plan.images().len()], filled: tops(windows) })
+    }
+
+    /// No image of the caller's: those that enter are put here as they are read.
+    pub fn none(plan: &Plan, windows: &[Rect]) -> Self {
+        let none = vec![None; plan.images().len()];
+        Self { borrowed: none, owned: vec![None; plan.images().len()], filled: tops(windows) }
     }
 
     /// The row down to which an image is computed, exclusive.
@@ -72,7 +77,8 @@ impl<'a> Images<'a> {
         }
     }
 
-    fn image(&self, id: ImageId) -> &Image {
+    /// An image of the caller's or a computed one, without pixels where it is neither.
+    pub fn image(&self, id: ImageId) -> &Image {
         static EMPTY: Image = Image::EMPTY;
         self.borrowed[id.index()].or(self.owned[id.index()].as_ref()).unwrap_or(&EMPTY)
     }
@@ -108,4 +114,9 @@ impl<'a> Images<'a> {
     pub fn recycle(self, spare: &mut Vec<Image>) {
         spare.extend(self.owned.into_iter().flatten());
     }
+}
+
+/// The first row of each image.
+fn tops(windows: &[Rect]) -> Vec<i32> {
+    windows.iter().map(|w| w.y0).collect()
 }

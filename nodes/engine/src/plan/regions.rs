@@ -68,7 +68,7 @@ impl Plan {
     /// every region; with pyramids a region aligned to them may need a little less.
     pub fn support(&self) -> Support {
         // A region far from every border shows the full halo.
-        let wide = Plan { size: [1 << 24, 1 << 24], ..self.clone() };
+        let wide = self.of_size([1 << 24, 1 << 24]);
         let coarsest = wide.images.iter().map(|i| i.level).max().unwrap_or(0).clamp(0, 22);
         let step = 1 << coarsest;
         let region = Rect { x0: 1 << 23, y0: 1 << 23, x1: (1 << 23) + step, y1: (1 << 23) + step };
@@ -87,6 +87,11 @@ impl Plan {
         }
         // That was a region of whole coarse pixels; any other lies inside such a one.
         Support::Pixels((halo + step - 1) as u32)
+    }
+
+    /// The same passes over a picture of another size, to ask what they read.
+    pub(crate) fn of_size(&self, size: [u32; 2]) -> Self {
+        Self { size, ..self.clone() }
     }
 
     fn whole(&self, level: i8) -> Rect {

@@ -13,6 +13,7 @@ use isophote::graph::GraphInput;
 use isophote::kernels::shared::motion::UNKNOWN;
 use isophote::spec::ImageKind;
 use isophote_abi::*;
+use std::ops::Range;
 use std::sync::atomic::{AtomicU64, Ordering};
 use std::sync::{Mutex, PoisonError};
 
@@ -162,8 +163,29 @@ impl Checked {
     ) -> Outcome<(Image, u64)> {
         self.must_suit(input)?;
         let mut image = pool::image(window, input.kind().channels())?;
+        // SAFETY: as the caller promised.
+        let replaced = unsafe { self.read_rows(&mut image, window.y0..window.y1, input, threads)? };
+        Ok((image, replaced))
+    }
+
+    /// Reads `rows` of the columns of `image`, which both must hold, into it, and counts the samples that were replaced. The
+    /// input was found to suit.
+    ///
+    /// # Errors
+    /// Out of memory.
+    ///
+    /// # Safety
+    /// As [`Checked::read`].
+    pub unsafe fn read_rows(
+        &self,
+        image: &mut Image,
+        rows: Range<i32>,
+        input: GraphInput,
+        threads: &dyn Threads,
+    ) -> Outcome<u64> {
+        let window = image.window();
         let (replaced, shared) = (AtomicU64::new(0), Shared(self));
-        of_rows(&mut image, threads, &|first, rows, stride| {
+        of_rows(image, rows, threads, &|first, rows, stride| {
             let checked = shared.get();
             let mut bytes = checked.row_of_bytes(&window)?;
             for (y, row) in (first..).zip(rows.chunks_exact_mut(stride)) {
@@ -174,7 +196,7 @@ impl Checked {
             }
             Ok(())
         })?;
-        Ok((image, replaced.into_inner()))
+        Ok(replaced.into_inner())
     }
 
     /// The values of a row of an input, of its bytes; counts the samples that were replaced.
@@ -255,7 +277,7 @@ impl Checked {
     }
 
     /// Fails for directions and vectors in samples that cannot hold them.
-    fn must_suit(&self, input: GraphInput) -> Outcome<()> {
+    pub(super) fn must_suit(&self, input: GraphInput) -> Outcome<()> {
         let (channels, shown) = match input.kind() {
             ImageKind::Normal | ImageKind::Position => (3, "3 or 4"),
             ImageKind::Motion => (2, "2 to 4"),
@@ -271,9 +293,34 @@ impl Checked {
         Ok(())
     }
 
+    /// Bytes of one row of `window`.
+    pub(super) fn row_bytes(&self, window: &Rect) -> usize {
+        window.width() as usize * self.channels * self.sample.size()
+    }
+
+    /// True where its pixels have alpha.
+    pub(super) fn has_alpha(&self) -> bool {
+        self.channels == 4
+    }
+
+    /// Kind of its samples, and how many a pixel has.
+    pub(super) fn format(&self) -> (Sample, usize) {
+        (self.sample, self.channels)
+    }
+
+    /// Copies the bytes of row `y` of `window`, which the image must hold.
+    ///
+    /// # Safety
+    /// As [`Checked::write`].
+    pub(super) unsafe fn put_row(&self, window: &Rect, y: i32, bytes: &[u8]) {
+        // SAFETY: the row lies in the image, whose memory is writable as the caller promised; the copy is of bytes and
+        // needs no alignment.
+        unsafe { self.at(window, y).copy_from_nonoverlapping(bytes.as_ptr(), bytes.len()) };
+    }
+
     /// Room for a copy of one row of `window`.
     fn row_of_bytes(&self, window: &Rect) -> Outcome<Vec<u8>> {
-        let len = window.width() as usize * self.channels * self.sample.size();
+        let len = self.row_bytes(window);
         let mut bytes = Vec::new();
         bytes.try_reserve_exact(len).map_err(|_| {
             Failure::new(ISOPHOTE_ERROR_OUT_OF_MEMORY, format!("there is no memory for a row of {len} bytes"))
@@ -309,15 +356,14 @@ impl Checked {
         last: &(dyn Fn(i32, &mut [f32]) + Sync),
     ) -> Outcome<()> {
         let (window, channels, shared) = (result.window(), result.channels() as usize, Shared(self));
-        of_rows(result, threads, &|first, rows, stride| {
+        of_rows(result, window.y0..window.y1, threads, &|first, rows, stride| {
             let checked = shared.get();
             let mut bytes = checked.row_of_bytes(&window)?;
             for (y, row) in (first..).zip(rows.chunks_exact_mut(stride)) {
                 last(y, row);
                 write_row(row, channels, &mut bytes, checked.sample, checked.channels);
-                // SAFETY: the row lies in the image, whose memory is writable as the caller promised; the copy is
-                // of bytes and needs no alignment.
-                unsafe { checked.at(&window, y).copy_from_nonoverlapping(bytes.as_ptr(), bytes.len()) };
+                // SAFETY: as the caller promised.
+                unsafe { checked.put_row(&window, y, &bytes) };
             }
             Ok(())
         })
@@ -347,17 +393,18 @@ fn read_pair(pixel: &[u8], sample: Sample, channels: [usize; 2], pair: &mut [f32
 /// Work on some rows: the number of the first, their values, and how many values a row has.
 type RowsJob<'r> = dyn Fn(i32, &mut [f32], usize) -> Outcome<()> + Sync + 'r;
 
-/// Does `job` to the rows of an image on several threads, some at once.
-fn of_rows(image: &mut Image, threads: &dyn Threads, job: &RowsJob<'_>) -> Outcome<()> {
+/// Does `job` to rows of an image on several threads, some at once.
+fn of_rows(image: &mut Image, rows: Range<i32>, threads: &dyn Threads, job: &RowsJob<'_>) -> Outcome<()> {
     let (window, stride) = (image.window(), image.stride());
-    if window.is_empty() {
+    if window.is_empty() || rows.is_empty() {
         return Ok(());
     }
-    let parts: Vec<Mutex<&mut [f32]>> =
-        image.data_mut().chunks_mut(stride * ROWS as usize).map(Mutex::new).collect();
+    let at = |y: i32| (y - window.y0) as usize * stride;
+    let values = &mut image.data_mut()[at(rows.start)..at(rows.end)];
+    let parts: Vec<Mutex<&mut [f32]>> = values.chunks_mut(stride * ROWS as usize).map(Mutex::new).collect();
     let failure = Mutex::new(None);
     threads.run(parts.len(), &|part| {
-        let first = window.y0 + part as i32 * ROWS as i32;
+        let first = rows.start + part as i32 * ROWS as i32;
         if let Err(error) = job(first, &mut lock(&parts[part]), stride) {
             *lock(&failure) = Some(error);
         }

@@ -5,8 +5,10 @@ use super::guard::lock;
 use super::handles::{Object, object};
 use super::warm::Warm;
 use isophote::engine::gpu::Device;
+use isophote::engine::plan::WORKING_MEMORY;
 use isophote::{Graph, Request};
 use isophote_abi::{IsophoteDevice, IsophoteGraph};
+use std::sync::atomic::{AtomicU64, Ordering};
 use std::sync::{Arc, Mutex, MutexGuard};
 
 /// A graph of a host's.
@@ -14,6 +16,8 @@ use std::sync::{Arc, Mutex, MutexGuard};
 pub struct GraphObject {
     graph: Mutex<Graph>,
     message: Mutex<String>,
+    /// Most bytes that images may take on the CPU; 0 where the host has said none.
+    memory: AtomicU64,
     /// Warm state that the last call of `process` left for the next; taken out while one runs.
     warm: Mutex<Option<Warm>>,
 }
@@ -23,12 +27,30 @@ object!(GraphObject, IsophoteGraph, 1, "graph");
 impl GraphObject {
     /// An object that holds `graph`.
     pub fn new(graph: Graph) -> Self {
-        Self { graph: Mutex::new(graph), message: Mutex::default(), warm: Mutex::default() }
+        Self {
+            graph: Mutex::new(graph),
+            message: Mutex::default(),
+            memory: AtomicU64::new(0),
+            warm: Mutex::default(),
+        }
     }
 
     /// The graph itself, locked.
     pub fn lock(&self) -> MutexGuard<'_, Graph> {
         lock(&self.graph)
+    }
+
+    /// Most bytes that images of a call may take on the CPU.
+    pub fn memory(&self) -> u64 {
+        match self.memory.load(Ordering::Relaxed) {
+            0 => WORKING_MEMORY[0],
+            bytes => bytes,
+        }
+    }
+
+    /// Bounds what images of a call may take on the CPU, or by 0 lets the library choose.
+    pub fn set_memory(&self, bytes: u64) {
+        self.memory.store(bytes, Ordering::Relaxed);
     }
 
     /// The graph as it is now, so that no lock is held while it is used.

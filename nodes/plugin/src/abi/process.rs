@@ -1,6 +1,7 @@
 //! Computing images in memory, on the CPU or on a device of the library's own.
 
 use super::args;
+use super::by_rows::{HostRows, Source, Takes};
 use super::failure::{Failure, Outcome};
 use super::graph;
 use super::guard;
@@ -8,12 +9,13 @@ use super::handles::Object;
 use super::images::{AS_COMPUTED, Checked, shown};
 use super::objects::{DeviceObject, GraphObject};
 use super::request::{region, request};
-use super::run::{Run, must_fit};
+use super::run::{Run, must_fit, must_have};
 use super::threads::CallThreads;
 use super::warm::Warm;
 use crate::pool;
 use isophote::Request;
-use isophote::engine::{Image, Rect, Support};
+use isophote::engine::plan::Port;
+use isophote::engine::{Image, Plan, Rect, Support};
 use isophote::graph::GraphInput;
 use isophote::kernels::shared::host_colour::has_light;
 use isophote::request::Guides;
@@ -88,17 +90,8 @@ pub(super) unsafe extern "C" fn process(
         let mut warm = object.warm(&request)?;
         let call =
             ProcessCall { object, request, region, inputs: &inputs, threads: &threads, control: &control };
-        // SAFETY: the host promised that the images' memory may be read.
-        let computed = unsafe { call.run(&mut warm, device.as_deref()) };
-        let computed = computed.and_then(|(mut result, replaced)| {
-            // SAFETY: the host promised that the target's memory may be written; all inputs were copied,
-            // so that it does not matter whether it is theirs.
-            unsafe { target.write(&mut result, threads.threads(), AS_COMPUTED)? };
-            if device.is_none() {
-                warm.recycle(result);
-            }
-            Ok(replaced)
-        });
+        // SAFETY: the host promised that the images' memory may be read, and the target's written.
+        let computed = unsafe { call.compute(&mut warm, device.as_deref(), &target) };
         object.keep(warm);
         let replaced = computed?;
         let done = IsophoteReport { replaced, seconds: started.elapsed().as_secs_f64() };
@@ -149,12 +142,34 @@ struct ProcessCall<'a> {
 }
 
 impl ProcessCall<'_> {
-    /// Reads the inputs and computes the result.
+    /// Reads the inputs, computes the result and writes it; returns how many samples were replaced.
     ///
     /// # Safety
-    /// The memory of the inputs must be readable.
-    unsafe fn run(&self, warm: &mut Warm, device: Option<&DeviceObject>) -> Outcome<(Image, u64)> {
-        let plan = warm.plan()?;
+    /// The memory of the inputs must be readable, that of the target writable.
+    unsafe fn compute(
+        &self,
+        warm: &mut Warm,
+        device: Option<&DeviceObject>,
+        target: &Checked,
+    ) -> Outcome<u64> {
+        let needed = self.needed(warm.plan()?)?;
+        if device.is_none() && matches!(self.takes(warm)?, Takes::ByRows(_)) {
+            // SAFETY: as the caller promised.
+            return unsafe { self.run_rows(warm, &needed, target) };
+        }
+        self.make_room(warm, device.is_some())?;
+        // SAFETY: as the caller promised.
+        let (mut result, replaced) = unsafe { self.run(warm, device, needed)? };
+        // SAFETY: as the caller promised; all inputs were copied, so that it does not matter whether it is theirs.
+        unsafe { target.write(&mut result, self.threads.threads(), AS_COMPUTED)? };
+        if device.is_none() {
+            warm.recycle(result);
+        }
+        Ok(replaced)
+    }
+
+    /// The images that the plan reads, and what it reads of them.
+    fn needed(&self, plan: &Plan) -> Outcome<Vec<Source>> {
         let windows = plan.windows(self.region);
         let mut needed = Vec::new();
         for port in plan.inputs() {
@@ -171,7 +186,65 @@ impl ProcessCall<'_> {
             image.must_hold(&window, &format!("input image '{}'", port.name))?;
             needed.push((*input, *image, window));
         }
-        self.make_room(warm, device.is_some())?;
+        let is_whole = |port: &Port| plan.region_at(self.region, plan.desc(port.image).level) == self.region;
+        match plan.outputs().first() {
+            Some(port) if is_whole(port) => Ok(needed),
+            Some(_) => Err(Failure::new(
+                ISOPHOTE_ERROR_UNSUPPORTED,
+                "the graph's output is of another size than the picture",
+            )),
+            None => Err(Failure::new(ISOPHOTE_ERROR_INTERNAL, "the plan gives no image")),
+        }
+    }
+
+    /// Computes the result by rows and copies it to the target.
+    ///
+    /// # Safety
+    /// As [`ProcessCall::compute`].
+    unsafe fn run_rows(&self, warm: &mut Warm, needed: &[Source], target: &Checked) -> Outcome<u64> {
+        // Memory of whole images is of no use here.
+        pool::forget();
+        // SAFETY: as the caller promised.
+        let mut rows = unsafe { HostRows::new(needed, (target, self.region), self.threads.threads())? };
+        if self.request.premultiplied && !self.request.emission && rows.has_light()? {
+            self.plan_for_light(warm)?;
+        }
+        must_have(self.takes(warm)?.bytes())?;
+        let (plan, cpu, _) = warm.parts()?;
+        let run = self.on(plan);
+        run.by_rows(cpu, &mut rows, self.object.memory())?;
+        let replaced = rows.replaced;
+        // SAFETY: as the caller promised; nothing is read any more.
+        unsafe { rows.finish(target) };
+        Ok(replaced)
+    }
+
+    /// Memory that the run takes on the CPU.
+    fn takes(&self, warm: &Warm) -> Outcome<Takes> {
+        Ok(Takes::of(warm.plan()?, self.region, self.object.memory(), self.threads.threads()))
+    }
+
+    /// Plans anew for light beyond coverage.
+    fn plan_for_light(&self, warm: &mut Warm) -> Outcome<()> {
+        warm.plan_for(&self.object.snapshot(), &Request { emission: true, ..self.request })
+    }
+
+    /// A run of a plan.
+    fn on<'p>(&'p self, plan: &'p Plan) -> Run<'p> {
+        let precision = self.object.lock().precision();
+        Run { plan, precision, region: self.region, threads: self.threads, control: self.control }
+    }
+
+    /// Reads the inputs and computes the result as a whole.
+    ///
+    /// # Safety
+    /// The memory of the inputs must be readable.
+    unsafe fn run(
+        &self,
+        warm: &mut Warm,
+        device: Option<&DeviceObject>,
+        needed: Vec<Source>,
+    ) -> Outcome<(Image, u64)> {
         let mut images = Vec::new();
         let mut replaced = 0;
         for (input, image, window) in needed {
@@ -181,28 +254,16 @@ impl ProcessCall<'_> {
             images.push((input.id(), image));
         }
         if self.has_light(&images) {
-            let request = Request { emission: true, ..self.request };
-            warm.plan_for(&self.object.snapshot(), &request)?;
+            self.plan_for_light(warm)?;
             self.make_room(warm, device.is_some())?;
         }
         let named: Vec<(&str, &Image)> = images.iter().map(|(name, image)| (*name, image)).collect();
-        let precision = self.object.lock().precision();
         let (plan, cpu, gpu) = warm.parts()?;
-        let run = Run { plan, precision, region: self.region, threads: self.threads, control: self.control };
-        let results = run.execute(cpu, gpu, device, &named);
+        let results = self.on(plan).execute(cpu, gpu, device, &named);
         images.into_iter().for_each(|(_, image)| pool::keep_image(image));
         let results = results?;
-        let result = results
-            .into_iter()
-            .next()
-            .ok_or_else(|| Failure::new(ISOPHOTE_ERROR_INTERNAL, "the plan gave no image"))?;
-        if result.window() != self.region {
-            return Err(Failure::new(
-                ISOPHOTE_ERROR_UNSUPPORTED,
-                "the graph's output is of another size than the picture",
-            ));
-        }
-        Ok((result, replaced))
+        let no_image = || Failure::new(ISOPHOTE_ERROR_INTERNAL, "the plan gave no image");
+        Ok((results.into_iter().next().ok_or_else(no_image)?, replaced))
     }
 
     /// Fails when there is no memory for the run, also not when what earlier runs left is given back.

@@ -5,7 +5,7 @@ use super::guard::lock;
 use super::handles::Object;
 use super::objects::DeviceObject;
 use super::threads::{CallThreads, User};
-use isophote::engine::cpu::{Control, CpuExecutor, PassTime};
+use isophote::engine::cpu::{Control, CpuExecutor, PassTime, Rows};
 use isophote::engine::gpu::Executor;
 use isophote::engine::program::Precision;
 use isophote::engine::{Image, ImageId, Plan, Rect, memory};
@@ -39,6 +39,28 @@ impl Run<'_> {
         device: Option<&DeviceObject>,
         images: &[(&str, &Image)],
     ) -> Outcome<Vec<Image>> {
+        self.controlled(|control| match device {
+            None => self.on_cpu(cpu, images, control),
+            Some(device) => self.on_device(gpu, device, images, control),
+        })
+    }
+
+    /// Computes the region of all outputs on the CPU, from and to images by rows that take at most `most` bytes.
+    ///
+    /// # Errors
+    /// As the executor.
+    pub fn by_rows(&self, cpu: &mut Option<CpuExecutor>, rows: &mut dyn Rows, most: u64) -> Outcome<()> {
+        self.controlled(|control| {
+            let cpu = cpu.get_or_insert_default();
+            cpu.record_times(self.control.measured.is_some());
+            cpu.run_rows(self.plan, rows, (self.region, most), self.threads.threads(), control)?;
+            self.report(cpu);
+            Ok(())
+        })
+    }
+
+    /// Does `work` with the host's callbacks.
+    fn controlled<T>(&self, work: impl FnOnce(Control<'_>) -> T) -> T {
         let user = User(self.control.user);
         let cancelled = self.control.cancelled.map(|ask| {
             move || {
@@ -58,10 +80,7 @@ impl Run<'_> {
             cancelled: cancelled.as_ref().map(|c| c as &(dyn Fn() -> bool + Sync)),
             progress: progress.as_ref().map(|p| p as &dyn Fn(f32)),
         };
-        match device {
-            None => self.on_cpu(cpu, images, control),
-            Some(device) => self.on_device(gpu, device, images, control),
-        }
+        work(control)
     }
 
     fn on_cpu(
@@ -73,10 +92,15 @@ impl Run<'_> {
         let cpu = cpu.get_or_insert_default();
         cpu.record_times(self.control.measured.is_some());
         let results = cpu.run(self.plan, images, self.region, self.threads.threads(), control)?;
+        self.report(cpu);
+        Ok(results)
+    }
+
+    /// Reports what the passes took, where the host wants to know.
+    fn report(&self, cpu: &CpuExecutor) {
         if let Some(measured) = self.control.measured {
             self.report_times(cpu.times(), measured);
         }
-        Ok(results)
     }
 
     fn on_device(
@@ -138,6 +162,14 @@ pub fn must_fit(plan: &Plan, windows: &[Rect], on_device: bool) -> Outcome<()> {
     } else {
         plan.peak_bytes(windows)
     };
+    must_have(most)
+}
+
+/// Fails when the system has not so many bytes for images.
+///
+/// # Errors
+/// Out of memory, with what would be needed.
+pub fn must_have(most: u64) -> Outcome<()> {
     memory::must_have(most).map_err(|_| {
         Failure::new(
             ISOPHOTE_ERROR_OUT_OF_MEMORY,
