@@ -2,8 +2,8 @@
 
 use serde_json::json;
 
-use super::filter::Planner;
 use super::memory::{Bytes, Needs, too_large};
+use super::planner::Planner;
 use super::sequence::MOST_IN_FLIGHT;
 use super::tasks::{Task, Tasks};
 use isophote_files::error::Result;

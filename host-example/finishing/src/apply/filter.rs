@@ -1,13 +1,10 @@
 //! Work on every frame: the graph on each of its pictures.
 
-use std::path::Path;
 use std::sync::Arc;
 
 use super::backend::Backend;
 use super::card::Card;
 use super::frame_cache::Window;
-use super::memory::Needs;
-use super::painted::PAINTED;
 use super::picture_request::PictureRequest;
 use super::square;
 use super::stages::stages;
@@ -15,14 +12,12 @@ use crate::stylize::style::Style;
 use isophote_files::error::{AtPlace, Error, Result};
 use isophote_loader::abi::IsophoteRequest;
 use isophote_loader::catalogue::Kind;
-use isophote_loader::plan::Texture;
 use isophote_loader::{Control, Device, Input, Library, Sequence};
 use isophote_pictures::convert::Conversion;
-use isophote_pictures::exr::{ExrFile, Guide, Picture};
+use isophote_pictures::exr::{ExrFile, Picture};
 use isophote_pictures::meaning::Meaning;
 use isophote_pictures::mix::{self, Encoding};
 use isophote_pictures::pixels::{Pixels, Precision};
-use isophote_pictures::read::{Opened, Source};
 use isophote_pictures::space::Space;
 use isophote_pictures::working::WorkingSpace;
 use isophote_pictures::write::Format;
@@ -59,8 +54,8 @@ pub struct Filter {
 
 /// A look with what is kept of it.
 #[derive(Debug)]
-struct Layer {
-    look: MaskedStyle,
+pub(super) struct Layer {
+    pub(super) look: MaskedStyle,
     /// The mask that its graph takes as an input; that of other looks is applied to their results.
     input: Option<usize>,
     /// True where it draws on nothing, so that results have alpha.
@@ -77,9 +72,6 @@ struct Kept {
     sequence: Sequence,
 }
 
-/// Bytes a pixel of what is mixed with what, as floats, and of the result.
-const MIXED: u64 = 3 * 16;
-
 /// Results of one frame.
 #[derive(Debug)]
 pub struct Filtered {
@@ -91,23 +83,11 @@ pub struct Filtered {
     pub replaced: u64,
 }
 
-/// Tells what frames need before they are decoded, on another thread than the filter's.
-#[derive(Debug)]
-pub struct Planner {
-    library: Library,
-    layers: Vec<Layer>,
-    guides: Vec<Guide>,
-    /// Maps that are painted for the frames.
-    painted: Vec<Guide>,
-    /// Memory that filtering a picture of this size takes, as was found last.
-    last: Option<((u32, u32), u64)>,
-}
-
 /// Looks as they are applied: the mask of the only one enters its graph where that takes it.
 ///
 /// # Errors
 /// [`isophote_files::error::Error::Input`] for a mask of what is no picture of colours.
-fn layers(looks: Vec<MaskedStyle>) -> Result<Vec<Layer>> {
+pub(super) fn layers(looks: Vec<MaskedStyle>) -> Result<Vec<Layer>> {
     let is_single = looks.len() == 1;
     let mut layers = Vec::with_capacity(looks.len());
     for look in looks {
@@ -127,7 +107,7 @@ fn layers(looks: Vec<MaskedStyle>) -> Result<Vec<Layer>> {
 }
 
 /// Frames before and after its own that a frame of any of the looks depends on.
-fn frames(library: &Library, layers: &[Layer]) -> Result<[i64; 2]> {
+pub(super) fn frames(library: &Library, layers: &[Layer]) -> Result<[i64; 2]> {
     let mut most = [0; 2];
     for Layer { look: MaskedStyle { style, .. }, .. } in layers {
         let frames = library.frames(&style.graph).map_err(|e| e.at(&style.name, "choose another style"))?;
@@ -137,7 +117,7 @@ fn frames(library: &Library, layers: &[Layer]) -> Result<[i64; 2]> {
 }
 
 /// Gives animated parameters of the looks their values at a frame, and says whether there are any.
-fn at_frame(layers: &[Layer], frame: i64) -> Result<bool> {
+pub(super) fn at_frame(layers: &[Layer], frame: i64) -> Result<bool> {
     let mut is_animated = false;
     for layer in layers {
         is_animated |= layer.look.style.at_frame(frame)?;
@@ -147,12 +127,12 @@ fn at_frame(layers: &[Layer], frame: i64) -> Result<bool> {
 
 impl Layer {
     /// The guide beside those of the picture, by its name.
-    fn guide(&self) -> Option<&'static str> {
+    pub(super) fn guide(&self) -> Option<&'static str> {
         self.input.map(|_| "mask")
     }
 
     /// True where its result is mixed with what is below it.
-    fn is_mixed(&self) -> bool {
+    pub(super) fn is_mixed(&self) -> bool {
         self.look.mask.is_some() && self.input.is_none()
     }
 
@@ -176,6 +156,7 @@ impl Layer {
         if frames == [0, 0] {
             let mut all = vec![Input { name: "color", pixels: color }];
             all.extend(inputs);
+            style.graph.set_memory(window.own.bound)?;
             return Ok(style.graph.process(device, &request, &all, result, control)?.replaced);
         }
         request.guides = library.guide_bits(inputs.map(|input| input.name))?;
@@ -228,6 +209,11 @@ impl Filter {
     /// The library that it runs.
     pub fn library(&self) -> Library {
         self.library.clone()
+    }
+
+    /// True where a graphics device filters, as long as it works.
+    pub fn is_on_card(&self) -> bool {
+        self.card.device().is_some()
     }
 
     /// Another one beside it on the same device, of the same looks.
@@ -378,112 +364,6 @@ impl Filter {
         }
         let nothing = || Error::input(name, "is given no style", "name one");
         Ok((below.ok_or_else(nothing)?, replaced))
-    }
-}
-
-impl Planner {
-    /// Of looks of its own, which are the same as the filter's.
-    ///
-    /// # Errors
-    /// As [`Filter::new`].
-    pub fn new(library: Library, looks: Vec<MaskedStyle>) -> Result<Self> {
-        let mut guides = Vec::new();
-        for look in &looks {
-            guides.extend(look.style.usable_guides(&library)?);
-        }
-        Ok(Self { library, layers: layers(looks)?, guides, painted: Vec::new(), last: None })
-    }
-
-    /// Counts the painted maps that each frame has.
-    pub fn with_painted(self, painted: Vec<Guide>) -> Self {
-        Self { painted, ..self }
-    }
-
-    /// Guides that the styles can use.
-    pub fn guides(&self) -> &[Guide] {
-        &self.guides
-    }
-
-    /// Bytes that filtering a picture of this size takes at most, besides the picture and its result.
-    ///
-    /// # Errors
-    /// [`Error::Input`] for sizes and graphs that the library refuses.
-    pub fn filter_memory(&mut self, name: &str, frame: Option<i64>, size: (u32, u32)) -> Result<u64> {
-        let is_animated = frame.map_or(Ok(false), |frame| at_frame(&self.layers, frame))?;
-        if let Some((_, bytes)) = self.last.filter(|(last, _)| *last == size && !is_animated) {
-            return Ok(bytes);
-        }
-        let refused = |e: isophote_loader::Error| e.at(name, "choose another picture or style");
-        let pixels = u64::from(size.0) * u64::from(size.1);
-        let is_painted = |guide: &Guide| PAINTED.iter().any(|painted| painted.guide == *guide);
-        let is_counted = |guide: &&Guide| !is_painted(guide) || self.painted.contains(guide);
-        let guides = self.guides.iter().filter(is_counted).map(|guide| guide.id());
-        // One look is made at a time; what it keeps of frames stays.
-        let (mut kept, mut most) = (0, 0);
-        for layer in &self.layers {
-            let style = &layer.look.style;
-            let mut request = style.request(&self.library, size).map_err(refused)?;
-            let all = guides.clone().chain(layer.guide());
-            request.guides = self.library.guide_bits(all).map_err(refused)?;
-            let frames = self.library.frames(&style.graph).map_err(refused)?;
-            let plan = self.library.plan_frame(&style.graph, &request, frames[0]).map_err(refused)?;
-            let textures: u64 = plan.textures().map_err(refused)?.iter().map(Texture::bytes).sum();
-            let mixed = if layer.is_mixed() || self.layers.len() > 1 { pixels * MIXED } else { 0 };
-            most = most.max(textures + mixed);
-            kept += stages(&self.library, style, &request, frames).map_err(refused)?;
-        }
-        let bytes = most + kept;
-        self.last = Some((size, bytes));
-        Ok(bytes)
-    }
-
-    /// Frames before and after `frame` that it depends on.
-    ///
-    /// # Errors
-    /// [`Error::Input`] when an animated parameter cannot have its value.
-    pub fn frames(&self, frame: Option<i64>) -> Result<[i64; 2]> {
-        let Some(frame) = frame else { return Ok([0, 0]) };
-        at_frame(&self.layers, frame)?;
-        frames(&self.library, &self.layers)
-    }
-
-    /// Number of frames that are held while `frame` is done: it and all that it depends on.
-    ///
-    /// # Errors
-    /// As [`Planner::frames`].
-    pub fn span(&self, frame: Option<i64>) -> Result<u64> {
-        let [past, future] = self.frames(frame)?;
-        Ok((past + future + 1) as u64)
-    }
-
-    /// Needs of the frame `file`; nothing when it will be refused, which is reported when its turn comes.
-    ///
-    /// # Errors
-    /// As [`Planner::filter_memory`].
-    pub fn needs(&mut self, file: &Path, frame: Option<i64>, opened: &Opened) -> Result<Option<Needs>> {
-        let Some(own) = opened.size() else { return Ok(None) };
-        let name = file.display().to_string();
-        let size = square::size(&self.library, &name, own, opened.pixel_aspect())?;
-        let filter = self.filter_memory(&name, frame, size)?;
-        // Each as it is read, as it is kept and as one of all frames.
-        let of_look = |look: &MaskedStyle| look.style.objects.len() + usize::from(look.mask.is_some());
-        let masks: usize = self.layers.iter().map(|layer| of_look(&layer.look)).sum();
-        let masks = masks as u64 + 4 * self.painted.len() as u64;
-        let maps = u64::from(size.0) * u64::from(size.1) * 4 * 3 * masks;
-        let area = |(width, height): (u32, u32)| u64::from(width) * u64::from(height);
-        // Both are there while one is made of the other.
-        let grown =
-            if size == own { 0 } else { opened.weight().saturating_mul(area(size) / area(own).max(1)) };
-        Ok(Some(Needs { frame: opened.weight().saturating_add(maps).saturating_add(grown), filter }))
-    }
-
-    /// Makes the pixels of a frame square, where they are not.
-    ///
-    /// # Errors
-    /// As [`square::make`].
-    pub fn square(&self, name: &str, source: &mut Source) -> Result<()> {
-        let is_square = source.pictures.iter().all(|picture| picture.meaning.pixel_aspect == 1.0);
-        if is_square { Ok(()) } else { square::make(&self.library, name, source) }
     }
 }
 

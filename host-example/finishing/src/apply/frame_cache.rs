@@ -21,6 +21,8 @@ pub struct CachedFrame<'a> {
     changed: Vec<OnceLock<(Pixels, u64)>>,
     /// Layers of colours of the pictures, likewise.
     layers: Vec<OnceLock<Vec<(&'static str, Pixels)>>>,
+    /// Bytes that images may take while it is filtered on the CPU; 0 lets the library choose.
+    pub bound: u64,
     /// Given back when the frame is needed no more.
     _share: Share<'a>,
 }
@@ -31,7 +33,13 @@ impl<'a> CachedFrame<'a> {
         let exr = source.exr.take().filter(|_| is_written);
         let changed = source.pictures.iter().map(|_| OnceLock::new()).collect();
         let layers = source.pictures.iter().map(|_| OnceLock::new()).collect();
-        Self { number, source, exr: Mutex::new(exr), changed, layers, _share: share }
+        Self { number, source, exr: Mutex::new(exr), changed, layers, bound: 0, _share: share }
+    }
+
+    /// The same for a filter whose images take so many bytes.
+    #[must_use]
+    pub fn within(self, bound: u64) -> Self {
+        Self { bound, ..self }
     }
 
     /// The file that the result goes into; once.

@@ -161,16 +161,22 @@ pub fn too_large(path: &Path, count: u64, needs: Needs, most: Bytes) -> Error {
     Error::file(path, format!("{who} about {needed} of memory, and {most} may be used"), fix)
 }
 
-/// Memory of a run that is given no bound: 4 GiB, or what the machine has.
+/// Memory of a machine that does not tell.
+const UNKNOWN: u64 = 4 << 30;
+
+/// Memory of a run that is given no bound: half of what nobody uses.
 pub fn usual() -> Bytes {
-    const MOST: u64 = 4 << 30;
-    Bytes(machine::memory().map_or(MOST, |bytes| bytes.min(MOST)))
+    Bytes(machine::free().map_or(UNKNOWN, |bytes| bytes / 2))
 }
 
-/// Memory of one picture in a program that somebody works with: half of what the machine has, or the usual.
+/// Memory of one picture in a program that somebody works with: half of what the machine has.
 pub fn half() -> Bytes {
-    let half = machine::memory().map_or(0, |bytes| bytes / 2);
-    Bytes(usual().0.max(half))
+    Bytes(machine::memory().map_or(UNKNOWN, |bytes| bytes / 2))
+}
+
+/// Memory of frames that such a program keeps although it could read them again.
+pub fn kept() -> Bytes {
+    Bytes(machine::memory().map_or(UNKNOWN, |bytes| bytes.min(UNKNOWN)) / 2)
 }
 
 #[cfg(test)]

@@ -12,6 +12,7 @@ pub mod memory;
 pub mod objects;
 pub mod painted;
 pub mod picture_request;
+pub mod planner;
 pub mod reader;
 pub mod report;
 pub mod sequence;

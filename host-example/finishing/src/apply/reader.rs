@@ -7,10 +7,10 @@ use std::collections::HashSet;
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
 
-use super::filter::Planner;
 use super::frame_cache::{CachedFrame, Window};
 use super::masks::Masks;
 use super::memory::{Budget, Needs, too_large};
+use super::planner::Planner;
 use super::tasks::Task;
 use isophote_files::error::{Error, Result};
 use isophote_files::frames::Pattern;
@@ -134,7 +134,8 @@ impl<'a> Reader<'a> {
                 file.read(path, selection)?
             }
         };
-        if let Some(needs) = self.planner.needs(path, number, &opened)? {
+        let needs = self.planner.needs(path, number, &opened)?;
+        if let Some(needs) = needs {
             grow(needs)?;
             limits::must_have(needs.total(), &path.display().to_string())?;
         }
@@ -145,7 +146,8 @@ impl<'a> Reader<'a> {
         let is_written = number.is_none_or(|number| self.tasks.contains(&number));
         self.frame_source.masks.add(&mut source, number)?;
         self.planner.square(&path.display().to_string(), &mut source)?;
-        Ok(CachedFrame::new(number, source, is_written, share))
+        let bound = needs.map_or(0, |needs| needs.filter);
+        Ok(CachedFrame::new(number, source, is_written, share).within(bound))
     }
 }
 

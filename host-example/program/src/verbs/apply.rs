@@ -22,9 +22,10 @@ use isophote_files::output;
 use isophote_files::stop::Stop;
 use isophote_finishing::apply::backend::Backend;
 use isophote_finishing::apply::dry_run::DryRun;
-use isophote_finishing::apply::filter::{Filter, MaskedStyle, Planner};
+use isophote_finishing::apply::filter::{Filter, MaskedStyle};
 use isophote_finishing::apply::masks::MaskChoice;
 use isophote_finishing::apply::memory::{self, Budget, Bytes, Needs, too_large};
+use isophote_finishing::apply::planner::Planner;
 use isophote_finishing::apply::reader::{FrameSource, Reader};
 use isophote_finishing::apply::report::{self, Outcome, Report};
 use isophote_finishing::apply::sequence::Run;
@@ -79,8 +80,9 @@ pub struct ApplyArgs {
     /// Treatment of frames that are missing in the sequence.
     #[arg(long, value_enum, default_value_t = OnMissing::Fail)]
     pub on_missing: OnMissing,
-    /// Limit of memory, such as 8GiB, which decides how many frames are worked on at once; frames that need more are
-    /// refused [default: 4GiB, or what the machine or the container has].
+    /// Limit of memory, such as 8GiB, which decides how many frames are worked on at once. On the CPU a larger picture is filtered
+    /// by rows, which takes longer; one that needs more even so is refused [default: half of what is free in the machine or the
+    /// container; 4GiB where that is unknown].
     #[arg(long, value_name = "SIZE")]
     pub memory: Option<Bytes>,
     /// Skips results that are already complete, so that an interrupted run goes on.
@@ -223,11 +225,13 @@ pub fn run(args: &ApplyArgs) -> Result<()> {
     let opened = args.open_first(&tasks, &selection)?;
     let backend = if args.dry_run { Backend::Cpu } else { args.backend };
     let own = args.looks(&library, files.style, &written)?;
-    let mut planner = Planner::new(library.clone(), own)?.with_painted(args.painted.guides_of(&looks));
+    let planner = Planner::new(library.clone(), own)?.with_painted(args.painted.guides_of(&looks));
     args.check_results(&tasks, &planner, &choices)?;
     let guides = args.guides_found(&tasks, &selection, opened.as_ref(), &planner)?;
     let filter = args.filter(&library, looks, backend)?;
     let most = args.memory.unwrap_or_else(memory::usual);
+    let keeps_samples = args.keeps_samples(format) && !is_film;
+    let mut planner = planner.within(most.0).on_card(filter.is_on_card()).keeping_samples(keeps_samples);
     let needs = args.needs(&mut planner, &tasks, opened.as_ref(), most)?;
     if args.dry_run {
         args.print_plan((&tasks, &selection, most), &mut planner, needs)?;
@@ -286,6 +290,12 @@ impl ApplyArgs {
     fn filter(&self, library: &Library, looks: Vec<MaskedStyle>, backend: Backend) -> Result<Filter> {
         let filter = Filter::new(library.clone(), looks, backend, self.space, self.threads)?;
         Ok(filter.into_space(self.output_space).precisely(self.result.is_precise()))
+    }
+
+    /// True where nothing asks for other samples in results than pictures have.
+    fn keeps_samples(&self, format: Format) -> bool {
+        let is_changed = self.space.is_some() || self.output_space.is_some() || self.result.is_precise();
+        !is_changed && format != Format::Exr
     }
 
     /// Size of the result of a picture, where that is known.

@@ -50,7 +50,7 @@ pub struct Options {
 impl Default for Options {
     fn default() -> Self {
         // The window's own pictures and the device need memory as well.
-        let cache = memory::usual().0 / 2;
+        let cache = memory::kept().0;
         Self { selection: Selection::default(), space: None, as_sequence: false, cache }
     }
 }

@@ -81,7 +81,7 @@ fn file(path: &Path, number: i64, reading: &Reading) -> Result<Frame> {
 /// As [`Opened::decode`]; [`Error::Failure`] when memory is short.
 pub fn decoded(path: &Path, number: Option<i64>, opened: Opened, space: Option<Space>) -> Result<Frame> {
     let name = path.display().to_string();
-    limits::must_have(opened.weight(), &name)?;
+    limits::must_have(opened.weight(false), &name)?;
     let mut source = opened.decode(path)?;
     // Nothing is written back.
     source.exr = None;
