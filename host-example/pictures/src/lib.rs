@@ -44,6 +44,7 @@ mod svg;
 mod tiff;
 mod tiff_write;
 pub mod webp;
+mod weight;
 pub mod working;
 pub mod write;
 

@@ -8,8 +8,7 @@ use image::codecs::jpeg::JpegDecoder;
 use image::codecs::png::PngDecoder;
 use image::codecs::tiff::TiffDecoder;
 use image::codecs::webp::WebPDecoder;
-use image::metadata::Orientation;
-use image::{ColorType, DynamicImage, ImageDecoder, ImageError, ImageResult, Limits};
+use image::{DynamicImage, ImageDecoder, ImageError, ImageResult, Limits};
 
 use crate::convert::Conversion;
 use crate::exr::{self, ExrFile, Offers, Picture, Selection};
@@ -17,8 +16,7 @@ use crate::meaning::{ImageState, Meaning};
 use crate::pixels::{MOST_PIXELS, Pixels, Samples};
 use crate::primaries::{Change, REC709};
 use crate::tiff::Wide;
-use crate::working::WorkingSpace;
-use crate::{colours, hdr, inks, jpeg, png, said, svg};
+use crate::{colours, hdr, jpeg, png, said, svg, weight};
 use isophote_files::error::{Error, Result};
 use isophote_files::frames;
 use isophote_files::input;
@@ -175,23 +173,10 @@ impl Opened {
         match &self.0 {
             Kind::Exr(file) => file.weight(),
             Kind::Other(bytes, _) => {
-                let Ok((kind, mut decoder)) = decoder(Path::new(""), bytes) else {
+                let Ok((kind, decoder)) = decoder(Path::new(""), bytes) else {
                     return bytes.len() as u64;
                 };
-                let (width, height) = decoder.dimensions();
-                let pixels = u64::from(width) * u64::from(height);
-                let has_alpha = decoder.color_type().has_alpha();
-                // As it is decoded, and as it is turned where a camera was.
-                let is_turned = decoder.orientation().is_ok_and(|o| o != Orientation::NoTransforms);
-                let decoded = decoder.total_bytes().saturating_mul(if is_turned { 2 } else { 1 });
-                let sample = if keeps_samples { kept_sample(kind, bytes, decoder) } else { None };
-                // The result while it is collected and handed on; else floats before, between and after changes of
-                // colour space.
-                let beside = match sample {
-                    Some(sample) => 2 * sample * if has_alpha { 4 } else { 3 },
-                    None => 4 * 4 * 3,
-                };
-                (bytes.len() as u64).saturating_add(decoded).saturating_add(pixels.saturating_mul(beside))
+                weight::of_decoded(kind, bytes, decoder, keeps_samples).saturating_add(bytes.len() as u64)
             }
         }
     }
@@ -324,36 +309,6 @@ fn decode(path: &Path, bytes: &[u8]) -> Result<Source> {
 /// The format of any file but an EXR file; nothing where it cannot be read.
 fn kind(bytes: &[u8]) -> &'static str {
     decoder(Path::new(""), bytes).map_or("", |(kind, _)| kind)
-}
-
-/// Bytes of a sample of a file whose numbers are filtered as they are; nothing where they are changed to others first.
-fn kept_sample(kind: &str, bytes: &[u8], mut decoder: impl ImageDecoder) -> Option<u64> {
-    // One pixel tells what becomes of all.
-    const PIXEL: [u8; 4] = [200, 90, 30, 255];
-    let (channels, is_wide) = match decoder.color_type() {
-        ColorType::L8 => (1, false),
-        ColorType::Rgb8 => (3, false),
-        ColorType::La8 | ColorType::Rgba8 => (4, false),
-        ColorType::L16 => (1, true),
-        ColorType::Rgb16 => (3, true),
-        ColorType::La16 | ColorType::Rgba16 => (4, true),
-        _ => return None,
-    };
-    let pixel = PIXEL[..channels].iter();
-    let samples = match is_wide {
-        true => Samples::U16(pixel.map(|value| u16::from(*value) * 257).collect()),
-        false => Samples::U8(pixel.copied().collect()),
-    };
-    let mut pixels = Pixels::new(1, 1, channels as u32, samples)?;
-    let before = pixels.clone();
-    let exif = if kind == "JPEG" { decoder.exif_metadata().unwrap_or_default() } else { None };
-    let profile = decoder.icc_profile().unwrap_or_default();
-    let is_grey = !decoder.color_type().has_color();
-    let meaning = colours::meant((kind, bytes), profile, &mut pixels, (is_grey, false), exif.as_deref());
-    let is_kept = pixels == before && !inks::are_in(kind, bytes);
-    let mut picture = Picture::alone(pixels, meaning);
-    said::add(kind, bytes, &mut picture);
-    (is_kept && WorkingSpace::of(None, &picture).there.is_none()).then_some(1 + u64::from(is_wide))
 }
 
 /// The kind of any file but an EXR file, and a decoder that has read what it says of itself.

@@ -223,14 +223,13 @@ pub fn run(args: &ApplyArgs) -> Result<()> {
     let selection = args.selection(&library, &looks, &choices, format)?;
     let motion = args.motion_files(&tasks, &selection)?;
     let opened = args.open_first(&tasks, &selection)?;
-    let backend = if args.dry_run { Backend::Cpu } else { args.backend };
     let own = args.looks(&library, files.style, &written)?;
     let planner = Planner::new(library.clone(), own)?.with_painted(args.painted.guides_of(&looks));
     args.check_results(&tasks, &planner, &choices)?;
     let guides = args.guides_found(&tasks, &selection, opened.as_ref(), &planner)?;
-    let filter = args.filter(&library, looks, backend)?;
+    let filter = args.filter(&library, looks)?;
     let most = args.memory.unwrap_or_else(memory::usual);
-    let keeps_samples = args.keeps_samples(format) && !is_film;
+    let keeps_samples = args.keeps_samples(format, is_film);
     let mut planner = planner.within(most.0).on_card(filter.is_on_card()).keeping_samples(keeps_samples);
     let needs = args.needs(&mut planner, &tasks, opened.as_ref(), most)?;
     if args.dry_run {
@@ -248,9 +247,8 @@ pub fn run(args: &ApplyArgs) -> Result<()> {
     let (frames, motion) = (tasks.sequence.as_ref(), motion.as_ref());
     let (selection, masks, budget) = (&selection, &masks, &budget);
     let frame_source = FrameSource { frames, motion, selection, masks, budget };
-    let options = args.result.options();
-    let run =
-        Run { tasks: &tasks.ready, consent: args.consent(), options, threads, report: &report, stop: &stop };
+    let (options, consent) = (args.result.options(), args.consent());
+    let run = Run { tasks: &tasks.ready, consent, options, threads, report: &report, stop: &stop };
     let reader = Reader::new(frame_source, planner, &tasks.ready, opened);
     let result = match is_film {
         true => args.film(&mut filters[0], reader, &tasks.ready, (&report, &stop)),
@@ -287,15 +285,16 @@ pub struct Files<'a> {
 
 impl ApplyArgs {
     /// The filter of pictures.
-    fn filter(&self, library: &Library, looks: Vec<MaskedStyle>, backend: Backend) -> Result<Filter> {
+    fn filter(&self, library: &Library, looks: Vec<MaskedStyle>) -> Result<Filter> {
+        let backend = if self.dry_run { Backend::Cpu } else { self.backend };
         let filter = Filter::new(library.clone(), looks, backend, self.space, self.threads)?;
         Ok(filter.into_space(self.output_space).precisely(self.result.is_precise()))
     }
 
     /// True where nothing asks for other samples in results than pictures have.
-    fn keeps_samples(&self, format: Format) -> bool {
+    fn keeps_samples(&self, format: Format, is_film: bool) -> bool {
         let is_changed = self.space.is_some() || self.output_space.is_some() || self.result.is_precise();
-        !is_changed && format != Format::Exr
+        !is_changed && !is_film && format != Format::Exr
     }
 
     /// Size of the result of a picture, where that is known.

@@ -43,7 +43,7 @@ impl GraphObject {
     /// Most bytes that images of a call may take on the CPU.
     pub fn memory(&self) -> u64 {
         match self.memory.load(Ordering::Relaxed) {
-            0 => WORKING_MEMORY[0],
+            0 => WORKING_MEMORY[1],
             bytes => bytes,
         }
     }
