@@ -49,7 +49,7 @@ impl Planner {
     /// Of looks of its own, which are the same as the filter's.
     ///
     /// # Errors
-    /// As [`Filter::new`].
+    /// As [`Filter::new`](super::filter::Filter::new).
     pub fn new(library: Library, looks: Vec<MaskedStyle>) -> Result<Self> {
         let mut guides = Vec::new();
         for look in &looks {
@@ -135,7 +135,7 @@ impl Planner {
     /// Frames before and after `frame` that it depends on.
     ///
     /// # Errors
-    /// [`Error::Input`] when an animated parameter cannot have its value.
+    /// [`Error::Input`](isophote_files::error::Error::Input) when an animated parameter cannot have its value.
     pub fn frames(&self, frame: Option<i64>) -> Result<[i64; 2]> {
         let Some(frame) = frame else { return Ok([0, 0]) };
         at_frame(&self.layers, frame)?;
