@@ -169,9 +169,9 @@ pub fn usual() -> Bytes {
     Bytes(machine::free().map_or(UNKNOWN, |bytes| bytes / 2))
 }
 
-/// Memory of one picture in a program that somebody works with: half of what the machine has.
+/// Memory of one picture in a program that somebody works with: half of what the machine has, or 4 GiB of it.
 pub fn half() -> Bytes {
-    Bytes(machine::memory().map_or(UNKNOWN, |bytes| bytes / 2))
+    Bytes(machine::memory().map_or(UNKNOWN, |bytes| (bytes / 2).max(bytes.min(UNKNOWN))))
 }
 
 /// Memory of frames that such a program keeps although it could read them again.

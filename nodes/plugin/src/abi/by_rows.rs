@@ -121,7 +121,7 @@ impl Rows for HostRows<'_> {
     }
 
     fn write(&mut self, output: usize, part: Rect, image: &Image) -> Result<()> {
-        // The first is the graph's; a plan has others for frames that follow.
+        // The first is the graph's; others are stages that sequences keep.
         if output == 0 {
             self.result.pack(part, image, self.threads);
         }

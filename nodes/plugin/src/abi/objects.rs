@@ -43,6 +43,7 @@ impl GraphObject {
     /// Most bytes that images of a call may take on the CPU.
     pub fn memory(&self) -> u64 {
         match self.memory.load(Ordering::Relaxed) {
+            // Rows take longer than whole images, which are left as long as they fit into most machines.
             0 => WORKING_MEMORY[1],
             bytes => bytes,
         }

@@ -153,9 +153,11 @@ impl ProcessCall<'_> {
         target: &Checked,
     ) -> Outcome<u64> {
         let needed = self.needed(warm.plan()?)?;
-        if device.is_none() && matches!(self.takes(warm)?, Takes::ByRows(_)) {
+        if device.is_none()
+            && let takes @ Takes::ByRows(_) = self.takes(warm)?
+        {
             // SAFETY: as the caller promised.
-            return unsafe { self.run_rows(warm, &needed, target) };
+            return unsafe { self.run_rows(warm, (&needed, takes), target) };
         }
         self.make_room(warm, device.is_some())?;
         // SAFETY: as the caller promised.
@@ -201,15 +203,21 @@ impl ProcessCall<'_> {
     ///
     /// # Safety
     /// As [`ProcessCall::compute`].
-    unsafe fn run_rows(&self, warm: &mut Warm, needed: &[Source], target: &Checked) -> Outcome<u64> {
+    unsafe fn run_rows(
+        &self,
+        warm: &mut Warm,
+        (needed, mut takes): (&[Source], Takes),
+        target: &Checked,
+    ) -> Outcome<u64> {
         // Memory of whole images is of no use here.
         pool::forget();
         // SAFETY: as the caller promised.
         let mut rows = unsafe { HostRows::new(needed, (target, self.region), self.threads.threads())? };
         if self.request.premultiplied && !self.request.emission && rows.has_light()? {
             self.plan_for_light(warm)?;
+            takes = self.takes(warm)?;
         }
-        must_have(self.takes(warm)?.bytes())?;
+        must_have(takes.bytes())?;
         let (plan, cpu, _) = warm.parts()?;
         let run = self.on(plan);
         run.by_rows(cpu, &mut rows, self.object.memory())?;
