@@ -1,10 +1,12 @@
 //! Generated cases as trials of their own: each has a name that can be asked for, and one that fails
 //! hides no other.
 //!
-//! A test file with `harness = false` collects them in its `main`. The name of a trial is the test, two
-//! colons and the kernel or node that it concerns: `twins::gaussian_blur`.
+//! A program with `harness = false` collects them in its `main`. The name of a trial is the file, the test and the kernel or
+//! node that it concerns, with two colons between them: `goldens::cpu::cartoon`. A test of the same name as its file has no
+//! name of its own: `twins::gaussian_blur`.
 
 use libtest_mimic::{Arguments, Completion, Failed, Trial};
+use std::ffi::OsString;
 use std::fmt::Display;
 use std::process::ExitCode;
 use std::sync::{Arc, Mutex, PoisonError};
@@ -46,9 +48,11 @@ impl<R: Into<Self>> From<Option<R>> for Report {
 
 type Times = Arc<Mutex<Vec<(Duration, String)>>>;
 
-/// The trials of a test file.
+/// The trials of a program.
 #[derive(Debug, Default)]
 pub struct Trials {
+    /// Name of the file whose trials are added now; empty where a program has but one.
+    file: &'static str,
     trials: Vec<Trial>,
     times: Times,
 }
@@ -57,6 +61,11 @@ impl Trials {
     /// None yet.
     pub fn new() -> Self {
         Self::default()
+    }
+
+    /// Trials that are added from now on are those of this file, and their names begin with it.
+    pub fn begin_file(&mut self, name: &'static str) {
+        self.file = name;
     }
 
     /// Adds the trial `test::subject`. It fails by a panic or by its report.
@@ -71,7 +80,9 @@ impl Trials {
 
     /// Adds a trial that concerns no kernel or node in particular.
     pub fn add_plain<R: Into<Report>>(&mut self, name: &str, body: impl FnOnce() -> R + Send + 'static) {
-        let (times, known_as) = (Arc::clone(&self.times), name.to_owned());
+        let is_named = self.file.is_empty() || name.split("::").next() == Some(self.file);
+        let name = if is_named { name.to_owned() } else { format!("{}::{name}", self.file) };
+        let (times, known_as) = (Arc::clone(&self.times), name.clone());
         self.trials.push(Trial::ignorable_test(name, move || {
             let started = Instant::now();
             let report = body().into();
@@ -91,9 +102,15 @@ impl Trials {
         }
     }
 
-    /// Runs those that the command line asks for, as the built-in harness would.
-    pub fn run(self) -> ExitCode {
-        let conclusion = libtest_mimic::run(&Arguments::from_args(), self.trials);
+    /// Runs those that the command line asks for, as the built-in harness would; after `--file` those of one file.
+    pub fn run(mut self) -> ExitCode {
+        let mut words: Vec<OsString> = std::env::args_os().collect();
+        if let Some(at) = words.iter().position(|word| word == "--file") {
+            let file = words.drain(at..words.len().min(at + 2)).nth(1).unwrap_or_default();
+            let begin = format!("{}::", file.display());
+            self.trials.retain(|trial| trial.name().starts_with(&begin));
+        }
+        let conclusion = libtest_mimic::run(&Arguments::from_iter(words), self.trials);
         let mut times = self.times.lock().unwrap_or_else(PoisonError::into_inner);
         times.sort_by_key(|(time, _)| std::cmp::Reverse(*time));
         if times.len() > 1 {

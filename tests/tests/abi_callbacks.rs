@@ -2,10 +2,7 @@
 
 #![allow(unsafe_code, reason = "calls through the C table")]
 
-#[path = "support/c_images.rs"]
-mod c_images;
-
-use c_images::{Run, color, floats, picture, target};
+use crate::c_images::{Run, color, floats, picture, target};
 use isophote_abi::*;
 use isophote_tests::library::{Loaded, text};
 use std::ffi::c_void;

@@ -3,13 +3,9 @@
 
 #![allow(unsafe_code, reason = "calls through the C table and of Vulkan")]
 
-#[path = "abi_vulkan/arguments.rs"]
 mod arguments;
-#[path = "abi_vulkan/faults.rs"]
 mod faults;
-#[path = "abi_vulkan/host.rs"]
 mod host;
-#[path = "abi_vulkan/studio.rs"]
 mod studio;
 
 use ash::vk::{self, Handle};

@@ -15,7 +15,7 @@ use isophote_tests::trials::{Report, Trials};
 use isophote_tests::{run, sweep};
 use std::fmt::Write as _;
 use std::path::{Path, PathBuf};
-use std::process::ExitCode;
+use std::sync::Once;
 
 /// Size of the ordinary pictures.
 const SIZE: [u32; 2] = [48, 40];
@@ -60,16 +60,12 @@ impl Entering {
     }
 }
 
-fn main() -> ExitCode {
-    if std::env::var("ISOPHOTE_BLESS").is_ok_and(|v| v == "1") {
-        bless();
-    }
-    let mut trials = Trials::new();
+/// Adds the trials of this file.
+pub fn add(trials: &mut Trials) {
     for spec in registry::nodes() {
         trials.add("bits::finite", spec.id, move || that_are_not_finite(spec));
         trials.add("bits::same", spec.id, move || other_than_known(spec));
     }
-    trials.run()
 }
 
 /// A node with its defaults, with each option of each choice, and with marks that motion carries or that fade.
@@ -144,6 +140,10 @@ fn fused() -> impl Iterator<Item = (&'static str, Level)> {
 }
 
 fn other_than_known(spec: &'static NodeSpec) -> Report {
+    static BLESSED: Once = Once::new();
+    if std::env::var("ISOPHOTE_BLESS").is_ok_and(|v| v == "1") {
+        BLESSED.call_once(bless);
+    }
     let table = std::fs::read_to_string(table()).unwrap_or_default();
     let Some(known) = table.lines().find_map(|line| line.strip_prefix(spec.id)?.strip_prefix(' ')) else {
         return Report::Failed("it is not in the table; look at its golden image and bless it".into());

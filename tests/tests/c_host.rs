@@ -12,7 +12,6 @@ use isophote_tests::library;
 use isophote_tests::trials::Trials;
 use std::collections::HashMap;
 use std::path::{Path, PathBuf};
-use std::process::ExitCode;
 use std::process::{Command, Output};
 use std::sync::{Mutex, OnceLock, PoisonError};
 use tempfile::TempDir;
@@ -24,8 +23,8 @@ macro_rules! named {
     ($($test:ident)*) => { [$((concat!("c_host::", stringify!($test)), $test as fn())),*] };
 }
 
-fn main() -> ExitCode {
-    let mut trials = Trials::new();
+/// Adds the trials of this file.
+pub fn add(trials: &mut Trials) {
     // Those under valgrind take longest.
     for (name, test) in named! {
         a_c_program_lists_the_nodes_and_stylizes_under_valgrind
@@ -48,7 +47,6 @@ fn main() -> ExitCode {
         });
         trials.add("c_host::a_c_program_prints_the_plan", node.id, || plan(node.id, false));
     }
-    trials.run()
 }
 
 /// True where a tool that the tests need is there; where it must be, its absence fails.

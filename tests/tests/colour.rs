@@ -13,10 +13,9 @@ use isophote_tests::device;
 use isophote_tests::pictures::{self, Kind, from_fn};
 use isophote_tests::run;
 use isophote_tests::trials::Trials;
-use std::process::ExitCode;
 
-fn main() -> ExitCode {
-    let mut trials = Trials::new();
+/// Adds the trials of this file.
+pub fn add(trials: &mut Trials) {
     for spec in isophote::registry::nodes() {
         trials.add("colour::finite", spec.id, || the_node_keeps_every_kind_of_picture_finite(spec));
         trials.add("colour::mixed_ends", spec.id, || shaders_bear_mixed_ends(spec));
@@ -37,7 +36,6 @@ fn main() -> ExitCode {
         "colour::lightness_comes_straight_from_the_hosts_colour",
         lightness_comes_straight_from_the_hosts_colour,
     );
-    trials.run()
 }
 
 fn default_graph(spec: &'static NodeSpec) -> Graph {

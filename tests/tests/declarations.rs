@@ -8,10 +8,9 @@ use isophote_engine::Kernel;
 use isophote_tests::trials::Trials;
 use isophote_tests::{cases, uniforms};
 use std::collections::{BTreeSet, HashMap};
-use std::process::ExitCode;
 
-fn main() -> ExitCode {
-    let mut trials = Trials::new();
+/// Adds the trials of this file.
+pub fn add(trials: &mut Trials) {
     for spec in isophote::registry::nodes() {
         trials.add("declarations", spec.id, || faults_of(spec));
         trials.add("words", spec.id, || bad_words_of(spec));
@@ -24,7 +23,6 @@ fn main() -> ExitCode {
     for kernel in KERNELS {
         trials.add("tolerances", kernel.name, || the_tolerance_has_a_reason_and_is_small(kernel));
     }
-    trials.run()
 }
 
 fn is_identifier(id: &str) -> bool {

@@ -3,7 +3,6 @@
 
 #![cfg(target_os = "linux")]
 
-#[path = "dist/editors.rs"]
 mod editors;
 
 use isophote::registry;

@@ -12,11 +12,10 @@ use isophote_tests::pictures::{self, Kind};
 use isophote_tests::random::Random;
 use isophote_tests::trials::Trials;
 use isophote_tests::{device, run};
-use std::process::ExitCode;
 use std::sync::{Mutex, PoisonError};
 
-fn main() -> ExitCode {
-    let mut trials = Trials::new();
+/// Adds the trials of this file.
+pub fn add(trials: &mut Trials) {
     for spec in isophote::registry::nodes() {
         trials
             .add("edits::uniforms", spec.id, || parameters_only_rewrite_uniforms_and_allocate_nothing(spec));
@@ -24,7 +23,6 @@ fn main() -> ExitCode {
         trials.add("edits::picture", spec.id, || an_edited_plan_gives_the_picture_of_a_new_one(spec));
         trials.add("edits::warm_frame", spec.id, || a_warm_frame_creates_nothing_and_submits_once(spec));
     }
-    trials.run()
 }
 
 /// True when both plans would run the same.

@@ -16,7 +16,6 @@ use isophote_tests::pictures::{self, from_fn};
 use isophote_tests::trials::Trials;
 use isophote_tests::{cases, device, png, run};
 use std::path::{Path, PathBuf};
-use std::process::ExitCode;
 
 /// Steps of 8 bits that a value may be off before it counts.
 const STEP_LIMIT: f32 = 3.5 / 255.0;
@@ -159,8 +158,8 @@ fn all() -> Vec<Golden> {
     all
 }
 
-fn main() -> ExitCode {
-    let mut trials = Trials::new();
+/// Adds the trials of this file.
+pub fn add(trials: &mut Trials) {
     for golden in all() {
         let again = golden.clone();
         trials.add("goldens::cpu", &golden.name, move || the_cpu_gives_the_golden_image(&again));
@@ -169,7 +168,6 @@ fn main() -> ExitCode {
     trials.add_plain("goldens::every_one_belongs_to_a_node_and_all_are_small", || {
         every_golden_image_belongs_to_a_node_and_all_are_small();
     });
-    trials.run()
 }
 
 fn the_cpu_gives_the_golden_image(golden: &Golden) -> Vec<String> {

@@ -13,7 +13,6 @@ use isophote_tests::compare::distance;
 use isophote_tests::pictures::{self, from_fn};
 use isophote_tests::run;
 use isophote_tests::trials::Trials;
-use std::process::ExitCode;
 
 /// Largest mean difference; colours are 0..=1.
 const MEAN: f64 = 2e-5;
@@ -79,15 +78,14 @@ fn apply(graph: &Graph, picture: &Image) -> Image {
     run::graph(graph, Request::new(picture.width(), picture.height()), picture)
 }
 
-fn main() -> ExitCode {
-    let mut trials = Trials::new();
+/// Adds the trials of this file.
+pub fn add(trials: &mut Trials) {
     for spec in isophote::registry::nodes() {
         // Tensors and motion turn with the picture.
         if !matches!(spec.output.kind, ImageKind::Tensor | ImageKind::Motion) {
             trials.add("independence", spec.id, || turned_pictures_give_turned_results(spec));
         }
     }
-    trials.run()
 }
 
 /// The graph of a node with everything that belongs to the place turned off.

@@ -1,6 +1,5 @@
 //! The laws of the house: names, orphans, promises, documents.
 
-#[path = "laws/texts.rs"]
 mod texts;
 
 use isophote::kernels::KERNELS;

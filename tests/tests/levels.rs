@@ -1,6 +1,6 @@
 //! Every kernel's CPU twin with every instruction set that this build knows and this machine has: within the
 //! tolerance that the kernel declares, and the same bits wherever multiplication and addition are fused.
-//! Builds without debug assertions know one set more (`cargo test --release --workspace --test levels`).
+//! Builds without debug assertions know one set more (`cargo test --release --workspace --test trials -- --file levels`).
 
 use isophote::kernels::KERNELS;
 use isophote_engine::dispatch::levels;
@@ -8,14 +8,12 @@ use isophote_engine::{Image, Kernel};
 use isophote_tests::compare::Difference;
 use isophote_tests::sweep::{self, Step};
 use isophote_tests::trials::Trials;
-use std::process::ExitCode;
 
-fn main() -> ExitCode {
-    let mut trials = Trials::new();
+/// Adds the trials of this file.
+pub fn add(trials: &mut Trials) {
     for kernel in KERNELS {
         trials.add("levels", kernel.name, || departures_of(kernel));
     }
-    trials.run()
 }
 
 /// Departures of the results of a kernel with the other instruction sets from those with the widest, which are

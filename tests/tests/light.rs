@@ -15,12 +15,11 @@ use isophote_tests::pictures::{self, Kind};
 use isophote_tests::run;
 use isophote_tests::sweep;
 use isophote_tests::trials::Trials;
-use std::process::ExitCode;
 
 const SIDE: u32 = 64;
 
-fn main() -> ExitCode {
-    let mut trials = Trials::new();
+/// Adds the trials of this file.
+pub fn add(trials: &mut Trials) {
     for spec in isophote::registry::nodes() {
         if spec.has_mix() && spec.inputs.iter().any(|p| p.kind == ImageKind::Color) {
             trials.add("light_survives", spec.id, || light_survives(spec));
@@ -31,7 +30,6 @@ fn main() -> ExitCode {
     }
     trials.add("gaussian", "conserves", gaussian_conserves_light);
     trials.add("gaussian", "gpu", both_executors_agree);
-    trials.run()
 }
 
 /// A picture by the colour and alpha at every pixel.

@@ -30,7 +30,10 @@ fn in_a_process(name: &str, test: impl FnOnce()) {
         return test();
     }
     let mut command = Command::new(std::env::current_exe().unwrap());
-    command.args(["--exact", name, "--nocapture"]).env(TEST, name).env("ISOPHOTE_LIBRARY", library::path());
+    command
+        .args(["--exact", &format!("memory::{name}"), "--nocapture"])
+        .env(TEST, name)
+        .env("ISOPHOTE_LIBRARY", library::path());
     // Otherwise the GNU C library keeps addresses for each thread, and gives them when the system does not.
     command.env("MALLOC_ARENA_MAX", "1");
     let run = command.output().unwrap();

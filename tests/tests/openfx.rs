@@ -4,49 +4,29 @@
 
 #![allow(unsafe_code, reason = "calls through the C table, and reading foreign layouts")]
 
-#[path = "openfx/aspect.rs"]
 mod aspect;
-#[path = "openfx/card.rs"]
 mod card;
-#[path = "openfx/clips.rs"]
 mod clips;
-#[path = "openfx/colours.rs"]
 mod colours;
-#[path = "openfx/controls.rs"]
 mod controls;
-#[path = "openfx/describe.rs"]
 mod describe;
-#[path = "openfx/draft.rs"]
 mod draft;
-#[path = "openfx/film.rs"]
 mod film;
-#[path = "openfx/look_files.rs"]
 mod look_files;
-#[path = "openfx/looks.rs"]
 mod looks;
-#[path = "openfx/memory.rs"]
 mod memory;
-#[path = "openfx/preferences.rs"]
 mod preferences;
-#[path = "openfx/quirks.rs"]
 mod quirks;
-#[path = "openfx/reference.rs"]
 mod reference;
-#[path = "openfx/regions.rs"]
 mod regions;
-#[path = "openfx/render.rs"]
 mod render;
-#[path = "openfx/scale.rs"]
 mod scale;
-#[path = "openfx/time.rs"]
 mod time;
-#[path = "openfx/vectors.rs"]
 mod vectors;
 
 use isophote_tests::ofx::plugin::{Binary, Lent};
 use isophote_tests::trials::Trials;
 use reference::{Expected, expected};
-use std::process::ExitCode;
 
 /// Tests by their names.
 macro_rules! named {
@@ -159,8 +139,8 @@ const OF_EVERY_EFFECT: &[OfAnEffect] = named! {
     time::any_order_and_any_tile_gives_the_same_bits,
 };
 
-fn main() -> ExitCode {
-    let mut trials = Trials::new();
+/// Adds the trials of this file.
+pub fn add(trials: &mut Trials) {
     for (name, test) in OF_THE_BINARY {
         trials.add_plain(name, || test(&Lent::new()));
     }
@@ -174,5 +154,4 @@ fn main() -> ExitCode {
         // A minute and more for each effect.
         trials.ignore_last();
     }
-    trials.run()
 }

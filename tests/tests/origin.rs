@@ -8,7 +8,6 @@ use isophote_tests::cases;
 use isophote_tests::pictures::from_fn;
 use isophote_tests::run;
 use isophote_tests::trials::Trials;
-use std::process::ExitCode;
 
 /// The whole picture, a box within it, and how far from the box's border marks may still read beyond it.
 const WHOLE: [u32; 2] = [208, 176];
@@ -21,8 +20,8 @@ const MARKS: [&str; 7] =
 /// The node whose result belongs to the picture that it has, to the middle of it for one.
 const OF_ITS_PICTURE: &str = "importance";
 
-fn main() -> ExitCode {
-    let mut trials = Trials::new();
+/// Adds the trials of this file.
+pub fn add(trials: &mut Trials) {
     for spec in isophote::registry::nodes() {
         if spec.id != OF_ITS_PICTURE {
             trials.add("origin", spec.id, || a_box_shows_the_marks_of_the_whole(spec));
@@ -31,7 +30,6 @@ fn main() -> ExitCode {
             trials.add("hold", spec.id, || noise_lasts_as_long_as_it_is_held(spec));
         }
     }
-    trials.run()
 }
 
 /// A grey that ends nowhere, on which nothing but marks can differ.

@@ -8,7 +8,6 @@ use isophote_engine::Image;
 use isophote_tests::run;
 use isophote_tests::scenery::forms;
 use isophote_tests::trials::Trials;
-use std::process::ExitCode;
 
 /// Positions along a slider.
 const STEPS: usize = 5;
@@ -35,8 +34,8 @@ const PATTERNS: [(&str, &str); 11] = [
 /// The slider of what texture and blur do not have, of which the forms have none.
 const FOUND: &str = "importance";
 
-fn main() -> ExitCode {
-    let mut trials = Trials::new();
+/// Adds the trials of this file.
+pub fn add(trials: &mut Trials) {
     for spec in isophote::registry::nodes().iter().filter(|spec| spec.group == "styles") {
         for preset in presets(spec) {
             for param in spec.params().filter(|p| p.group == "look" && is_number(p) && p.id != FOUND) {
@@ -45,7 +44,6 @@ fn main() -> ExitCode {
             }
         }
     }
-    trials.run()
 }
 
 /// The options of `style`, where there is such a choice.

@@ -13,7 +13,6 @@ use isophote_tests::compare::{distance, psnr};
 use isophote_tests::pictures::{self, Kind};
 use isophote_tests::trials::Trials;
 use isophote_tests::{run, sweep};
-use std::process::ExitCode;
 use std::sync::OnceLock;
 
 const SIZE: [u32; 2] = [61, 37];
@@ -37,8 +36,8 @@ const TILES: [[i32; 4]; 12] = [
 /// Multiply-adds of one plan that this test spends at most.
 const COST_LIMIT: f64 = 4e8;
 
-fn main() -> ExitCode {
-    let mut trials = Trials::new();
+/// Adds the trials of this file.
+pub fn add(trials: &mut Trials) {
     for spec in isophote::registry::nodes() {
         trials.add("tiles", spec.id, || a_tile_is_the_same_part_of_the_full_frame(spec));
         trials.add("rows", spec.id, || rows_give_what_the_full_frame_gives(spec));
@@ -47,7 +46,6 @@ fn main() -> ExitCode {
         trials.add("proxies", spec.id, || a_proxy_looks_like_the_full_frame(spec));
     }
     trials.add_plain("tiles::most_nodes_are_local", most_nodes_are_local);
-    trials.run()
 }
 
 /// Or nothing would have been compared above.

@@ -3,11 +3,8 @@
 //!
 //! And that comparison is worth something: a shader with one number changed is noticed.
 
-#[path = "twins/fast.rs"]
 mod fast;
-#[path = "twins/spoiled.rs"]
 mod spoiled;
-#[path = "twins/tally.rs"]
 mod tally;
 
 use isophote::kernels::KERNELS;
@@ -15,12 +12,11 @@ use isophote_engine::Kernel;
 use isophote_tests::device;
 use isophote_tests::sweep::{self, Step};
 use isophote_tests::trials::{Report, Trials};
-use std::process::ExitCode;
 use std::sync::{Arc, OnceLock};
 use tally::Tally;
 
-fn main() -> ExitCode {
-    let mut trials = Trials::new();
+/// Adds the trials of this file.
+pub fn add(trials: &mut Trials) {
     // Both tests look at the same steps, which are computed by whoever comes first.
     let kernels: Vec<_> = KERNELS.iter().map(|kernel| (*kernel, Arc::new(OnceLock::new()))).collect();
     for (kernel, steps) in kernels.clone() {
@@ -37,7 +33,6 @@ fn main() -> ExitCode {
             spoiled::notice(kernel, steps.get_or_init(|| sweep::steps(kernel)))
         });
     }
-    trials.run()
 }
 
 fn agreement(kernel: &'static Kernel, steps: &[Step]) -> Option<Report> {

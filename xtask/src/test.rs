@@ -78,13 +78,15 @@ pub fn run(options: &Options) -> Result<()> {
     }
     heading("build");
     cargo(&["build", "--workspace", "--quiet"])?;
-    let programs = programs::build(cargo_command(&["test", "--workspace"]))?;
+    let programs = programs::build(cargo_command(&["test", "--workspace"]))?.into_iter();
+    let programs = programs.map(|program| program.files(|program| program.command(&[])));
+    let programs: Vec<Program> = programs.collect::<Result<Vec<_>>>()?.concat();
     if options.list {
         return list(&programs, options.filter.as_deref());
     }
     heading("tests");
     let failed = match &options.filter {
-        Some(filter) => run_named(&programs, filter)?,
+        Some(filter) => run_named(programs, filter)?,
         None => run_all(programs),
     };
     heading("end");
@@ -152,7 +154,7 @@ impl OutsideTest {
     /// The test as a program: the chores as the workspace is built with them, for that build may have replaced this one.
     fn program(&self) -> Program {
         let path = target_dir("debug").join(format!("xtask{}", std::env::consts::EXE_SUFFIX));
-        let arguments = vec!["test", "--job", self.name];
+        let arguments = ["test", "--job", self.name].map(str::to_owned).to_vec();
         Program { name: self.name.into(), path, folder: root(), arguments }
     }
 }
@@ -194,21 +196,14 @@ impl Suite {
 }
 
 /// Runs the tests that the filter means, one program after the other. Returns the programs that fail.
-fn run_named(programs: &[Program], filter: &str) -> Result<Vec<String>> {
+fn run_named(programs: Vec<Program>, filter: &str) -> Result<Vec<String>> {
     let (mut failed, mut found) = (Vec::new(), 0);
     for program in programs {
-        let tests = program.tests(filter, program.command(&[]))?;
-        if tests.is_empty() {
-            continue;
-        }
-        found += tests.len();
-        let mut command = prepared(program.command(&[]));
-        if !program.name.contains(filter) {
-            command.arg(filter);
-        }
+        let Some(program) = program.narrowed(filter, |program| program.command(&[]))? else { continue };
+        found += 1;
         println!("\n-- {}", program.name);
-        if crate::tools::run(&mut command).is_err() {
-            failed.push(program.name.clone());
+        if crate::tools::run(&mut prepared(program.command(&[]))).is_err() {
+            failed.push(program.name);
         }
     }
     for suite in &SUITES {
@@ -322,6 +317,9 @@ fn lock<T>(mutex: &Mutex<T>) -> std::sync::MutexGuard<'_, T> {
 /// # Errors
 /// When they cannot be made.
 pub fn bless() -> Result<()> {
-    let mut command = cargo_command(&["test", "--workspace", "--test", "goldens", "--test", "bits"]);
-    crate::tools::run(command.env("ISOPHOTE_BLESS", "1"))
+    for file in ["goldens", "bits"] {
+        let mut command = cargo_command(&["test", "--workspace", "--test", "trials", "--", "--file", file]);
+        crate::tools::run(command.env("ISOPHOTE_BLESS", "1"))?;
+    }
+    Ok(())
 }

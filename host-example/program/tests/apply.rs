@@ -1,7 +1,5 @@
 //! `apply` on good pictures: every node on both backends, every kind of file, what is kept beside the pixels.
 
-mod support;
-
 use std::fs;
 use std::path::Path;
 use std::process::Command;
@@ -10,7 +8,7 @@ use exr::prelude::{FlatSamples, ReadChannels, ReadLayers, WritableImage};
 use image::{GenericImageView, Rgba, RgbaImage};
 use serde_json::Value;
 
-use support::{IN_PIXELS, fails, folder, isophote, listing, picture, root, succeeds};
+use crate::support::{self, IN_PIXELS, fails, folder, isophote, listing, picture, root, succeeds};
 
 fn apply(folder: &Path, style: &str, input: &str, output: &str, more: &[&str]) -> String {
     let mut command = isophote();

@@ -1,12 +1,10 @@
 //! Real scenes, where there are any: each renders and can be stylized.
 
-mod support;
-
 use std::path::{Path, PathBuf};
 
 use image::RgbImage;
 
-use support::{IN_PIXELS, assets, folder, isophote, succeeds};
+use crate::support::{IN_PIXELS, assets, folder, isophote, succeeds};
 
 /// Renders plain and as cartoon at 320x180; returns what was warned of and the plain picture.
 fn looks_right(folder: &Path, scene: &Path, more: &[&str]) -> (String, RgbImage) {

@@ -1,13 +1,11 @@
 //! Bad input of every kind: one line that says what, where and how to fix it, the right exit code, and no file
 //! left behind.
 
-mod support;
-
 use std::fs;
 use std::path::Path;
 use std::process::Command;
 
-use support::{fails, folder, isophote, listing, picture};
+use crate::support::{self, fails, folder, isophote, listing, picture};
 
 /// Runs `apply STYLE INPUT out.png` in `folder`, which must fail because of its input and leave no file.
 fn apply_fails(folder: &Path, style: &str, input: &str, more: &[&str], words: &[&str]) {

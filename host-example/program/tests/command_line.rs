@@ -1,16 +1,14 @@
 //! The command line as people type it who have not read the manual: files without a verb, styles without `apply`, results
 //! without a name, options of other programs.
 
-mod support;
-
 use std::fs;
 use std::path::Path;
 use std::process::Command;
 
-use isophote_finishing::stylize::suggest;
-use support::{
-    IN_PIXELS, fails, folder, isophote, listing, picture, succeeds, turning_triangle, video_folder,
+use crate::support::{
+    self, IN_PIXELS, fails, folder, isophote, listing, picture, succeeds, turning_triangle, video_folder,
 };
+use isophote_finishing::stylize::suggest;
 
 /// The program in a folder.
 fn run(folder: &Path, words: &[&str]) -> Command {

@@ -1,11 +1,9 @@
 //! Frames that `render` writes with their guides in one file, which `apply` reads.
 
-mod support;
-
 use std::path::Path;
 
+use crate::support::{self, IN_PIXELS, folder, isophote, listing, succeeds};
 use exr::prelude::read_first_flat_layer_from_file;
-use support::{IN_PIXELS, folder, isophote, listing, succeeds};
 
 /// Everything of a rendered frame, in the order of EXR files.
 const CHANNELS: [&str; 28] = [

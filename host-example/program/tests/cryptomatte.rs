@@ -1,17 +1,13 @@
 //! Cryptomattes: what `--mask cryptomatte:NAMES` covers, where names are listed, and the numbers of objects.
 
-#[path = "support/mattes.rs"]
-mod mattes;
-mod support;
-
 use std::fs;
 
 use exr::prelude::*;
 use isophote_pictures::exr::{Guide, Selection};
 use isophote_pictures::read;
 
-use mattes::*;
-use support::{fails, folder, isophote};
+use crate::support::mattes::*;
+use crate::support::{fails, folder, isophote};
 
 #[test]
 fn cryptomattes_cover_what_they_name() {

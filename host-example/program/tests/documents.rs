@@ -1,7 +1,5 @@
 //! Documents of the window: what they hold is what `apply` hands to the library, and nothing that is opened ends the window.
 
-mod support;
-
 use std::fs;
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
@@ -32,7 +30,7 @@ use isophote_window::state::document::frame::Frame;
 use isophote_window::state::document::kind::Kind;
 use isophote_window::state::look::EditedLook;
 
-use support::{assets, folder, has_ffmpeg, isophote, picture, succeeds};
+use crate::support::{self, assets, folder, has_ffmpeg, isophote, picture, succeeds};
 
 /// This only ends a test that hangs.
 const PATIENCE: Duration = Duration::from_secs(60);

@@ -1,7 +1,5 @@
 //! Drawings that leave as drawings: lines alone, in pictures and layers, and curves in SVG files, as librsvg draws them.
 
-mod support;
-
 use std::collections::BTreeSet;
 use std::fs;
 use std::path::Path;
@@ -10,7 +8,7 @@ use std::process::Command;
 use exr::prelude::read_first_flat_layer_from_file;
 use image::RgbaImage;
 
-use support::{IN_PIXELS, fails, folder, isophote, root, succeeds};
+use crate::support::{IN_PIXELS, fails, folder, isophote, root, succeeds};
 
 /// A view of the demo scene.
 fn scene() -> std::path::PathBuf {

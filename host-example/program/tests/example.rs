@@ -1,11 +1,9 @@
 //! The example beside the program: its frames are those of `isophote render`, and its window shows them.
 
-mod support;
-
 use std::path::Path;
 use std::process::Command;
 
-use support::{cube, fails, folder, isophote, library, listing, succeeds};
+use crate::support::{self, cube, fails, folder, isophote, library, listing, succeeds};
 
 /// The example, which is built beside the program and finds the library.
 fn example() -> Command {
@@ -91,7 +89,7 @@ fn bad_input_says_what_is_wrong() {
 #[cfg(target_os = "linux")]
 #[test]
 fn the_window_shows_the_scene_and_goes_around_it() {
-    use support::window::{Display, Window};
+    use crate::support::window::{Display, Window};
 
     let Some(display) = Display::open("320x240") else { return };
     let folder = folder();

@@ -1,7 +1,5 @@
 //! Files that the window writes: by another process, the same as on the command line, and nothing that is not whole.
 
-mod support;
-
 use std::fs;
 use std::path::{Path, PathBuf};
 use std::time::{Duration, Instant};
@@ -16,8 +14,8 @@ use isophote_window::state::formats::{PICTURES, Scaling, VIDEOS};
 use isophote_window::state::plan::Plan;
 use isophote_window::state::progress::{Progress, State};
 
-use support::video::probe;
-use support::{cube, fails, folder, isophote, listing, picture, succeeds};
+use crate::support::video::probe;
+use crate::support::{self, cube, fails, folder, isophote, listing, picture, succeeds};
 
 /// This only ends a test that hangs.
 const PATIENCE: Duration = Duration::from_secs(120);

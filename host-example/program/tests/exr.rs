@@ -1,8 +1,6 @@
 //! `apply` on EXR files: everything but the picture comes out as it went in. Files are compared by the `exr`
 //! crate's own reader, which the program does not use for this.
 
-mod support;
-
 use std::fs;
 use std::path::{Path, PathBuf};
 use std::time::{Duration, Instant};
@@ -12,7 +10,7 @@ use isophote_loader::{Control, Input, Library, abi};
 use isophote_pictures::pixels::{Pixels, Precision, Samples};
 use isophote_tests::two_parts;
 
-use support::{IN_PIXELS, assets, fails, folder, isophote, listing, succeeds};
+use crate::support::{self, IN_PIXELS, assets, fails, folder, isophote, listing, succeeds};
 
 type Planes = Vec<(String, FlatSamples)>;
 

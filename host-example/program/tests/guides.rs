@@ -1,7 +1,5 @@
 //! Guides: the program knows all that the library has, painted flow maps bend what styles draw, and control maps direct it.
 
-mod support;
-
 use std::fs;
 use std::path::Path;
 use std::process::Command;
@@ -13,7 +11,7 @@ use isophote_loader::{Control, Input, Library};
 use isophote_pictures::exr::Guide;
 use isophote_pictures::pixels::{Pixels, Precision, Samples};
 
-use support::{fails, folder, isophote, picture, succeeds};
+use crate::support::{self, fails, folder, isophote, picture, succeeds};
 
 const SIZE: (u32, u32) = (96, 64);
 

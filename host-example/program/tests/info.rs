@@ -1,7 +1,5 @@
 //! Facts in files: `info` tells it, and `apply` goes by it: windows, the shape of pixels, the kind of alpha.
 
-mod support;
-
 use std::fs;
 use std::path::Path;
 use std::process::Command;
@@ -15,7 +13,7 @@ use serde_json::{Value, json};
 use tiff::encoder::{TiffEncoder, colortype};
 use tiff::tags::Tag;
 
-use support::{IN_PIXELS, fails, folder, has_ffmpeg, isophote, picture, root, succeeds};
+use crate::support::{IN_PIXELS, fails, folder, has_ffmpeg, isophote, picture, root, succeeds};
 
 fn source(path: &Path) -> Source {
     read::read(path, &Selection::default()).expect("a picture")

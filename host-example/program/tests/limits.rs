@@ -2,14 +2,12 @@
 
 #![cfg(target_os = "linux")]
 
-mod support;
-
 use std::ffi::OsString;
 use std::fs;
 use std::path::Path;
 use std::process::{Command, Output};
 
-use support::{cube, errors, fails, folder, isophote, library, picture, succeeds};
+use crate::support::{self, cube, errors, fails, folder, isophote, library, picture, succeeds};
 
 /// Path of the program.
 const PROGRAM: &str = env!("CARGO_BIN_EXE_isophote");

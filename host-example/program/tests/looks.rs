@@ -1,8 +1,6 @@
 //! The looks that ship with the program: that there are enough, that each can be used wherever a style can, and that
 //! none is like another.
 
-mod support;
-
 use std::fs;
 
 use isophote_finishing::stylize::preset::{self, Lengths, Preset, Track};
@@ -11,7 +9,7 @@ use isophote_loader::catalogue::{Param, ParamKind};
 use isophote_loader::{Control, Input, Library};
 use isophote_pictures::pixels::{Pixels, Precision, Samples};
 
-use support::{cube, fails, folder, isophote, picture, succeeds};
+use crate::support::{self, cube, fails, folder, isophote, picture, succeeds};
 
 const SIZE: (u32, u32) = (120, 80);
 /// Mean difference of two pictures, in levels of 255, from which on viewers tell them apart side by side.

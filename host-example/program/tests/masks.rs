@@ -1,17 +1,13 @@
 //! `apply --mask` and `--layered`: where results are used, by files, layers and Cryptomattes.
 
-#[path = "support/mattes.rs"]
-mod mattes;
-mod support;
-
 use std::fs;
 use std::path::{Path, PathBuf};
 
 use exr::prelude::*;
 use image::{GrayImage, Luma, Rgb, RgbImage, Rgba, RgbaImage};
 
-use mattes::*;
-use support::{IN_PIXELS, fails, folder, isophote, listing, picture, succeeds};
+use crate::support::mattes::*;
+use crate::support::{IN_PIXELS, fails, folder, isophote, listing, picture, succeeds};
 
 fn apply(folder: &Path, input: &str, output: &str, more: &[&str]) -> String {
     let mut command = isophote();

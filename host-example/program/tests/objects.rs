@@ -1,9 +1,5 @@
 //! Rules of presets for things in pictures, found by Cryptomattes and by object ids.
 
-#[path = "support/mattes.rs"]
-mod mattes;
-mod support;
-
 use std::fs;
 use std::path::Path;
 use std::process::Command;
@@ -16,8 +12,8 @@ use isophote_window::state::outcome::{Opened, Outcome};
 use isophote_window::state::session::Session;
 use isophote_window::state::settings::Settings;
 
-use mattes::*;
-use support::{IN_PIXELS, fails, folder, isophote, succeeds};
+use crate::support::mattes::*;
+use crate::support::{self, IN_PIXELS, fails, folder, isophote, succeeds};
 
 /// A picture with a Cryptomatte, and with numbers of objects: 3 on its right half.
 fn save_numbered(path: &Path) {

@@ -1,7 +1,5 @@
 //! Colours of files as those of styles: `--palette`, the verb `colours`, and the button of the window.
 
-mod support;
-
 use std::collections::BTreeSet;
 use std::fs;
 use std::path::Path;
@@ -19,7 +17,7 @@ use isophote_window::state::settings::Settings;
 use isophote_window::state::work::Request;
 use isophote_window::widgets;
 
-use support::{cube, fails, folder, isophote, succeeds, video_folder};
+use crate::support::{self, cube, fails, folder, isophote, succeeds, video_folder};
 
 const THREE: [[u8; 3]; 3] = [[16, 32, 48], [176, 64, 40], [240, 232, 216]];
 const GPL: &str = "GIMP Palette\nName: Three\n#\n16 32 48\n176 64 40\n240 232 216\tPaper\n";

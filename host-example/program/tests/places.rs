@@ -3,8 +3,6 @@
 
 #![cfg(unix)]
 
-mod support;
-
 use std::ffi::{OsStr, OsString};
 use std::fs::{self, File};
 use std::os::unix::ffi::{OsStrExt, OsStringExt};
@@ -13,7 +11,7 @@ use std::path::Path;
 use std::process::{Command, Stdio};
 use std::time::{Duration, Instant, SystemTime};
 
-use support::{IN_PIXELS, cube, errors, fails, folder, isophote, listing, picture, succeeds};
+use crate::support::{IN_PIXELS, cube, errors, fails, folder, isophote, listing, picture, succeeds};
 
 fn apply(folder: &Path, more: &[&str]) -> Command {
     let mut command = isophote();

@@ -1,7 +1,5 @@
 //! Presets: saving, showing and checking them, and styles that change from frame to frame.
 
-mod support;
-
 use std::fs;
 use std::path::Path;
 
@@ -9,7 +7,7 @@ use isophote_finishing::stylize::style::Style;
 use isophote_loader::Library;
 use serde_json::Value;
 
-use support::{cube, fails, folder, isophote, listing, picture, succeeds};
+use crate::support::{self, cube, fails, folder, isophote, listing, picture, succeeds};
 
 fn preset(folder: &Path, arguments: &[&str]) -> String {
     succeeds(isophote().current_dir(folder).arg("preset").args(arguments)).0

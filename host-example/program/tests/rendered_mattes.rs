@@ -1,15 +1,11 @@
 //! Cryptomattes that `render` writes, as `apply` and its masks read them.
 
-#[path = "support/mattes.rs"]
-mod mattes;
-mod support;
-
 use std::fs;
 use std::path::Path;
 
+use crate::support::mattes::mask_of;
+use crate::support::{fails, folder, isophote, succeeds};
 use exr::prelude::read_first_flat_layer_from_file;
-use mattes::mask_of;
-use support::{fails, folder, isophote, succeeds};
 
 /// Pixels across and down.
 const WIDE: usize = 96;

@@ -1,13 +1,11 @@
 //! Files that are replaced: none that is there unless that was asked for, and never one that is read.
 
-mod support;
-
 use std::fs;
 use std::io::{BufRead, BufReader};
 use std::path::Path;
 use std::process::{Command, Stdio};
 
-use support::{IN_PIXELS, cube, errors, fails, folder, isophote, listing, picture, succeeds};
+use crate::support::{self, IN_PIXELS, cube, errors, fails, folder, isophote, listing, picture, succeeds};
 
 fn run(folder: &Path, arguments: &[&str]) -> Command {
     let mut command = isophote();

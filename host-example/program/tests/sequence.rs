@@ -1,8 +1,6 @@
 //! `apply` on sequences: which frames, what is skipped, what is left when it is stopped, and presets with
 //! keyframes; and from videos to sequences and back.
 
-mod support;
-
 use std::fs;
 use std::path::Path;
 use std::process::{Command, Stdio};
@@ -10,8 +8,8 @@ use std::time::{Duration, Instant};
 
 use serde_json::Value;
 
-use support::video::{case, clip, difference, ffmpeg, probe};
-use support::{IN_PIXELS, fails, folder, isophote, listing, succeeds, video_folder};
+use crate::support::video::{case, clip, difference, ffmpeg, probe};
+use crate::support::{self, IN_PIXELS, fails, folder, isophote, listing, succeeds, video_folder};
 
 /// Writes frames that differ; returns their names.
 fn frames(folder: &Path, numbers: impl Iterator<Item = u32>, size: usize) -> Vec<String> {

@@ -1,12 +1,10 @@
 //! `apply --to`: several pictures and folders, each to a file of its own name in one folder.
 
-mod support;
-
 use std::fs;
 use std::path::Path;
 use std::process::Command;
 
-use support::{errors, fails, folder, isophote, listing, picture, succeeds};
+use crate::support::{errors, fails, folder, isophote, listing, picture, succeeds};
 
 fn apply(folder: &Path, arguments: &[&str]) -> Command {
     let mut command = isophote();

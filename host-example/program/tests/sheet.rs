@@ -1,11 +1,9 @@
 //! `sheet`: pictures side by side, whatever kind of file they are.
 
-mod support;
-
 use std::path::Path;
 
+use crate::support::{fails, folder, isophote, listing, root, succeeds};
 use image::{Rgb, RgbImage};
-use support::{fails, folder, isophote, listing, root, succeeds};
 
 const GROUND: Rgb<u8> = Rgb([46, 46, 48]);
 

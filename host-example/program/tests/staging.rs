@@ -1,13 +1,11 @@
 //! Views and light of scenes: `render` with its options for camera, light, background and ground.
 
-mod support;
-
 use std::fs;
 use std::path::{Path, PathBuf};
 
+use crate::support::{self, fails, folder, isophote, succeeds};
 use exr::prelude::read_first_flat_layer_from_file;
 use image::{Rgb, Rgba, RgbaImage};
-use support::{fails, folder, isophote, succeeds};
 
 /// Renders a scene, 96 by 64 pixels large, to a file of the same folder.
 fn render(scene: &Path, out: &str, more: &[&str]) -> PathBuf {

@@ -1,7 +1,5 @@
 //! Frames that are rendered and stylized on one device: what they look like, and what they cost when warm.
 
-mod support;
-
 use std::path::Path;
 use std::sync::Arc;
 
@@ -23,7 +21,7 @@ use isophote_scene::Scene;
 use isophote_scene::camera::{Framing, Orbit};
 use isophote_scene::pose::Pose;
 
-use support::{folder, isophote, listing, succeeds};
+use crate::support::{self, folder, isophote, listing, succeeds};
 
 const SIZE: (u32, u32) = (96, 64);
 

@@ -1,12 +1,10 @@
 //! Frames that know their neighbours, through the program: `render` and `apply` with `--steadiness`.
 
-mod support;
-
 use std::fs;
 use std::path::Path;
 use std::process::Command;
 
-use support::{IN_PIXELS, cube, fails, folder, isophote, listing, succeeds};
+use crate::support::{self, IN_PIXELS, cube, fails, folder, isophote, listing, succeeds};
 
 /// Renders frames of a turning cube with everything that is known of them.
 fn shot(folder: &Path, out: &str, size: &str) {

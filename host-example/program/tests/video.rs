@@ -1,13 +1,11 @@
 //! `apply` on videos, through the ffmpeg program of the system.
 
-mod support;
-
 use std::fs;
 use std::path::Path;
 use std::process::{Command, Stdio};
 
-use support::video::{case, clip, difference, ffmpeg, probe};
-use support::{IN_PIXELS, fails, isophote, listing, root, succeeds, video_folder};
+use crate::support::video::{case, clip, difference, ffmpeg, probe};
+use crate::support::{self, IN_PIXELS, fails, isophote, listing, root, succeeds, video_folder};
 
 fn apply(folder: &Path, args: &[&str]) -> Command {
     let mut command = isophote();

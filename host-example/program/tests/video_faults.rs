@@ -1,15 +1,13 @@
 //! Videos that are hostile, damaged or cut short, and places that do not hold the result: nothing runs or is read that was
 //! not asked for, and no video is called written that is not whole.
 
-mod support;
-
 use std::fs::{self, File};
 use std::path::Path;
 use std::process::{Command, Stdio};
 
 use isophote_window::jobs::document::{Document, Options};
 
-use support::{IN_PIXELS, cube, errors, fails, isophote, listing, succeeds, video_folder};
+use crate::support::{self, IN_PIXELS, cube, errors, fails, isophote, listing, succeeds, video_folder};
 
 const FRAMES: u64 = 50;
 

@@ -2,12 +2,11 @@
 //! a clean end.
 #![cfg(target_os = "linux")]
 
-mod support;
-
 use std::process::Command;
 use std::time::Duration;
 
-use support::window::{Display, Part, Window, screen, view};
+use crate::support;
+use crate::support::window::{Display, Part, Window, screen, view};
 
 const STYLES: [&str; 3] = ["none", "cartoon", "blueprint"];
 /// Name of each, as titles have it, in small letters.

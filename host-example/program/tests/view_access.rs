@@ -2,14 +2,12 @@
 //! keys do in it.
 #![cfg(target_os = "linux")]
 
-mod support;
-
 use std::fs;
 use std::path::Path;
 
-use support::access::{Bus, Control};
-use support::window::{Display, Part, Window, view};
-use support::{folder, picture};
+use crate::support::access::{Bus, Control};
+use crate::support::window::{Display, Part, Window, view};
+use crate::support::{folder, picture};
 
 const SIZE: (u32, u32) = (1000, 640);
 /// A part of the picture.

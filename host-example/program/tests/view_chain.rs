@@ -1,7 +1,5 @@
 //! Looks that are lists of nodes: as graphs, as files, and in the window's panel.
 
-mod support;
-
 use std::path::PathBuf;
 use std::sync::Arc;
 
@@ -19,6 +17,8 @@ use isophote_window::state::scenery::{Scenery, Staging};
 use isophote_window::state::session::Session;
 use isophote_window::state::settings::Settings;
 use isophote_window::widgets;
+
+use crate::support;
 
 fn library() -> Library {
     Library::from_file(support::library()).unwrap()

@@ -1,8 +1,6 @@
 //! Single controls of `isophote view`, without a window but by real input: what differs from the look is marked and taken back,
 //! numbers and colours are typed, sliders turned by the wheel, the panel made wider, pixels told.
 
-mod support;
-
 use std::path::{Path, PathBuf};
 
 use egui::accesskit::Role;
@@ -19,6 +17,8 @@ use isophote_window::state::session::Session;
 use isophote_window::state::settings::Settings;
 use isophote_window::state::viewport::Overlay;
 use isophote_window::widgets;
+
+use crate::support;
 
 /// The controls of one look in a window of a size, whose clock goes on by so many seconds a frame.
 fn controls_of(look: &Path, size: [f32; 2], seconds: f32) -> Harness<'static, Session> {

@@ -1,9 +1,7 @@
 //! The window in this process, on a display without a screen: its device is lost, and counted is what it makes.
 #![cfg(target_os = "linux")]
 
-#[path = "view_device/named.rs"]
 mod named;
-mod support;
 
 use std::cell::RefCell;
 use std::path::{Path, PathBuf};
@@ -28,7 +26,8 @@ use winit::event_loop::{ActiveEventLoop, ControlFlow, EventLoop};
 use winit::platform::x11::EventLoopBuilderExtX11;
 use winit::window::WindowId;
 
-use support::window::{Display, Part, screen};
+use crate::support;
+use crate::support::window::{Display, Part, screen};
 
 /// This only ends a test that hangs.
 const PATIENCE: Duration = Duration::from_secs(600);
@@ -106,7 +105,7 @@ fn alone(name: &str, test: impl FnOnce(&Path)) {
     let Some(display) = Display::open("800x600") else { return };
     let mut command = Command::new(std::env::current_exe().unwrap());
     command
-        .args(["--exact", name, "--nocapture"])
+        .args(["--exact", &format!("view_device::{name}"), "--nocapture"])
         .env("DISPLAY", &display.name)
         .env("XDG_RUNTIME_DIR", display.folder())
         .env(FOLDER, display.folder())

@@ -1,8 +1,6 @@
 //! The window ends when it is asked to, never by Escape or a letter, and asks before what would be lost is lost.
 #![cfg(target_os = "linux")]
 
-mod support;
-
 use std::fs;
 use std::path::Path;
 use std::process::Command;
@@ -24,10 +22,10 @@ use isophote_window::state::settings::Settings;
 use isophote_window::widgets;
 use winit::keyboard::{Key, NamedKey};
 
-use support::others;
-use support::places::places;
-use support::window::{Display, Part, Window, screen, view};
-use support::{folder, listing, picture};
+use crate::support::others;
+use crate::support::places::places;
+use crate::support::window::{Display, Part, Window, screen, view};
+use crate::support::{self, folder, listing, picture};
 
 const SIZE: (u32, u32) = (700, 420);
 /// The canvas of a window of that size, above what is said at its lower border.

@@ -1,8 +1,6 @@
 //! Files that are dropped on the real window, as other programs drop them, and those that dialogs of the system choose.
 #![cfg(target_os = "linux")]
 
-mod support;
-
 use std::fs;
 use std::path::{Path, PathBuf};
 use std::time::Duration;
@@ -15,10 +13,10 @@ use isophote_window::state::look::EditedLook;
 use isophote_window::state::session::Session;
 use isophote_window::state::settings::Settings;
 
-use support::others::drop_files;
-use support::places::places;
-use support::window::{Display, Part, Window, program, view};
-use support::{folder, picture};
+use crate::support::others::drop_files;
+use crate::support::places::places;
+use crate::support::window::{Display, Part, Window, program, view};
+use crate::support::{self, folder, picture};
 
 /// Size of the window.
 const SIZE: &str = "1000x700";

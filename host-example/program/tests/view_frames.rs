@@ -1,7 +1,5 @@
 //! Documents of the window that have frames: sequences and videos, read ahead, in any order, and ended with the document.
 
-mod support;
-
 use std::fs;
 use std::path::Path;
 use std::process::Command;
@@ -12,7 +10,7 @@ use isophote_window::jobs::document::{Document, Options};
 use isophote_window::state::document::frame::Frame;
 use isophote_window::state::document::kind::Kind;
 
-use support::{folder, has_ffmpeg, picture, succeeds};
+use crate::support::{folder, has_ffmpeg, picture, succeeds};
 
 /// This only ends a test that hangs.
 const PATIENCE: Duration = Duration::from_secs(60);

@@ -1,8 +1,6 @@
 //! Life of a window: being hidden, of any size, closed at work, and pictures as large as they come.
 #![cfg(target_os = "linux")]
 
-mod support;
-
 use std::fs;
 use std::path::Path;
 use std::time::Duration;
@@ -14,10 +12,10 @@ use isophote_window::state::look::EditedLook;
 use isophote_window::state::session::Session;
 use isophote_window::state::settings::Settings;
 
-use support::others::{Cover, drop_files};
-use support::places::{places, tabs_to};
-use support::window::{Display, Part, Window, screen, view};
-use support::{folder, listing, picture};
+use crate::support::others::{Cover, drop_files};
+use crate::support::places::{places, tabs_to};
+use crate::support::window::{Display, Part, Window, screen, view};
+use crate::support::{self, folder, listing, picture};
 
 const SIZE: (u32, u32) = (700, 420);
 /// The canvas of a window of that size, above what is said at its lower border.

@@ -1,8 +1,6 @@
 //! The browser of looks and what belongs to it, without a window: what there is, what is shown of it, and what becomes of
 //! files.
 
-mod support;
-
 use std::fs;
 use std::path::{Path, PathBuf};
 
@@ -25,6 +23,8 @@ use isophote_window::state::work::Request;
 use isophote_window::widgets;
 use tempfile::TempDir;
 use winit::keyboard::{Key, NamedKey};
+
+use crate::support;
 
 fn library() -> Library {
     Library::from_file(support::library()).expect("the library")

@@ -1,8 +1,6 @@
 //! The controls of `isophote view`, without a window: every parameter of every style is found by its label, and what is done
 //! to it changes the look.
 
-mod support;
-
 use std::collections::HashMap;
 
 use egui::accesskit::Role;
@@ -22,6 +20,8 @@ use isophote_window::state::session::Session;
 use isophote_window::state::settings::Settings;
 use isophote_window::state::work::Request;
 use isophote_window::widgets;
+
+use crate::support;
 
 /// A session of all styles with a scene.
 fn session() -> Session {

@@ -1,8 +1,6 @@
 //! Previews of looks: that they are what the whole picture would be if it were made small, and that they are made in order,
 //! kept, and given up.
 
-mod support;
-
 use std::sync::Arc;
 use std::sync::atomic::{AtomicU32, Ordering};
 use std::time::{Duration, Instant};
@@ -17,6 +15,8 @@ use isophote_window::state::look::EditedLook;
 use isophote_window::state::preview::order::{FINENESS, Order};
 use isophote_window::state::preview::picture::Picture;
 use isophote_window::state::preview::{Place, Previews};
+
+use crate::support;
 
 /// This only ends a test that hangs.
 const PATIENCE: Duration = Duration::from_secs(120);

@@ -1,8 +1,6 @@
 //! Every screen of `isophote view` at several sizes, without a window: nothing is cut, what does not fit scrolls, and no two
 //! labels lie over each other.
 
-mod support;
-
 use std::collections::HashMap;
 use std::fs;
 use std::path::{Path, PathBuf};
@@ -27,6 +25,8 @@ use isophote_window::state::viewport::{Compare, Overlay};
 use isophote_window::state::work::Request;
 use isophote_window::widgets;
 use winit::keyboard::{Key, NamedKey};
+
+use crate::support;
 
 /// Sizes of windows in pixels, and of their letters.
 const SIZES: [([f32; 2], f32); 5] = [

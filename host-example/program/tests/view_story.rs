@@ -2,8 +2,6 @@
 //! the command line makes with the preset that was saved.
 #![cfg(target_os = "linux")]
 
-mod support;
-
 use std::fs;
 use std::path::Path;
 use std::time::{Duration, Instant};
@@ -15,10 +13,10 @@ use isophote_window::state::look::EditedLook;
 use isophote_window::state::session::Session;
 use isophote_window::state::settings::Settings;
 
-use support::others::drop_files;
-use support::places::places;
-use support::window::{Display, Part, Window, screen, view};
-use support::{folder, isophote, picture, succeeds};
+use crate::support::others::drop_files;
+use crate::support::places::places;
+use crate::support::window::{Display, Part, Window, screen, view};
+use crate::support::{self, folder, isophote, picture, succeeds};
 
 /// Size of the window.
 const SIZE: (u32, u32) = (1000, 640);

@@ -1,11 +1,9 @@
 //! Passes that are fused run in one dispatch, and give what they give by themselves.
 #![cfg(feature = "gpu")]
 
-#[macro_use]
-mod support;
-#[path = "fusion/kernels.rs"]
 mod kernels;
 
+use crate::support;
 use isophote_engine::cpu::{CallingThread, Control, CpuExecutor};
 use isophote_engine::gpu::{Device, Executor, Options};
 use isophote_engine::program::{Format, Precision, Program};

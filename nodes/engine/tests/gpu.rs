@@ -1,11 +1,9 @@
 //! The GPU executor: same results as the CPU's, tiles, warm runs, devices of hosts, errors.
 #![cfg(feature = "gpu")]
-#![allow(missing_docs)]
 
-mod support;
-#[path = "gpu/textures.rs"]
 mod textures;
 
+use crate::support::{self, BOX, BoxParams, box_blur, describe, noise, plan, shift, worst};
 use isophote_engine::cpu::{CallingThread, Control, CpuExecutor};
 use isophote_engine::gpu::{Device, Executor, Options, wgpu};
 use isophote_engine::program::Program;
@@ -13,7 +11,6 @@ use isophote_engine::{Class, Error, Image, Kernel, Plan, PlanBuilder, Rect, Supp
 use std::io::Write;
 use std::sync::Arc;
 use std::sync::atomic::{AtomicUsize, Ordering};
-use support::{BOX, BoxParams, box_blur, describe, noise, plan, shift, worst};
 use textures::{download, texture, upload, view};
 
 /// A device, or `None` where there is none and none was required.

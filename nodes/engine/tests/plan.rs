@@ -1,14 +1,11 @@
 //! Plans and programs: sharing, windows, support, edits, memory reuse, and exact tiles.
-#![allow(missing_docs)]
 
-mod support;
-
+use crate::support::{self, BOX, BoxParams, box_blur, describe, noise, plan, rescale, shift};
 use isophote_engine::cpu::{CallingThread, Control, CpuExecutor, Rows};
 use isophote_engine::program::{Program, Role};
 use isophote_engine::{Class, Error, Image, ImageId, Plan, PlanBuilder, Rect, Result, Support};
 use std::collections::HashMap;
 use std::ops::Range;
-use support::{BOX, BoxParams, box_blur, describe, noise, plan, rescale, shift};
 
 fn run(plan: &Plan, inputs: &[(&str, &Image)], region: Rect) -> Vec<Image> {
     CpuExecutor::new().run(plan, inputs, region, &CallingThread, Control::default()).unwrap()

@@ -1,11 +1,9 @@
 //! Control maps on the CPU executor: what is neutral changes no bit, and each channel does what it is for.
 
-mod result;
-
+use crate::result::{self, Inputs};
 use isophote::ColourSpace;
 use isophote::engine::Image;
 use isophote::registry;
-use result::Inputs;
 
 const SIZE: [i32; 2] = [192, 96];
 const NEUTRAL: [f32; 4] = [0.5; 4];

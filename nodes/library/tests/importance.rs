@@ -1,7 +1,6 @@
 //! Importance on the CPU executor: shapes, texture and blur, the middle, and what styles make of it.
 
-mod result;
-
+use crate::result;
 use isophote::ColourSpace;
 use isophote::engine::Image;
 

@@ -1,10 +1,8 @@
 //! Lines that waver, on the CPU executor: they alone move, as far as asked for, with things or with the screen.
 
-mod result;
-
+use crate::result::{self, Inputs};
 use isophote::engine::{Image, Rect};
 use isophote::{ColourSpace, Graph, Planned, Request};
-use result::Inputs;
 
 const SIZE: [i32; 2] = [192, 144];
 /// Columns at which a dark bar begins and ends.

@@ -1,10 +1,8 @@
 //! Cel shading on the CPU executor: where steps lie, what they multiply, and what stays as it is.
 
-mod result;
-
+use crate::result::{self, Inputs};
 use isophote::ColourSpace;
 use isophote::engine::Image;
-use result::Inputs;
 
 const SIZE: [i32; 2] = [128, 96];
 

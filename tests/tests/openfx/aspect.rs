@@ -1,8 +1,8 @@
 //! Pixels that are not square, by their aspect or by a proxy that shrinks one side: what is shown is what
 //! square pixels show.
 
-use crate::reference::*;
-use crate::scale::{SIDE, photo};
+use super::reference::*;
+use super::scale::{SIDE, photo};
 use isophote_abi::openfx::*;
 use isophote_tests::ofx::effect::{Described, Instance, Wanted};
 use isophote_tests::ofx::host::Host;

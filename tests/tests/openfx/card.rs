@@ -1,6 +1,6 @@
 //! Effects on a graphics card, by a device of the library's own.
 
-use crate::reference::*;
+use super::reference::*;
 use isophote::ColourSpace;
 use isophote_abi::openfx::*;
 use isophote_abi::{ISOPHOTE_PRECISION_EXACT, ISOPHOTE_PRECISION_HALF};

@@ -1,6 +1,6 @@
 //! Clips that effects can do without, and how masks are read.
 
-use crate::reference::*;
+use super::reference::*;
 use isophote_abi::openfx::*;
 use isophote_tests::ofx::effect::{Described, Instance, Wanted};
 use isophote_tests::ofx::host::Host;

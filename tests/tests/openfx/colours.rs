@@ -1,8 +1,8 @@
 //! Colours of spaces in which the library does not compute: the same as when somebody changes them before and after.
 
-use crate::film::{self, RANGE, connect_motion};
-use crate::reference::*;
-use crate::render::{SIZE, through};
+use super::film::{self, RANGE, connect_motion};
+use super::reference::*;
+use super::render::{SIZE, through};
 use isophote::ColourSpace;
 use isophote_abi::openfx::*;
 use isophote_colour::{Conversion, Space};

@@ -1,6 +1,6 @@
 //! Messages of instances as their values change: tiles, and controls that have no effect.
 
-use crate::reference::*;
+use super::reference::*;
 use isophote_abi::openfx::*;
 use isophote_tests::ofx::effect::{Described, Instance};
 use isophote_tests::ofx::host::Host;

@@ -1,6 +1,6 @@
 //! Loading and describing: what every effect says of itself.
 
-use crate::reference::{Expected, expected, identifier};
+use super::reference::{Expected, expected, identifier};
 use isophote::spec::Param;
 use isophote_abi::openfx::*;
 use isophote_tests::ofx::effect::Described;

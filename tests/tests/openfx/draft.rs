@@ -1,7 +1,7 @@
 //! Drafts: half of the size for looking at while values change.
 
-use crate::reference::*;
-use crate::scale::{SIDE, photo};
+use super::reference::*;
+use super::scale::{SIDE, photo};
 use isophote_abi::openfx::*;
 use isophote_tests::ofx::effect::{Described, Instance, Wanted};
 use isophote_tests::ofx::host::Host;

@@ -1,6 +1,6 @@
 //! A film for tests: a picture that moves, its motion as renderers store it, and what the library itself makes of it.
 
-use crate::reference::*;
+use super::reference::*;
 use isophote::graph::GraphInput;
 use isophote::{Graph, Request, Value};
 use isophote_abi::openfx::*;

@@ -1,8 +1,8 @@
 //! Looks from files of the user's, in the effect that shows looks.
 
-use crate::looks::{CONTEXTS, LOOK_EFFECT, OfFile, in_host, wanted};
-use crate::reference::*;
-use crate::render::SIZE;
+use super::looks::{CONTEXTS, LOOK_EFFECT, OfFile, in_host, wanted};
+use super::reference::*;
+use super::render::SIZE;
 use isophote::Graph;
 use isophote_abi::openfx::*;
 use isophote_tests::ofx::effect::Wanted;

@@ -1,7 +1,7 @@
 //! Looks: as choices in the effects of styles, and in the effect that shows looks, styles and files.
 
-use crate::reference::*;
-use crate::render::{SIZE, through};
+use super::reference::*;
+use super::render::{SIZE, through};
 use isophote::graph::GraphInput;
 use isophote::preset::{LOOKS, Look};
 use isophote::{ColourSpace, Graph};

@@ -1,6 +1,6 @@
 //! Memory: what an 8K frame of floats takes, by the plans that are rendered.
 
-use crate::reference::*;
+use super::reference::*;
 use isophote::request::Guides;
 use isophote::{ColourSpace, Planned, Request};
 use isophote_abi::openfx::*;

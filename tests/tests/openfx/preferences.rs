@@ -1,6 +1,6 @@
 //! Messages of instances about their results: whether frames vary, and the lengths of new instances.
 
-use crate::reference::*;
+use super::reference::*;
 use isophote_abi::openfx::*;
 use isophote_tests::ofx::effect::{Described, Instance};
 use isophote_tests::ofx::host::Host;

@@ -1,6 +1,6 @@
 //! Hosts as they are: memory in every layout, missing properties and functions, forgotten scales, fields.
 
-use crate::reference::*;
+use super::reference::*;
 use isophote_abi::openfx::*;
 use isophote_tests::ofx::effect::{Described, Wanted};
 use isophote_tests::ofx::host::Host;

@@ -1,6 +1,6 @@
 //! Tiles against full frames, and regions of interest against the plan's support.
 
-use crate::reference::*;
+use super::reference::*;
 use isophote::{Planned, Request};
 use isophote_abi::openfx::*;
 use isophote_engine::Rect;

@@ -1,6 +1,6 @@
 //! Rendering: every effect, context, depth and set of components, against the C table.
 
-use crate::reference::*;
+use super::reference::*;
 use isophote::ColourSpace;
 use isophote::Value;
 use isophote::graph::GraphInput;

@@ -1,6 +1,6 @@
 //! Proxies: every effect at half size against the full-size result made smaller.
 
-use crate::reference::*;
+use super::reference::*;
 use isophote_abi::openfx::*;
 use isophote_tests::ofx::effect::{Described, Wanted};
 use isophote_tests::ofx::host::Host;

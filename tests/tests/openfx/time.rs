@@ -1,7 +1,7 @@
 //! Frames around the one that is rendered: which are asked for, which there are, and what becomes of them.
 
-use crate::film::{self, RANGE, SIZE, connect, connect_motion, connect_vectors, render, vectors};
-use crate::reference::*;
+use super::film::{self, RANGE, SIZE, connect, connect_motion, connect_vectors, render, vectors};
+use super::reference::*;
 use isophote_abi::openfx::*;
 use isophote_tests::ofx::effect::{Described, Instance, Wanted};
 use isophote_tests::ofx::host::Host;

@@ -1,7 +1,7 @@
 //! Clips of motion vectors: what their numbers mean, in which pixels, and what there is where they say nothing.
 
-use crate::film::{self, RANGE, SIZE, STEP, connect, connect_motion, connect_vectors, render, vectors};
-use crate::reference::*;
+use super::film::{self, RANGE, SIZE, STEP, connect, connect_motion, connect_vectors, render, vectors};
+use super::reference::*;
 use isophote_abi::openfx::*;
 use isophote_tests::ofx::effect::{Described, Instance, Wanted};
 use isophote_tests::ofx::host::Host;

@@ -5,15 +5,21 @@ use std::ffi::OsStr;
 use std::path::{Path, PathBuf};
 use std::process::{Command, Stdio};
 
-/// A program of tests.
+/// A program of tests, or one file of them that it runs alone.
+#[derive(Clone)]
 pub struct Program {
-    /// Stem of its file.
+    /// Stem of the program's file, or of the file of tests.
     pub name: String,
     pub path: PathBuf,
     /// Folder of its package, where it runs.
     pub folder: PathBuf,
-    pub arguments: Vec<&'static str>,
+    pub arguments: Vec<String>,
 }
+
+/// Programs of several files of tests: of functions, and of generated trials. A test's name begins with its file's.
+const OF_FILES: [&str; 2] = ["tests", "trials"];
+/// Argument of the harness of functions before the names of those that are meant.
+const EXACT: &str = "--exact";
 
 impl Program {
     /// The program, to be run by `runner` where that is not empty: another program with its arguments.
@@ -27,6 +33,46 @@ impl Program {
             .env("CARGO_MANIFEST_DIR", &self.folder)
             .env("NODEVICE_SELECT", "1");
         command
+    }
+
+    /// Its files of tests, each as a program of its own: a process for each keeps what one does to its process from the others,
+    /// and each is reported by itself. A program of one file stays as it is. `run` makes a command that runs a program.
+    pub fn files(self, run: impl Fn(&Self) -> Command) -> Result<Vec<Self>> {
+        let [of_functions, of_trials] = OF_FILES.map(|name| name == self.name);
+        if !of_functions && !of_trials {
+            return Ok(vec![self]);
+        }
+        let mut files: Vec<Self> = Vec::new();
+        for test in self.tests("", run(&self))? {
+            let Some((name, _)) = test.split_once("::") else { continue };
+            if files.last().is_none_or(|file| file.name != name) {
+                let arguments =
+                    if of_trials { vec!["--file".into(), name.into()] } else { vec![EXACT.into()] };
+                files.push(Self { name: name.into(), arguments, ..self.clone() });
+            }
+            if of_functions && let Some(file) = files.last_mut() {
+                file.arguments.push(test);
+            }
+        }
+        Ok(files)
+    }
+
+    /// The program with those of its tests alone whose names contain the filter, if there are any; all of them where its own
+    /// name does. `run` makes a command that runs a program.
+    pub fn narrowed(mut self, filter: &str, run: impl Fn(&Self) -> Command) -> Result<Option<Self>> {
+        if self.name.contains(filter) {
+            return Ok(Some(self));
+        }
+        let tests = self.tests(filter, run(&self))?;
+        if tests.is_empty() {
+            return Ok(None);
+        }
+        if self.arguments.first().is_some_and(|first| first == EXACT) {
+            self.arguments = [EXACT.to_owned()].into_iter().chain(tests).collect();
+        } else {
+            self.arguments.push(filter.into());
+        }
+        Ok(Some(self))
     }
 
     /// Names of its tests that contain the filter, or all of them when its own name does.

@@ -67,8 +67,6 @@ pub struct Control {
     pub name: String,
     /// States, of those that tests ask for.
     pub states: Vec<&'static str>,
-    /// Number of controls that it is within.
-    pub depth: usize,
 }
 
 impl Control {
@@ -156,11 +154,11 @@ impl Bus {
     pub fn controls(&self) -> Vec<Control> {
         let root = ObjectPath::from_static_str_unchecked(ROOT);
         let mut controls = Vec::new();
-        self.collect(("org.a11y.atspi.Registry", &root), 0, &mut controls);
+        self.collect(("org.a11y.atspi.Registry", &root), &mut controls);
         controls
     }
 
-    fn collect(&self, object: (&str, &ObjectPath<'_>), depth: usize, controls: &mut Vec<Control>) {
+    fn collect(&self, object: (&str, &ObjectPath<'_>), controls: &mut Vec<Control>) {
         let children: Vec<(String, OwnedObjectPath)> =
             self.ask(object, ACCESSIBLE, "GetChildren", &()).unwrap_or_default();
         for (bus, path) in children {
@@ -174,8 +172,8 @@ impl Bus {
                 |bit: u32| bits.get(bit as usize / 32).is_some_and(|word| word >> (bit % 32) & 1 == 1);
             let states = STATES.iter().filter(|(bit, _)| is_set(*bit)).map(|(_, name)| *name).collect();
             let name = name.unwrap_or_default();
-            controls.push(Control { bus: bus.clone(), path: path.clone(), role, name, states, depth });
-            self.collect(child, depth + 1, controls);
+            controls.push(Control { bus: bus.clone(), path: path.clone(), role, name, states });
+            self.collect(child, controls);
         }
     }
 

@@ -1,7 +1,5 @@
 //! Pictures with a Cryptomatte, written by the `exr` crate, and the masks that the program finds in them.
 
-#![allow(dead_code, reason = "no test file needs all of it")]
-
 use std::path::Path;
 
 use exr::prelude::*;

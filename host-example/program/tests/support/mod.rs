@@ -1,9 +1,8 @@
 //! The program and the library under test, and pictures and scenes to give them.
 
-#![allow(dead_code, reason = "no test file needs all of it")]
-
 #[cfg(target_os = "linux")]
 pub mod access;
+pub mod mattes;
 #[cfg(target_os = "linux")]
 pub mod others;
 pub mod places;

@@ -8,8 +8,8 @@ use isophote_finishing::apply::backend::Backend;
 use isophote_window::jobs::document::{Document, Options};
 use isophote_window::state::playback::Playback;
 
-use super::support::window::screen;
 use super::{App, CANVAS, SIZE, Script, Step, alone, is_at_rest, session};
+use crate::support::window::screen;
 
 /// A picture of one colour and a session that shows it.
 fn plain_picture(folder: &Path, name: &str, size: (u32, u32), color: [u8; 3]) -> Playback {

@@ -1,5 +1,4 @@
 //! Small kernels, each as WGSL and as a CPU function, and plans of them.
-#![allow(dead_code, missing_docs, unused_macros)]
 
 use isophote_engine::kernel::Fusible;
 use isophote_engine::wgsl::{Import, Piece, Pieces};

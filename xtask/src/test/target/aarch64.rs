@@ -1,6 +1,6 @@
 //! 64-bit ARM with Linux, in QEMU.
 //!
-//! Tests of what must be the same everywhere are run as they are run here: engine, library, plugin, and the program `bits`,
+//! Tests of what must be the same everywhere are run as they are run here: engine, library, plugin, and the trials `bits`,
 //! which compares the bits of every node with the committed table. Nothing of it needs a graphics device.
 //!
 //! The target's standard library is that of the compiler, where `rustup target add` brought it. Otherwise compiler and
@@ -21,12 +21,12 @@ const RUNNER: [&str; 3] = ["qemu-aarch64", "-L", "/usr/aarch64-linux-gnu"];
 
 const PACKAGES: [&str; 4] = ["isophote-engine", "isophote", "isophote-plugin", "isophote-tests"];
 
-/// Programs of tests beside the packages' own.
-const PROGRAMS: [&str; 12] = [
+/// Files of tests beside the packages' own.
+const FILES: [&str; 12] = [
     "plan",
     "control",
     "cpu",
-    "directives",
+    "shader_directives",
     "graph",
     "importance",
     "line_wobble",
@@ -48,7 +48,7 @@ pub fn run(filter: Option<&str>) -> Result<()> {
     setup::ensure(&[&C_COMPILER, &AARCH64])?;
     let mut build = cargo_command(&["test", "--target", AARCH64_TARGET, "--lib"]);
     build.args(PACKAGES.iter().flat_map(|package| ["--package", package]));
-    build.args(PROGRAMS.iter().flat_map(|program| ["--test", program]));
+    build.args(["--test", "tests", "--test", "trials"]);
     build
         .env(variable(AARCH64_TARGET, "LINKER"), "aarch64-linux-gnu-gcc")
         .env("CARGO_TARGET_DIR", target_dir("aarch64"));
@@ -62,7 +62,7 @@ pub fn run(filter: Option<&str>) -> Result<()> {
     heading("build");
     let programs = programs::build(build)?;
     // Tests that can use a graphics device must not insist on one.
-    run_programs(programs, filter, &RUNNER, |command| {
+    run_programs(programs, &FILES, filter, &RUNNER, |command| {
         command.env_remove("CI").env_remove("ISOPHOTE_REQUIRE_GPU");
     })
 }

@@ -7,19 +7,28 @@ use crate::tools::heading;
 use std::process::Command;
 use std::time::Instant;
 
-/// Runs the tests of programs whose names contain the filter, each by a command with its arguments, and tells which fail.
+/// Runs the tests of programs whose names contain the filter, each by a command with its arguments, and tells which fail. Of
+/// programs of several files of tests only those files are meant.
 ///
 /// # Errors
 /// The programs that fail, or that cannot be started.
 pub fn run_programs(
     programs: Vec<Program>,
+    files: &[&str],
     filter: Option<&str>,
     runner: &[&str],
     prepare: impl Fn(&mut Command),
 ) -> Result<()> {
     heading("tests");
-    let ran =
-        programs.into_iter().filter_map(|program| run_program(program, filter, runner, &prepare).transpose());
+    let command = |program: &Program| {
+        let mut command = program.command(runner);
+        prepare(&mut command);
+        command
+    };
+    let programs = programs.into_iter().map(|program| program.files(command)).collect::<Result<Vec<_>>>()?;
+    let is_meant = |program: &Program| program.arguments.is_empty() || files.contains(&&*program.name);
+    let programs = programs.into_iter().flatten().filter(is_meant);
+    let ran = programs.filter_map(|program| run_program(program, filter, command).transpose());
     let ran: Vec<report::Ran> = ran.collect::<Result<_>>()?;
     if ran.is_empty() {
         return Err(Failure(format!("no test's name contains '{}'", filter.unwrap_or_default())));
@@ -29,26 +38,15 @@ pub fn run_programs(
     if failed.is_empty() { Ok(()) } else { Err(Failure(format!("these tests fail: {}", failed.join(", ")))) }
 }
 
-/// Runs a program's tests whose names contain the filter; `None` where there are none.
+/// Runs a program's tests whose names contain the filter; `None` where there are none. `run` makes a command that runs it.
 fn run_program(
     program: Program,
     filter: Option<&str>,
-    runner: &[&str],
-    prepare: impl Fn(&mut Command),
+    run: impl Fn(&Program) -> Command,
 ) -> Result<Option<report::Ran>> {
-    let prepared = || {
-        let mut command = program.command(runner);
-        prepare(&mut command);
-        command
-    };
-    let names_program = filter.is_none_or(|filter| program.name.contains(filter));
-    if !names_program && program.tests(filter.unwrap_or_default(), prepared())?.is_empty() {
-        return Ok(None);
-    }
-    let mut command = prepared();
-    command.args(filter.filter(|_| !names_program));
+    let Some(program) = program.narrowed(filter.unwrap_or_default(), &run)? else { return Ok(None) };
     let started = Instant::now();
-    let output = command.output();
+    let output = run(&program).output();
     Ok(Some(report::show(program, &output, started.elapsed().as_secs_f64())))
 }
 

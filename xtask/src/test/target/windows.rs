@@ -33,8 +33,8 @@ const PACKAGES: [&str; 11] = [
     "isophote-tests",
 ];
 
-/// Programs of tests beside the packages' own: of the program, then of the library and the plugin.
-const PROGRAMS: [&str; 34] = [
+/// Files of tests beside the packages' own: of the program, then of the library and the plugin.
+const FILES: [&str; 34] = [
     "apply",
     "bad_input",
     "command_line",
@@ -104,11 +104,11 @@ pub fn run(filter: Option<&str>) -> Result<()> {
             .args(named("--package", &["isophote-plugin", "isophote-program", "isophote-example"])),
     )?;
     let mut tests = build(&["test", "--lib", "--bins"]);
-    tests.args(named("--package", &PACKAGES)).args(named("--test", &PROGRAMS));
+    tests.args(named("--package", &PACKAGES)).args(["--test", "tests", "--test", "trials"]);
     let programs = programs::build(tests)?;
     let library = folder.join(WINDOWS_TARGET).join("debug/isophote.dll");
     let wine = Wine::start(&folder.join("wine"))?;
-    run_programs(programs, filter, &["wine"], |command| {
+    run_programs(programs, &FILES, filter, &["wine"], |command| {
         wine.prepare(command);
         command.env("ISOPHOTE_LIBRARY", wine::path(&library));
     })

@@ -1,6 +1,5 @@
 //! Images and graphs for the tests of the C table.
 
-#![allow(dead_code, reason = "no test file needs all of it")]
 #![allow(unsafe_code, reason = "calls through the C table")]
 
 use isophote_abi::*;

@@ -1,0 +1,13 @@
+//! Tests of the library. They are one program, since each would compile and link anew what all of them use.
+
+mod control;
+mod cpu;
+mod graph;
+mod importance;
+mod line_wobble;
+mod lines;
+mod result;
+mod shader_directives;
+mod smoothing;
+mod toon_shading;
+mod uniforms;
