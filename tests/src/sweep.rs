@@ -146,8 +146,11 @@ pub fn cases() -> &'static [Case] {
 /// of them would show nothing new.
 const MOST_ALIKE: usize = 4;
 
+/// Most steps of one kernel: all styles use some, with thousands of parameters that hardly differ.
+const MOST: usize = 600;
+
 /// Distinct passes of `kernel` in all cases, those of the smallest pictures first: all parameters on all kinds of pictures,
-/// of each at most so many.
+/// of each at most so many, and evenly chosen ones where those are too many.
 pub fn steps(kernel: &'static Kernel) -> Vec<Step> {
     static RESULTS: OnceLock<Results> = OnceLock::new();
     let results = RESULTS.get_or_init(Results::default);
@@ -168,6 +171,10 @@ pub fn steps(kernel: &'static Kernel) -> Vec<Step> {
             }
         }
     }
+    let all = steps.len();
+    let is_chosen = |index: usize| index * MOST / all != (index + 1) * MOST / all;
+    let mut index = 0..;
+    steps.retain(|_| all <= MOST || index.next().is_some_and(is_chosen));
     steps
 }
 

@@ -59,8 +59,9 @@ fn mean_error(shot: &Shot, quality: Quality) -> f64 {
 #[test]
 fn rendered_motion_is_estimated_no_worse_than_by_opencv() {
     let Some(_) = device("rendered frames") else { return };
-    let mut all = vec![Known { shot: rendered_shots::demo().unwrap(), opencv: [0.360, 0.420] }];
-    match rendered_shots::fox() {
+    let mut all =
+        vec![Known { shot: rendered_shots::demo(rendered_shots::SIZE).unwrap(), opencv: [0.360, 0.420] }];
+    match rendered_shots::fox(rendered_shots::SIZE) {
         Some(shot) => all.push(Known { shot: shot.unwrap(), opencv: [2.032, 1.699] }),
         None => eprintln!("\n*** SKIPPED: no fox beside the checkout ***\n"),
     }

@@ -110,7 +110,7 @@ fn print(title: &str, pairs: &[Pair]) {
 #[test]
 fn steady_styles_exaggerate_less_along_the_path_of_the_camera() {
     let Some(_) = device("the demo scene") else { return };
-    let pairs = measured(&rendered_shots::demo().unwrap());
+    let pairs = measured(&rendered_shots::demo(rendered_shots::size()).unwrap());
     print(
         "Warping error over that of the plain frames: demo scene, camera on its path, the last two frames count",
         &pairs,
@@ -127,7 +127,7 @@ fn steady_styles_exaggerate_less_along_the_path_of_the_camera() {
 #[test]
 fn steady_styles_exaggerate_less_on_a_running_fox() {
     let Some(_) = device("the fox") else { return };
-    let Some(shot) = rendered_shots::fox() else {
+    let Some(shot) = rendered_shots::fox(rendered_shots::size()) else {
         eprintln!("\n*** SKIPPED: no fox beside the checkout ***\n");
         return;
     };
@@ -154,7 +154,7 @@ fn assert_few_jumps(pairs: &[Pair]) {
 #[test]
 fn steady_styles_draw_less_noise() {
     let Some(_) = device("the static shot") else { return };
-    let shot = rendered_shots::demo().unwrap();
+    let shot = rendered_shots::demo(rendered_shots::size()).unwrap();
     let shot = Shot::noisy(&shot.frames[shot.frames.len() / 2], 6, 0.01);
     let pairs = measured(&shot);
     print("Warping error over that of the plain frames: static shot with 1 % noise", &pairs);

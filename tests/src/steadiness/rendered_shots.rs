@@ -12,8 +12,16 @@ use std::time::SystemTime;
 /// Frames of a shot.
 pub const FRAMES: usize = 10;
 
-/// Size of the frames in pixels.
+/// Size of the frames in pixels, as the tables of the experiments have it.
 pub const SIZE: [u32; 2] = [640, 360];
+
+/// Size of the frames where no table is asked for, and half as much shows what holds.
+const SMALL: [u32; 2] = [416, 234];
+
+/// The size of the tables where they are asked for, and else the smaller one.
+pub fn size() -> [u32; 2] {
+    if std::env::var_os("ISOPHOTE_TABLES").is_some() { SIZE } else { SMALL }
+}
 
 /// Scene and options that are rendered.
 #[derive(Clone, Debug, Hash)]
@@ -22,6 +30,8 @@ pub struct ShotOptions {
     pub name: &'static str,
     /// glTF file; none for the demo scene.
     pub scene: Option<PathBuf>,
+    /// Of the frames, in pixels.
+    pub size: [u32; 2],
     /// Options of `isophote render` beside those for size and frames.
     pub options: Vec<&'static str>,
 }
@@ -31,19 +41,19 @@ pub struct ShotOptions {
 ///
 /// # Errors
 /// As [`shoot`].
-pub fn demo() -> Result<Shot, String> {
+pub fn demo(size: [u32; 2]) -> Result<Shot, String> {
     let options = vec!["--animate", "--fps", "24", "--start", "1.8"];
-    shoot(&ShotOptions { name: "demo", scene: None, options })
+    shoot(&ShotOptions { name: "demo", scene: None, size, options })
 }
 
 /// The running fox before a camera at rest, 24 frames a second; `None` where the assets are not beside the checkout.
 ///
 /// # Errors
 /// As [`shoot`].
-pub fn fox() -> Option<Result<Shot, String>> {
+pub fn fox(size: [u32; 2]) -> Option<Result<Shot, String>> {
     let scene = png::assets()?.join("gltf/Fox.glb");
     let options = vec!["--animation", "Run", "--fps", "24"];
-    scene.is_file().then(|| shoot(&ShotOptions { name: "fox", scene: Some(scene), options }))
+    scene.is_file().then(|| shoot(&ShotOptions { name: "fox", scene: Some(scene), size, options }))
 }
 
 /// Renders [`FRAMES`] frames, or reads those that the same program rendered before.
@@ -54,16 +64,18 @@ pub fn shoot(take: &ShotOptions) -> Result<Shot, String> {
     // Builds the programs too.
     library::path();
     let mut hash = DefaultHasher::new();
-    (take, FRAMES, SIZE, modified(&program("isophote"))?).hash(&mut hash);
+    (take, FRAMES, modified(&program("isophote"))?).hash(&mut hash);
     match &take.scene {
         Some(file) => modified(file)?.hash(&mut hash),
         None => modified(&program("isophote-demo-scene"))?.hash(&mut hash),
     }
     let shelf = png::results().join("rendered_shots");
     fs::create_dir_all(&shelf).map_err(|e| format!("{}: {e}", shelf.display()))?;
-    let folder = shelf.join(format!("{}-{:016x}", take.name, hash.finish()));
+    let [width, height] = take.size;
+    let name = format!("{}-{width}x{height}", take.name);
+    let folder = shelf.join(format!("{name}-{:016x}", hash.finish()));
     if !folder.is_dir() {
-        sweep(&shelf, take.name);
+        sweep(&shelf, &name);
         render(take, &shelf, &folder)?;
     }
     let frames = (1..=FRAMES).map(|number| read::frame(&folder.join(format!("{number:04}.exr"))));
@@ -107,9 +119,10 @@ fn render(take: &ShotOptions, shelf: &Path, folder: &Path) -> Result<(), String>
     };
     let frames = work.path().join("frames");
     fs::create_dir(&frames).map_err(fault)?;
+    let [width, height] = take.size;
     let mut command = Command::new(program("isophote"));
     command.arg("render").arg(scene).arg(frames.join("####.exr"));
-    command.args(["--size", &format!("{}x{}", SIZE[0], SIZE[1]), "--frames", &FRAMES.to_string()]);
+    command.args(["--size", &format!("{width}x{height}"), "--frames", &FRAMES.to_string()]);
     run(command.arg("--tone-mapped").args(&take.options))?;
     match fs::rename(&frames, folder) {
         // Another test was faster.

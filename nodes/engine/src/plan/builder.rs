@@ -226,7 +226,19 @@ impl PlanBuilder {
         supports: &[Support],
         level: i8,
     ) -> ImageId {
-        let params = bytemuck::bytes_of(params);
+        self.pass_of_bytes(kernel, inputs, bytemuck::bytes_of(params), classes, supports, level)
+    }
+
+    /// The same for the bytes of a uniform block: apart, since nothing of it depends on the block's type.
+    fn pass_of_bytes(
+        &mut self,
+        kernel: &'static Kernel,
+        inputs: &[ImageId],
+        params: &[u8],
+        classes: &[Class],
+        supports: &[Support],
+        level: i8,
+    ) -> ImageId {
         // These are slips of the describing code, never of outside data; a node's tests meet them.
         assert_eq!(params.len(), kernel.params_size, "{}: uniform block of another size", kernel.name);
         assert_eq!(inputs.len(), kernel.inputs, "{}: wrong number of inputs", kernel.name);

@@ -16,10 +16,9 @@ use crate::kernels::shared::sampled_sectors::{sample, table};
 use crate::kernels::shared::sectors::{INSIDE, MIN_RADIUS, Response, Sector};
 use crate::kernels::simd::moment_buffer::{CHANNELS, for_rows};
 use crate::kernels::simd::pixels::{Block, eight, read, write};
-use block_convolution::{Convolution, Mask, block_side};
+use block_convolution::{Convolution, Mask, Number, block_side};
 use isophote_engine::fearless_simd::{Level, Simd, dispatch, f32x8, prelude::*};
 use isophote_engine::{Band, Class, CpuPass, ImageId, PlanBuilder, Support, Tolerance, View, memory};
-use rustfft::FftNum;
 use rustfft::num_complex::Complex;
 use std::f32::consts::FRAC_1_SQRT_2;
 
@@ -258,7 +257,7 @@ fn block(view: &View<'_>, [x0, y0]: [i32; 2], side: usize, planes: &mut [Vec<f32
     [opaque, bright]
 }
 
-fn convolve<T: FftNum + Into<f64>>(
+fn convolve<T: Number>(
     convolution: &mut Convolution<T>,
     planes: &[Vec<f32>],
     sectors: usize,
