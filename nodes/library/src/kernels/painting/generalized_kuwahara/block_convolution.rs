@@ -35,7 +35,7 @@ impl Number for f32 {
 }
 
 /// For blocks with bright pixels alone. The planner would bring in transforms of all counts by every instruction set, which
-/// take as long to compile as a fifth of this crate; this one is less than half as fast.
+/// take as long to compile as a fifth of this crate; this one is slower.
 impl Number for f64 {
     fn transform(count: usize, direction: FftDirection) -> Arc<dyn Fft<Self>> {
         Arc::new(Radix4::new(count, direction))
