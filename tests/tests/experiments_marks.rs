@@ -49,7 +49,7 @@ fn marked(shot: &Shot, graph: &Graph, value: f32, has_rest: bool) -> Vec<Image> 
 #[test]
 fn marks_do_not_slide_on_surfaces() {
     let Some(_) = device("the demo scene") else { return };
-    let mut shot = rendered_shots::demo(rendered_shots::size()).unwrap();
+    let mut shot = rendered_shots::demo(rendered_shots::SIZE).unwrap();
     // Five pairs tell as much as nine.
     shot.frames.truncate(6);
     let columns = ["style", "on the screen", "at rest positions", "nine of ten squares"];
@@ -107,7 +107,7 @@ fn pan(like: &Shot) -> Shot {
 #[test]
 fn marks_are_carried_where_motion_alone_is_known() {
     let Some(_) = device("the demo scene") else { return };
-    let demo = rendered_shots::demo(rendered_shots::size()).unwrap();
+    let demo = rendered_shots::demo(rendered_shots::SIZE).unwrap();
     let columns =
         ["style", "demo scene: on the screen", "carried", "pan by 3.4 pixels: on the screen", "carried"];
     // Layers that fade into one another make long marks longer or shorter, which is no sliding.

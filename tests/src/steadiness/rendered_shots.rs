@@ -15,7 +15,7 @@ pub const FRAMES: usize = 10;
 /// Size of the frames in pixels, as the tables of the experiments have it.
 pub const SIZE: [u32; 2] = [640, 360];
 
-/// Size of the frames where no table is asked for, and half as much shows what holds.
+/// Size of the frames where no table is asked for and half as many pixels show what holds.
 const SMALL: [u32; 2] = [416, 234];
 
 /// The size of the tables where they are asked for, and else the smaller one.
