@@ -45,7 +45,7 @@ fn default_graph(spec: &'static NodeSpec) -> Graph {
 /// Size of the pictures that all settings are tried on.
 const SIZE: [u32; 2] = [31, 23];
 
-/// Multiply-adds of a plan at that size that take seconds.
+/// Multiply-adds of a plan at that size above which one picture is enough.
 const COSTLY: f64 = 1e9;
 
 fn the_node_keeps_every_kind_of_picture_finite(spec: &'static NodeSpec) -> Vec<String> {
@@ -70,7 +70,7 @@ fn the_node_keeps_every_kind_of_picture_finite(spec: &'static NodeSpec) -> Vec<S
     wrong
 }
 
-/// True where a small picture takes seconds, as with all lengths at their greatest: one is tried then.
+/// True where a small picture takes long, as with all lengths at their greatest.
 fn is_costly(setup: &Setup, request: Request) -> bool {
     plans::cost(run::planned(&setup.graph, request).plan()) > COSTLY
 }

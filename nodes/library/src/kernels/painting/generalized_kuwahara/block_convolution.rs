@@ -34,8 +34,8 @@ impl Number for f32 {
     }
 }
 
-/// For blocks with bright pixels alone. The planner would bring in transforms of all counts by every instruction set, which
-/// take as long to compile as a fifth of this crate; this one is slower.
+/// For blocks with bright pixels alone. The planner would bring in transforms of all counts by every instruction set, a
+/// fifth of all that this crate is compiled of, as rustc estimates it; this one is slower.
 impl Number for f64 {
     fn transform(count: usize, direction: FftDirection) -> Arc<dyn Fft<Self>> {
         Arc::new(Radix4::new(count, direction))
