@@ -20,31 +20,20 @@ use std::process::{Command, Stdio};
 struct Module {
     /// Its file in the package.
     file: &'static str,
-    profile: &'static str,
     features: &'static [&'static str],
-    /// Flags of the compiler.
-    flags: &'static str,
-    /// Folder of the build, below `target/web`: other flags would replace all that lies there.
-    folder: &'static str,
 }
 
 /// What every page loads.
-const PLANNER: Module = Module {
-    file: "isophote.wasm",
-    profile: "web",
-    features: &["--no-default-features"],
-    flags: "",
-    folder: "build",
-};
+const PLANNER: Module = Module { file: "isophote.wasm", features: &["--no-default-features"] };
 
-/// What pages without a graphics device load, too. Browsers have its vectors since 2021, Safari since 2023.
-const PROCESSOR: Module = Module {
-    file: "isophote-cpu.wasm",
-    profile: "web-cpu",
-    features: &[],
-    flags: "-C target-feature=+simd128",
-    folder: "build-cpu",
-};
+/// What pages without a graphics device load, too.
+const PROCESSOR: Module = Module { file: "isophote-cpu.wasm", features: &[] };
+
+/// Profile of both.
+const PROFILE: &str = "web";
+
+/// Flags of the compiler for both: browsers have vectors since 2021, Safari since 2023, which is before they had devices.
+const FLAGS: &str = "-C target-feature=+simd128";
 
 /// Most bytes of the page, a third of them the module of the processor: what someone waits for before the first picture.
 const MOST: u64 = 9 << 19;
@@ -198,14 +187,14 @@ fn install() -> Result<()> {
     fs::write(&installed, wanted).context(|| format!("cannot write {}", installed.display()))
 }
 
-/// Compiles a module and says where it is.
+/// Compiles a module and says where it is: the other one's build replaces what cargo leaves.
 fn compiled(module: &Module) -> Result<PathBuf> {
-    let target = target_dir("web").join(module.folder);
+    let target = target_dir("web").join("build");
     let mut command = cargo_command(&["rustc", "--quiet", "--lib", "--crate-type", "cdylib"]);
     // Features are those of the package whose folder it is.
     command.current_dir(folder()).args(module.features);
-    command.args(["--profile", module.profile, "--target", WASM_TARGET, "--target-dir"]).arg(&target);
-    command.env("CARGO_TARGET_WASM32_UNKNOWN_UNKNOWN_RUSTFLAGS", module.flags);
+    command.args(["--profile", PROFILE, "--target", WASM_TARGET, "--target-dir"]).arg(&target);
+    command.env("CARGO_TARGET_WASM32_UNKNOWN_UNKNOWN_RUSTFLAGS", FLAGS);
     if !setup::has_target(WASM_TARGET) {
         // A compiler of the system has the sources of its standard library, and another one's linker will do.
         command
@@ -215,7 +204,9 @@ fn compiled(module: &Module) -> Result<PathBuf> {
         command.env("CARGO_TARGET_WASM32_UNKNOWN_UNKNOWN_LINKER", linker()?);
     }
     run_command(&mut command)?;
-    Ok(target.join(WASM_TARGET).join(module.profile).join("isophote_web.wasm"))
+    let kept = target_dir("web").join(module.file);
+    copy(&target.join(WASM_TARGET).join(PROFILE).join("isophote_web.wasm"), &kept)?;
+    Ok(kept)
 }
 
 /// The linker that comes with the compiler of this build.

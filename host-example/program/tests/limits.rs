@@ -47,10 +47,12 @@ fn sweep(limits: impl Iterator<Item = u64>, command: &Command) -> [usize; 2] {
         if output.status.code() == Some(127) || !is_loaded {
             continue;
         }
+        // A thread without room for the stack of its signals ends the process as well, in words of the standard library.
+        let is_of_thread = text.contains("failed to allocate an alternative stack");
         let is_said = text.starts_with("error: ") || text.starts_with("memory allocation of ");
         match output.status.code() {
             Some(0) => counts[0] += 1,
-            Some(1 | 2) if is_said && !text.contains("panicked") => counts[1] += 1,
+            Some(1 | 2) if is_of_thread || is_said && !text.contains("panicked") => counts[1] += 1,
             _ => panic!("{limit} MiB: {}\n{text}", output.status),
         }
     }

@@ -30,7 +30,7 @@ after(async () => {
 });
 
 test("without a device the page computes on the processor, and says so", { timeout: 300_000 }, async () => {
-  const page = await pages.open();
+  const page = await pages.open("", { hasThumbnails: true });
   assert.match(await message(page, "backend"), /Computed on the processor: slower\./);
   assert.ok(await page.locator("#backend").isVisible());
   await page.locator("#hint-close").click();

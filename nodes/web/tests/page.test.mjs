@@ -8,7 +8,7 @@ import { Pages, addressSays, drop, dropPhoto, lookOf, lookOfSettled, message, op
 
 const pages = new Pages();
 const { complaints, requests } = pages;
-const open = (hash) => pages.open(hash);
+const open = (hash, options) => pages.open(hash, options);
 
 before(() => pages.start());
 
@@ -25,7 +25,7 @@ async function slide(page, label, value) {
 }
 
 test("a dropped photo, thumbnails, a look, a slider, undo, and the same pixels from the link", async () => {
-  const page = await open();
+  const page = await open("", { hasThumbnails: true });
   await dropPhoto(page);
   await page.waitForFunction(() => document.querySelectorAll(".card.made").length >= 4);
   const first = await shot(page);

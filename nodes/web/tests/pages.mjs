@@ -24,9 +24,19 @@ export class Pages {
     return this.browser?.close();
   }
 
-  /** Opens the page and waits until its first picture is shown. */
-  async open(hash = "", options = {}) {
+  /**
+   * Opens the page and waits until its first picture is shown.
+   * @param {{hasThumbnails?: boolean}} options whether looks get thumbnails, which take this device most of its time; and those of
+   * a browser's page
+   */
+  async open(hash = "", { hasThumbnails = false, ...options } = {}) {
     const page = await this.browser.newPage({ viewport: { width: 800, height: 420 }, acceptDownloads: true, ...options });
+    if (!hasThumbnails) {
+      await page.addInitScript(() => {
+        // Nothing comes in sight, where thumbnails are made.
+        window.IntersectionObserver = class { observe() {} unobserve() {} disconnect() {} };
+      });
+    }
     page.setDefaultTimeout(PATIENCE);
     page.on("console", (message) => ["error", "warning"].includes(message.type()) && this.complaints.push(message.text()));
     page.on("pageerror", (error) => this.complaints.push(error.message));

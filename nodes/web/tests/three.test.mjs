@@ -99,7 +99,8 @@ const AROUND = [
   `,
   `
   await pipeline.outputNode.ready;
-  await new Promise((resolve) => { setTimeout(resolve, 500); });
+  // More frames than two only wait for one another.
+  await new Promise((resolve) => { requestAnimationFrame(() => requestAnimationFrame(resolve)); });
   renderer.setAnimationLoop(null);
   await Promise.all([isophote, shared].map(({ device }) => device.queue.onSubmittedWorkDone()));
   const { data } = canvas.getContext("2d").getImageData(0, 0, canvas.width, canvas.height);

@@ -1,7 +1,5 @@
 //! Meshes of a glTF document: attributes, morph targets and skin influences of each primitive.
 
-use std::collections::HashMap;
-
 use gltf::Semantic;
 use gltf::mesh::Mode;
 
@@ -135,20 +133,43 @@ fn triangles(
     Ok(geometry::triangle_list(topology, indices))
 }
 
+/// Vertices to an index from which to sort the indices costs less than a table of all vertices.
+const SPARSE: usize = 8;
+
 /// Makes indices count only the vertices that they use, and yields these in ascending order; `None` where all
 /// `count` are used. The time is that of the indices, however many vertices there are.
 fn compact(indices: &mut [u32], count: usize) -> Option<Vec<u32>> {
-    let mut used = indices.to_vec();
-    used.sort_unstable();
-    used.dedup();
+    if count / SPARSE > indices.len() {
+        return Some(compact_sparse(indices));
+    }
+    let mut is_used = vec![false; count];
+    for index in indices.iter() {
+        is_used[*index as usize] = true;
+    }
+    let used: Vec<u32> =
+        (0..).zip(&is_used).filter_map(|(index, is_used)| is_used.then_some(index)).collect();
     if used.len() == count {
         return None;
     }
-    let places: HashMap<u32, u32> = used.iter().zip(0..).map(|(&index, place)| (index, place)).collect();
+    let mut places = vec![0; count];
+    for (&index, place) in used.iter().zip(0..) {
+        places[index as usize] = place;
+    }
     for index in indices {
-        *index = places[index];
+        *index = places[*index as usize];
     }
     Some(used)
+}
+
+/// What [`compact`] does, where most vertices are not used.
+fn compact_sparse(indices: &mut [u32]) -> Vec<u32> {
+    let mut used = indices.to_vec();
+    used.sort_unstable();
+    used.dedup();
+    for index in indices {
+        *index = used.partition_point(|used| used < index) as u32;
+    }
+    used
 }
 
 fn fill<T>(primitive: &mut Primitive, values: Option<Vec<T>>, set: impl Fn(&mut Vertex, T)) {
@@ -246,5 +267,22 @@ impl Reader<'_> {
             primitive.morph_targets.push(deltas);
         }
         Ok(())
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::{SPARSE, compact};
+
+    #[test]
+    fn indices_count_only_the_vertices_that_they_use() {
+        for count in [8, 6 * SPARSE, 100 * SPARSE] {
+            let mut indices = [5, 0, 7, 7, 5, 2];
+            assert_eq!(compact(&mut indices, count), Some(vec![0, 2, 5, 7]), "{count}");
+            assert_eq!(indices, [2, 0, 3, 3, 2, 1], "{count}");
+        }
+        let mut indices = [2, 1, 0, 0, 1, 2];
+        assert_eq!(compact(&mut indices, 3), None);
+        assert_eq!(indices, [2, 1, 0, 0, 1, 2]);
     }
 }
