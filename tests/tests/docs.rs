@@ -7,7 +7,6 @@ use isophote::registry;
 use isophote_tests::library;
 use std::path::{Path, PathBuf};
 use std::process::{Command, Output};
-use std::sync::{Mutex, PoisonError};
 use tempfile::TempDir;
 
 /// The folder of the build under test.
@@ -15,12 +14,10 @@ fn built() -> &'static Path {
     library::path().parent().unwrap()
 }
 
-/// The chores' program makes the site. One at a time, since all of them write the same demo scene.
-fn docs(out: &Path, more: &[&str]) -> Output {
-    static TURN: Mutex<()> = Mutex::new(());
-    let _turn = TURN.lock().unwrap_or_else(PoisonError::into_inner);
+/// The chores' program makes the site.
+fn docs(out: &Path, page: &Path) -> Output {
     let mut docs = Command::new(built().join("xtask"));
-    docs.arg("docs").arg("--out").arg(out).args(["--size", "96x64", "--frames", "2"]).args(more);
+    docs.arg("docs").arg("--out").arg(out).args(["--size", "96x64", "--frames", "2"]).arg("--page").arg(page);
     docs.env("CARGO_TARGET_DIR", built().parent().unwrap()).current_dir(library::root());
     docs.output().unwrap()
 }
@@ -35,7 +32,7 @@ fn the_site_is_made_and_all_its_commands_run() {
     let site = folder.path().join("site");
     let app = folder.path().join("app.html");
     std::fs::write(&app, "<script>1</script>").unwrap();
-    let output = docs(&site, &["--page", app.to_str().unwrap()]);
+    let output = docs(&site, &app);
     std::fs::remove_file(app).unwrap();
     let said = said(&output);
     assert!(output.status.success(), "{said}");
@@ -126,6 +123,11 @@ fn pages_with(folder: &Path, page: &str, text: &str) -> PathBuf {
 
 #[test]
 fn a_page_that_is_wrong_is_named_and_the_old_site_stays() {
+    let around = TempDir::new().unwrap();
+    let (scene, none) = (around.path().join("scene"), around.path().join("none"));
+    std::fs::create_dir(&none).unwrap();
+    let made = Command::new(built().join("isophote-demo-scene")).arg(&scene).output().unwrap();
+    assert!(made.status.success(), "{}", said(&made));
     for (text, named) in [
         ("# A\n\n```sh\nisophote apply cartoon absent.png out.png\n```\n", "absent.png"),
         ("# A\n\n[gone](repo:no/such/file.md)\n", "the repository has no no/such/file.md"),
@@ -137,7 +139,16 @@ fn a_page_that_is_wrong_is_named_and_the_old_site_stays() {
         std::fs::write(site.join("old.html"), "old").unwrap();
         // The first page of the contents, so that the others are not run before.
         let pages = pages_with(folder.path(), "index.md", text);
-        let output = docs(&site, &["--pages", pages.to_str().unwrap()]);
+        // What the chore starts, without packages, which the first page does not need.
+        let mut docs = Command::new(built().join("isophote-docs"));
+        docs.arg("--host").arg(built().join("isophote")).arg("--library").arg(library::path());
+        docs.arg("--scene")
+            .arg(scene.join("city.gltf"))
+            .arg("--packages")
+            .arg(&none)
+            .arg("--wheels")
+            .arg(&none);
+        let output = docs.arg("--pages").arg(&pages).arg("--out").arg(&site).output().unwrap();
         let said = said(&output);
         assert!(!output.status.success() && said.contains(named) && said.contains("index"), "{text}: {said}");
         assert!(site.join("old.html").exists());
