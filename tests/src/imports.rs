@@ -21,7 +21,7 @@ use tokens::{Kind, Token};
 /// When a file cannot be read.
 pub fn circles(root: &Path) -> Vec<String> {
     let root = root.canonicalize().unwrap();
-    read(&root).circles(&root)
+    read(&root, |_| true).circles(&root)
 }
 
 /// All circles of folders, and of folders and files beside them, as [`circles`] has those of files.
@@ -30,7 +30,7 @@ pub fn circles(root: &Path) -> Vec<String> {
 /// When a file cannot be read.
 pub fn folder_circles(root: &Path) -> Vec<String> {
     let root = root.canonicalize().unwrap();
-    read(&root).of_folders().circles(&root)
+    read(&root, |_| true).of_folders().circles(&root)
 }
 
 /// Imports of files in one folder below `root` from files in another: the importing file and the other.
@@ -39,13 +39,15 @@ pub fn folder_circles(root: &Path) -> Vec<String> {
 /// When a file cannot be read.
 pub fn between(root: &Path, from: &str, to: &str) -> Vec<[PathBuf; 2]> {
     let root = root.canonicalize().unwrap();
-    read(&root).between(&root, from, to)
+    // Files import files of their own package alone.
+    let importing = root.join(from);
+    read(&root, |package| importing.starts_with(package)).between(&root, from, to)
 }
 
-/// Imports of all packages below `root`.
-fn read(root: &Path) -> Imports {
+/// Imports of those packages below `root` that are wanted.
+fn read(root: &Path, is_wanted: impl Fn(&Path) -> bool) -> Imports {
     let mut imports = Imports::default();
-    for package in packages(root) {
+    for package in packages(root).into_iter().filter(|package| is_wanted(package)) {
         modules::read_package(&package, &mut imports);
     }
     imports
