@@ -142,13 +142,9 @@ fn a_page_that_is_wrong_is_named_and_the_old_site_stays() {
         // What the chore starts, without packages, which the first page does not need.
         let mut docs = Command::new(built().join("isophote-docs"));
         docs.arg("--host").arg(built().join("isophote")).arg("--library").arg(library::path());
-        docs.arg("--scene")
-            .arg(scene.join("city.gltf"))
-            .arg("--packages")
-            .arg(&none)
-            .arg("--wheels")
-            .arg(&none);
-        let output = docs.arg("--pages").arg(&pages).arg("--out").arg(&site).output().unwrap();
+        docs.arg("--scene").arg(scene.join("city.gltf")).arg("--pages").arg(&pages).arg("--out").arg(&site);
+        docs.arg("--packages").arg(&none).arg("--wheels").arg(&none);
+        let output = docs.output().unwrap();
         let said = said(&output);
         assert!(!output.status.success() && said.contains(named) && said.contains("index"), "{text}: {said}");
         assert!(site.join("old.html").exists());

@@ -32,7 +32,7 @@ const PROCESSOR: Module = Module { file: "isophote-cpu.wasm", features: &[] };
 /// Profile of both.
 const PROFILE: &str = "web";
 
-/// Flags of the compiler for both: browsers have vectors since 2021, Safari since 2023, which is before they had devices.
+/// Flags of the compiler for both: browsers had vectors before graphics devices, since 2021, Safari since 2023.
 const FLAGS: &str = "-C target-feature=+simd128";
 
 /// Most bytes of the page, a third of them the module of the processor: what someone waits for before the first picture.

@@ -133,7 +133,8 @@ fn triangles(
     Ok(geometry::triangle_list(topology, indices))
 }
 
-/// Vertices to an index from which to sort the indices costs less than a table of all vertices.
+/// Most vertices to an index for which a table of all vertices is made. Beyond, the indices are sorted, so that a few of them take no
+/// memory for the many vertices that they leave out.
 const SPARSE: usize = 8;
 
 /// Makes indices count only the vertices that they use, and yields these in ascending order; `None` where all
