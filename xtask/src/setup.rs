@@ -215,6 +215,16 @@ pub const XVFB: Need = Need {
     ],
 };
 
+/// A scheduler of render farms, its controller and its node.
+pub const SLURM: Need = Need {
+    what: "Slurm",
+    present: || {
+        program("sbatch")
+            && ["/usr/sbin/slurmctld", "/usr/sbin/slurmd"].into_iter().all(|p| Path::new(p).exists())
+    },
+    packages: &["slurm-wlm"],
+};
+
 /// Makes sure that everything in `needs` is there, installing packages where this machine is a
 /// Debian and the user may.
 ///

@@ -3,7 +3,7 @@
 use crate::error::{Context, Failure, Result};
 use crate::setup::{
     self, BINUTILS, BLENDER, BROWSER, C_COMPILER, CLANG, CPP_COMPILER, FFMPEG, NODE, PACKAGING, PYTHON,
-    VALGRIND, VULKAN, VULKAN_HEADERS, WASM, XVFB,
+    SLURM, VALGRIND, VULKAN, VULKAN_HEADERS, WASM, XVFB,
 };
 use crate::tools::{cargo, cargo_command, heading, library_file, root, target_dir};
 use crate::{cases, python, web};
@@ -66,6 +66,7 @@ pub fn run(options: &Options) -> Result<()> {
         &PACKAGING,
         &PYTHON,
         &BLENDER,
+        &SLURM,
         &NODE,
         &WASM,
     ])?;

@@ -11,6 +11,7 @@ mod drawing;
 mod example;
 mod export;
 mod exr;
+mod farms;
 mod guides;
 mod info;
 mod limits;

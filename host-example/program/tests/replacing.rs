@@ -243,6 +243,8 @@ fn every_verb_asks_before_it_replaces() {
         (&["sheet"][..], "sheet.png", &["in.1.png"][..]),
         (&["preset", "save", "ink"], "ink.json", &[]),
         (&["farm", "openjd", "-o"], "job.json", &job),
+        (&["farm", "slurm", "-o"], "job.sh", &job),
+        (&["farm", "opencue", "-o"], "job.outline", &job),
         (&[&bench[..], &["--save"]].concat(), "bench.json", &[]),
         (&render, "picture.png", &[]),
         (&render, "picture.exr", &[]),

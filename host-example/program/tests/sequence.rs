@@ -4,7 +4,7 @@
 use std::fs;
 use std::path::Path;
 use std::process::{Command, Stdio};
-use std::time::{Duration, Instant};
+use std::time::Duration;
 
 use serde_json::Value;
 
@@ -222,7 +222,7 @@ fn killed_runs_go_on() {
         command.current_dir(folder.path()).arg("apply").args(arguments(to)).args(["--backend", "cpu"]);
         command
     };
-    let started = Instant::now();
+    let started = std::time::Instant::now();
     succeeds(&mut run("whole"));
     let time = started.elapsed();
     let whole = contents(&at("whole"));
@@ -265,7 +265,7 @@ fn interrupted_runs_leave_whole_files() {
         .stderr(Stdio::piped())
         .spawn()
         .expect("a process");
-    let patience = Instant::now();
+    let patience = std::time::Instant::now();
     while listing(&at("out")).iter().all(|n| n.starts_with('.'))
         && patience.elapsed() < Duration::from_secs(60)
     {
@@ -334,53 +334,6 @@ fn keyframes_follow_the_frames() {
     }
     let more = ["--preset", "keys.json", "gaussian", "in.0001.exr", "no.exr"];
     fails(&mut apply(folder.path(), &more), 2, &["--preset", "the preset names the style"]);
-}
-
-#[test]
-fn farm_templates_run_the_command() {
-    let folder = folder();
-    let at = |name: &str| folder.path().join(name);
-    frames(folder.path(), 1..=4, 32);
-    fs::create_dir(at("out")).expect("a folder");
-    let farm = |more: &[&str]| {
-        let mut command = isophote();
-        command.current_dir(folder.path()).args(["farm", "openjd"]).args(more);
-        command
-    };
-    let job = [&["apply", "gaussian", "in.####.exr", "out/o.####.exr", "--backend", "cpu"], &IN_PIXELS[..]]
-        .concat();
-    succeeds(&mut farm(&[&["-o", "job.json", "--chunk", "2", "--"], job.as_slice()].concat()));
-    let text = fs::read_to_string(at("job.json")).expect("a template");
-    let template: Value = serde_json::from_str(&text).expect("JSON");
-    assert_eq!(template["specificationVersion"], "jobtemplate-2023-09");
-    assert_eq!(template["extensions"], serde_json::json!(["TASK_CHUNKING"]));
-    let step = &template["steps"][0];
-    let parameter = &step["parameterSpace"]["taskParameterDefinitions"][0];
-    assert_eq!((&parameter["type"], &parameter["range"]), (&"CHUNK[INT]".into(), &"1-4".into()));
-    // Every task, from another folder, twice.
-    let words: Vec<String> = step["script"]["actions"]["onRun"]["args"]
-        .as_array()
-        .expect("arguments")
-        .iter()
-        .map(|w| w.as_str().expect("text").to_owned())
-        .collect();
-    for chunk in ["1-2", "3-4", "1-2"] {
-        let words = words.iter().map(|w| w.replace("{{Task.Param.Frame}}", chunk));
-        succeeds(isophote().current_dir("/").args(words));
-    }
-    succeeds(&mut apply(folder.path(), &["gaussian", "in.####.exr", "alone.####.exr"]));
-    for frame in 1..=4 {
-        let bytes = |name: String| fs::read(at(&name)).expect("a result");
-        assert_eq!(bytes(format!("out/o.{frame:04}.exr")), bytes(format!("alone.{frame:04}.exr")));
-    }
-    let (text, _) = succeeds(&mut farm(&[&["--"], job.as_slice(), &["--frames", "1-3x2,4"]].concat()));
-    let template: Value = serde_json::from_str(&text).expect("JSON");
-    let parameter = &template["steps"][0]["parameterSpace"]["taskParameterDefinitions"][0];
-    assert_eq!((&parameter["type"], &parameter["range"]), (&"INT".into(), &"1,3,4".into()));
-    assert_eq!(text.matches("--frames").count(), 1);
-    fails(&mut farm(&["--", "apply", "gaussian", "in.0001.exr", "o.exr"]), 2, &["is no sequence"]);
-    fails(&mut farm(&["--", "nodes"]), 2, &["is not apply"]);
-    fails(&mut farm(&["--", "apply"]), 2, &["the command", "is wrong"]);
 }
 
 #[test]

@@ -1,24 +1,22 @@
 //! `isophote farm`: a run of `apply` as a job for a render farm.
 //!
-//! Source: "Open Job Description, template schemas 2023-09" and its extension TASK_CHUNKING. A task is one frame, or
-//! a chunk of frames; it runs the same command with `--frames` of its own, and with `--skip-existing` unless that has
-//! `--force`, so that it may be run again, also twice at once.
+//! A task is one frame, or a chunk of frames; it runs the same command with `--frames` of its own, and with
+//! `--skip-existing` unless that has `--force`, so that it may be run again, also twice at once.
 
-use std::path::{Path, PathBuf};
+use clap::{Args, Subcommand};
 
-use clap::parser::ValueSource;
-use clap::{Arg, ArgMatches, Args, Command, FromArgMatches, Subcommand};
-use serde_json::{Value, json};
-
-use super::apply::ApplyArgs;
-use super::shared::ForceArgs;
-use isophote_files::error::{Error, Result};
-use isophote_files::frames::range_expression;
+use isophote_files::error::Result;
 use isophote_files::replacing::Made;
 use isophote_files::{files, output};
+use job::Job;
+use opencue::OpenCueArgs;
+use openjd::OpenJdArgs;
+use slurm::SlurmArgs;
 
-/// Longest name of a job.
-const LONGEST_NAME: usize = 128;
+mod job;
+mod opencue;
+mod openjd;
+mod slurm;
 
 /// Options of `farm`.
 #[derive(Args, Debug)]
@@ -33,267 +31,34 @@ pub struct FarmArgs {
 enum FarmCommand {
     /// Writes an Open Job Description template (jobtemplate-2023-09) for an apply command.
     Openjd(OpenJdArgs),
-}
-
-/// Options of `farm openjd`.
-#[derive(Args, Debug)]
-struct OpenJdArgs {
-    /// The template file (.json) [default: standard output].
-    #[arg(long, short, value_name = "FILE")]
-    output: Option<PathBuf>,
-    /// Name of the job.
-    #[arg(long)]
-    name: Option<String>,
-    /// Frames per task, by the extension TASK_CHUNKING [default: 1].
-    #[arg(long, value_name = "N", value_parser = clap::value_parser!(u32).range(1..=1_000_000))]
-    chunk: Option<u32>,
-    #[command(flatten)]
-    force: ForceArgs,
-    /// The command after --: apply with its arguments.
-    #[arg(last = true, required = true)]
-    command: Vec<String>,
-}
-
-/// The command of a job.
-struct Job {
-    /// Declaration of the arguments of `apply`.
-    declared: Command,
-    /// Arguments that are given.
-    given: ArgMatches,
-    /// Their values.
-    parsed: ApplyArgs,
+    /// Writes a script for sbatch, an array job of Slurm, for an apply command.
+    Slurm(SlurmArgs),
+    /// Writes an outline for pycuerun, a job of OpenCue, for an apply command.
+    Opencue(OpenCueArgs),
 }
 
 /// Runs the verb.
 ///
 /// # Errors
-/// [`Error::Input`] for commands that are none of `apply` on a sequence, and places that cannot be written.
+/// `Error::Input` for commands that are none of `apply` on a sequence, and places that cannot be written.
 pub fn run(args: &FarmArgs) -> Result<()> {
-    let FarmCommand::Openjd(args) = &args.command;
-    let job = Job::new(&args.command)?;
-    if let Some(path) = &args.output {
-        let made = Made { from: None, to: path };
-        args.force.consent().check(&[made], false, || job.parsed.inputs(&[], None))?;
-    }
-    let template = template(args, &job)?;
-    let text = serde_json::to_string_pretty(&template)
-        .map_err(|e| Error::failure(e, "this is a mistake in the program; please report it"))?;
-    match &args.output {
-        Some(path) => files::write_bytes(path, args.force.existing(), format!("{text}\n").as_bytes()),
-        None => output::print(&format!("{text}\n")),
-    }
-}
-
-impl Job {
-    fn new(command: &[String]) -> Result<Self> {
-        let wrong = |problem: String| Error::input("the command", problem, "write farm openjd -- apply ...");
-        if command.first().is_none_or(|verb| verb != "apply") {
-            return Err(wrong("is not apply".into()));
-        }
-        let mut declared = ApplyArgs::augment_args(Command::new("isophote apply"));
-        let given = declared.try_get_matches_from_mut(command);
-        let read = given.and_then(|given| Ok((ApplyArgs::from_arg_matches(&given)?, given)));
-        let (parsed, given) = read.map_err(|e| {
-            let text = e.render().to_string();
-            wrong(format!("is wrong: {}", text.lines().next().unwrap_or_default()))
-        })?;
-        if parsed.in_place {
-            let problem = "would stylize its own results where a task runs twice";
-            return Err(Error::input("--in-place", problem, "name other files for the results"));
-        }
-        Ok(Self { declared, given, parsed })
-    }
-
-    /// The command without its frames, and with files by their full paths: workers start elsewhere. Arguments without a name
-    /// come first.
-    fn words(&self) -> Result<Vec<String>> {
-        let places = self.parsed.places()?;
-        let is_given = |arg: &&Arg| {
-            let source = self.given.value_source(arg.get_id().as_str());
-            arg.get_id() != "frames" && source == Some(ValueSource::CommandLine)
-        };
-        let (plain, options): (Vec<&Arg>, Vec<&Arg>) =
-            self.declared.get_arguments().filter(is_given).partition(|arg| arg.is_positional());
-        let mut words = vec!["apply".to_owned()];
-        for arg in plain.into_iter().chain(options) {
-            let id = arg.get_id().as_str();
-            let option = arg.get_long().map(|name| format!("--{name}"));
-            if !arg.get_action().takes_values() {
-                words.extend(option);
-                continue;
-            }
-            let place = places.iter().find(|place| place.id == id);
-            for value in self.given.get_raw(id).into_iter().flatten() {
-                let value = match place {
-                    Some(place) => full(place.path)?,
-                    // The command is text.
-                    None => value.to_string_lossy().into_owned(),
-                };
-                words.push(option.as_ref().map_or(value.clone(), |option| format!("{option}={value}")));
-            }
-        }
-        words.iter().try_for_each(|word| check(word))?;
-        Ok(words)
-    }
-}
-
-/// Refuses what a template would take for a variable.
-fn check(text: &str) -> Result<()> {
-    if !text.contains("{{") {
-        return Ok(());
-    }
-    let problem = format!("holds '{text}', and {{{{ begins a variable in a template");
-    Err(Error::input("the command", problem, "choose other names"))
-}
-
-/// The full path of a file.
-fn full(path: &Path) -> Result<String> {
-    let wrong = |problem: String| Error::file(path, problem, "write it in full");
-    let full = std::path::absolute(path).map_err(|e| wrong(format!("has no full path: {e}")))?;
-    full.into_os_string().into_string().map_err(|_| wrong("lies in a folder whose name is no UTF-8".into()))
-}
-
-fn template(args: &OpenJdArgs, job: &Job) -> Result<Value> {
-    let parsed = &job.parsed;
-    let range = range_expression(&parsed.frame_numbers()?);
-    let mut words = job.words()?;
-    words.extend(["--frames".into(), "{{Task.Param.Frame}}".into()]);
-    if !(parsed.skip_existing || parsed.consent().force) {
-        words.push("--skip-existing".into());
-    }
-    let input = parsed.files()?.input;
-    let name = args.name.clone().unwrap_or_else(|| {
-        let input = input.file_name().map(|n| n.to_string_lossy().into_owned()).unwrap_or_default();
-        format!("isophote {input}")
-    });
-    let name: String = name.chars().filter(|c| !c.is_control()).take(LONGEST_NAME).collect();
-    check(&name)?;
-    let parameter = match args.chunk {
-        Some(count) => json!({
-            "name": "Frame",
-            "type": "CHUNK[INT]",
-            "range": range,
-            "chunks": {"defaultTaskCount": count, "rangeConstraint": "NONCONTIGUOUS"},
-        }),
-        None => json!({"name": "Frame", "type": "INT", "range": range}),
+    let options = match &args.command {
+        FarmCommand::Openjd(args) => &args.job,
+        FarmCommand::Slurm(args) => &args.job,
+        FarmCommand::Opencue(args) => &args.job,
     };
-    let mut template = json!({"specificationVersion": "jobtemplate-2023-09"});
-    if args.chunk.is_some() {
-        template["extensions"] = json!(["TASK_CHUNKING"]);
+    let job = Job::new(&options.command)?;
+    if let Some(path) = &options.output {
+        let made = Made { from: None, to: path };
+        options.force.consent().check(&[made], false, || job.parsed.inputs(&[], None))?;
     }
-    template["name"] = json!(name);
-    template["parameterDefinitions"] = json!([{
-        "name": "Isophote",
-        "type": "STRING",
-        "default": "isophote",
-        "description": "The program, by its name or path on the workers.",
-    }]);
-    template["steps"] = json!([{
-        "name": "Apply",
-        "parameterSpace": {"taskParameterDefinitions": [parameter]},
-        "script": {"actions": {"onRun": {"command": "{{Param.Isophote}}", "args": words}}},
-    }]);
-    Ok(template)
-}
-
-#[cfg(test)]
-mod tests {
-    use std::any::TypeId;
-
-    use clap::ValueHint;
-
-    use super::*;
-    use isophote_pictures::exr::MaskSource;
-
-    fn words(command: &[&str]) -> Vec<String> {
-        let command: Vec<String> = command.iter().map(|word| (*word).to_owned()).collect();
-        Job::new(&command).and_then(|job| job.words()).unwrap_or_else(|e| panic!("{command:?}: {e}"))
-    }
-
-    fn full_path(path: &str) -> String {
-        full(Path::new(path)).unwrap()
-    }
-
-    /// Every argument of `apply` whose value may be a path, by its type or by what shells are told of it.
-    fn arguments_with_paths() -> Vec<Arg> {
-        let takes_path = |arg: &&Arg| {
-            let hint = matches!(
-                arg.get_value_hint(),
-                ValueHint::AnyPath | ValueHint::FilePath | ValueHint::DirPath | ValueHint::ExecutablePath
-            );
-            let kind = arg.get_value_parser().type_id();
-            let path = kind == TypeId::of::<PathBuf>() || kind == TypeId::of::<MaskSource>();
-            assert_eq!(hint, path, "{} takes a path, or not", arg.get_id());
-            hint
-        };
-        let declared = ApplyArgs::augment_args(Command::new("apply"));
-        declared.get_arguments().filter(takes_path).cloned().collect()
-    }
-
-    #[test]
-    fn all_paths_of_a_command_are_full() {
-        let arguments = arguments_with_paths();
-        assert!(arguments.len() >= 8, "{arguments:?}");
-        let (input, output) = ("shot/in.####.exr", "shot/out.####.exr");
-        for arg in arguments {
-            let id = arg.get_id().as_str();
-            let path = "more/of.####.exr";
-            let Some(option) = arg.get_long().map(|long| format!("--{long}")) else {
-                let named = match id {
-                    "style" => [path, input, output],
-                    "input" => ["gaussian", path, output],
-                    _ => ["gaussian", input, path],
-                };
-                let words = words(&[&["apply"], &named[..]].concat());
-                assert!(
-                    words.contains(&full_path(path)) && !words.contains(&path.to_owned()),
-                    "{id}: {words:?}"
-                );
-                continue;
-            };
-            let files = if ["preset", "layered"].contains(&id) { "" } else { "gaussian" };
-            let fixed: Vec<&str> =
-                ["apply", files, input, output].into_iter().filter(|word| !word.is_empty()).collect();
-            let equals = format!("{option}={path}");
-            for more in [&[option.as_str(), path][..], &[&equals]] {
-                for command in [[&fixed[..], more].concat(), [&fixed[..1], more, &fixed[1..]].concat()] {
-                    let words = words(&command);
-                    let wanted = format!("{option}={}", full_path(path));
-                    assert_eq!(
-                        words.iter().filter(|word| **word == wanted).count(),
-                        1,
-                        "{command:?}: {words:?}"
-                    );
-                    assert!(!words.iter().any(|word| word.ends_with(&format!("={path}")) || word == path));
-                    for file in [input, output] {
-                        assert!(words.contains(&full_path(file)), "{command:?}: {words:?}");
-                    }
-                }
-            }
-        }
-    }
-
-    #[test]
-    fn words_that_are_no_paths_stay_as_they_are() {
-        // A layer and a view that are named as the files, a value that is, and words that stand for no file.
-        let (input, output) = ("in.####.exr", "out.####.exr");
-        let more = ["--layer", input, "--view=out.####.exr", "--set", "a=in.####.exr", "--motion=estimate"];
-        let mask = ["--mask", "cryptomatte:in.exr", "--force", "--frames", "1-5", "--memory=4GiB"];
-        let words = words(&[&["apply", "look:linocut", input, output][..], &more, &mask].concat());
-        let [input, output] = [input, output].map(full_path);
-        let wanted = ["apply", "look:linocut", &input, &output];
-        assert_eq!(words[..4], wanted);
-        for word in [
-            "--layer=in.####.exr",
-            "--view=out.####.exr",
-            "--set=a=in.####.exr",
-            "--motion=estimate",
-            "--mask=cryptomatte:in.exr",
-            "--force",
-            "--memory=4GiB",
-        ] {
-            assert!(words.contains(&word.to_owned()), "'{word}' is not in {words:?}");
-        }
-        assert_eq!(words.len(), 4 + 7, "no frames: {words:?}");
+    let text = match &args.command {
+        FarmCommand::Openjd(args) => args.text(&job),
+        FarmCommand::Slurm(args) => args.text(&job),
+        FarmCommand::Opencue(args) => args.text(&job),
+    }?;
+    match &options.output {
+        Some(path) => files::write_bytes(path, options.force.existing(), text.as_bytes()),
+        None => output::print(&text),
     }
 }

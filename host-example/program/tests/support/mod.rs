@@ -5,14 +5,17 @@ pub mod access;
 pub mod mattes;
 #[cfg(target_os = "linux")]
 pub mod others;
+#[cfg(target_os = "linux")]
 pub mod places;
+#[cfg(target_os = "linux")]
+pub mod slurm;
 pub mod video;
 #[cfg(target_os = "linux")]
 pub mod window;
 
 use std::fs;
 use std::path::{Path, PathBuf};
-use std::process::{Command, Output, Stdio};
+use std::process::{Command, Output};
 use std::sync::OnceLock;
 
 use tempfile::TempDir;
@@ -100,7 +103,7 @@ pub fn on_a_small_disk(folder: &Path, [before, after]: [&str; 2], more: &[&str])
         command.args(["-rm", "sh", "-c", &script, program]);
         command
     };
-    if !namespace("true").stderr(Stdio::null()).status().is_ok_and(|status| status.success()) {
+    if !namespace("true").stderr(std::process::Stdio::null()).status().is_ok_and(|status| status.success()) {
         eprintln!("\n*** SKIPPED: no disk may be mounted here ***\n");
         return None;
     }
