@@ -8,6 +8,7 @@ mod abi_vulkan;
 mod browser;
 mod bundle;
 mod c_images;
+#[cfg(unix)]
 mod c_readme;
 mod dist;
 mod docs;

@@ -6,7 +6,7 @@ use std::path::Path;
 use std::process::Command;
 
 use crate::support::{
-    self, IN_PIXELS, fails, folder, isophote, listing, picture, succeeds, turning_triangle, video_folder,
+    IN_PIXELS, fails, folder, isophote, listing, picture, succeeds, turning_triangle, video_folder,
 };
 use isophote_finishing::stylize::suggest;
 
@@ -56,7 +56,7 @@ fn a_file_in_the_place_of_a_verb_is_opened() {
 #[test]
 #[cfg(target_os = "linux")]
 fn a_window_without_a_graphics_driver_says_what_to_install() {
-    let Some(display) = support::window::Display::open("640x480") else { return };
+    let Some(display) = crate::support::window::Display::open("640x480") else { return };
     let folder = folder();
     save(folder.path(), &["photo.png"]);
     let mut command = run(folder.path(), &["photo.png"]);

@@ -34,7 +34,7 @@ const PACKAGES: [&str; 11] = [
 ];
 
 /// Files of tests beside the packages' own: of the program, then of the library and the plugin.
-const FILES: [&str; 34] = [
+const FILES: [&str; 35] = [
     "apply",
     "bad_input",
     "command_line",
@@ -44,6 +44,7 @@ const FILES: [&str; 34] = [
     "example",
     "export",
     "exr",
+    "farms",
     "guides",
     "info",
     "masks",
