@@ -133,8 +133,11 @@ fn there_are_archives_and_checksums_and_nothing_half_done() {
     let others = [format!("isophote-{VERSION}.tgz"), "isophote.html".to_owned(), "SHA256SUMS".to_owned()];
     let expected: BTreeSet<String> = archives.into_iter().chain(others).collect();
     let mut found = files(&Unpacked::get().archives());
-    for ending in [".whl", ".zip"] {
-        let named: Vec<String> = found.iter().filter(|name| name.ends_with(ending)).cloned().collect();
+    for (beginning, ending) in
+        [("isophote-", ".whl"), ("isophote-blender-", ".zip"), ("isophote-comfyui-", ".zip")]
+    {
+        let is_meant = |name: &&String| name.starts_with(beginning) && name.ends_with(ending);
+        let named: Vec<String> = found.iter().filter(is_meant).cloned().collect();
         assert!(matches!(named.as_slice(), [name] if name.contains(VERSION)), "{found:?}");
         found.remove(&named[0]);
     }
@@ -414,9 +417,10 @@ fn the_wheel_and_the_extension_hold_licences_too() {
     let library = std::fs::read_to_string(library).unwrap();
     let out = TempDir::new().unwrap();
     let archives = unpacked.archives();
-    for (ending, place) in [("whl", "*.dist-info/licenses"), ("zip", ".")] {
+    for (ending, named, place) in [("whl", "*.whl", "*.dist-info/licenses"), ("zip", "*-blender-*.zip", ".")]
+    {
         let folder = out.path().join(ending);
-        let archive = format!("'{}'/*.{ending}", archives.display());
+        let archive = format!("'{}'/{named}", archives.display());
         unpacked.run_in(out.path(), &format!("python3 -m zipfile -e {archive} {ending}"));
         let listed = unpacked.run_in(&folder, &format!("cd {place} && ls LICENSE*"));
         let expected = ["LICENSE-APACHE", "LICENSE-MIT", "LICENSES-OF-OTHERS.txt"];

@@ -66,7 +66,7 @@ enum Chore {
     Card(dist::Options),
     /// Makes the OpenFX bundle, and installs it
     Bundle(bundle::Options),
-    /// Packs all that users install: the library, the plugin, the program, the wheel, the Blender extension
+    /// Packs all that users install: the library, the plugin, the program, the wheel, the Blender extension, the nodes of ComfyUI
     Dist(dist::Options),
     /// Writes the list of guides where it must stand as text
     Guides(guides::Options),
@@ -76,6 +76,8 @@ enum Chore {
     Wheel(python::WheelOptions),
     /// Makes the extension for Blender, with the wheel inside
     Blender(python::WheelOptions),
+    /// Packs the nodes of ComfyUI, which ask for the wheel
+    Comfyui(python::WheelOptions),
     /// Writes what editors know of the Python package's nodes from their declarations
     Stubs(python::StubsOptions),
     /// Writes CONTRIBUTING's table of crates from their manifests and sources
@@ -106,6 +108,7 @@ fn main() -> ExitCode {
         Chore::Bench(options) => bench::run(&options),
         Chore::Wheel(options) => python::wheel(&options),
         Chore::Blender(options) => python::blender(&options),
+        Chore::Comfyui(options) => python::comfyui(&options),
         Chore::Stubs(options) => python::stubs(&options),
         Chore::Crates(options) => crates::run(&options),
         Chore::Readme(options) => readme::run(&options),

@@ -1,5 +1,5 @@
-//! `cargo xtask wheel`, `blender` and `stubs`: the Python package and the Blender extension, and their tests for `cargo xtask
-//! test`.
+//! `cargo xtask wheel`, `blender`, `comfyui` and `stubs`: the Python package, the Blender extension and the nodes of ComfyUI, and
+//! their tests for `cargo xtask test`.
 //!
 //! Maturin, pytest and the rest live in a virtual environment below `target`, in the versions of
 //! `nodes/python/requirements.txt`. The extension module has a target folder of its own there: maturin hands its build the
@@ -17,7 +17,7 @@ use std::process::Command;
 /// The profile of what users get.
 pub const RELEASED: &str = "dist";
 
-/// Options of `cargo xtask wheel` and `cargo xtask blender`.
+/// Options of `cargo xtask wheel`, `cargo xtask blender` and `cargo xtask comfyui`.
 #[derive(clap::Args)]
 pub struct WheelOptions {
     /// Takes the build for development, which is slow
@@ -46,6 +46,16 @@ pub fn blender(options: &WheelOptions) -> Result<()> {
     Ok(())
 }
 
+/// Packs the nodes of ComfyUI and says where they are.
+///
+/// # Errors
+/// The first step that fails.
+pub fn comfyui(options: &WheelOptions) -> Result<()> {
+    let (environment, wheel) = released(options)?;
+    println!("{}", pack_nodes(&environment, &wheel, &target_dir("wheels"))?.display());
+    Ok(())
+}
+
 /// The wheel that users get, and what it was built with.
 fn released(options: &WheelOptions) -> Result<(Environment, PathBuf)> {
     setup::ensure(&[&C_COMPILER, &PYTHON])?;
@@ -68,7 +78,7 @@ fn turn() -> Result<File> {
     Ok(file)
 }
 
-/// Packs the wheel and the extension of a build into a folder. The library and the program that packs must be built.
+/// Packs the wheel, the extension and the nodes of ComfyUI of a build into a folder. The library and the program that packs must be built.
 ///
 /// # Errors
 /// The first step that fails.
@@ -76,17 +86,30 @@ pub fn pack(profile: &str, out: &Path) -> Result<()> {
     let _turn = turn()?;
     let environment = Environment::tools()?;
     let wheel = build_wheel(&environment, profile, out)?;
-    pack_extension(&environment, &wheel, out).map(drop)
+    pack_extension(&environment, &wheel, out)?;
+    pack_nodes(&environment, &wheel, out).map(drop)
 }
 
 /// Packs the Blender extension with a wheel.
 fn pack_extension(environment: &Environment, wheel: &Path, out: &Path) -> Result<PathBuf> {
-    for old in files(out, "zip").unwrap_or_default() {
-        std::fs::remove_file(&old).context(|| format!("cannot replace {}", old.display()))?;
+    packed(environment, "extension.py", wheel, out)
+}
+
+/// Packs the nodes of ComfyUI for a wheel.
+fn pack_nodes(environment: &Environment, wheel: &Path, out: &Path) -> Result<PathBuf> {
+    packed(environment, "comfyui.py", wheel, out)
+}
+
+/// The file that a tool of the package packs for a wheel, whose name it prints.
+fn packed(environment: &Environment, tool: &str, wheel: &Path, out: &Path) -> Result<PathBuf> {
+    let cannot = || format!("{tool} cannot pack for {}", wheel.display());
+    let mut python = environment.program("python");
+    let output =
+        python.arg(package().join("tools").join(tool)).arg(wheel).arg(out).output().context(cannot)?;
+    if !output.status.success() {
+        return Err(Failure(format!("{}: {}", cannot(), String::from_utf8_lossy(&output.stderr).trim())));
     }
-    let mut tool = environment.program("python");
-    run_command(tool.arg(package().join("tools/extension.py")).arg(wheel).arg(out))?;
-    files(out, "zip")?.pop().ok_or_else(|| Failure("the extension was not packed".into()))
+    Ok(PathBuf::from(String::from_utf8_lossy(&output.stdout).trim()))
 }
 
 /// Options of `cargo xtask stubs`.
@@ -117,7 +140,9 @@ pub fn stubs(options: &StubsOptions) -> Result<()> {
 pub fn tests() -> Result<Vec<String>> {
     let mut names = Vec::new();
     let mut sources = files(&package().join("tests"), "py")?;
-    sources.extend(files(&package().join(BLENDER_TESTS), "py")?);
+    for folder in [COMFYUI_TESTS, BLENDER_TESTS] {
+        sources.extend(files(&package().join(folder), "py")?);
+    }
     for file in sources {
         let text = std::fs::read_to_string(&file).context(|| format!("cannot read {}", file.display()))?;
         let functions = text.lines().filter_map(|line| line.strip_prefix("def test_")?.split_once('('));
@@ -145,8 +170,14 @@ pub fn test(filter: Option<&str>) -> Result<()> {
     let mut pytest = environment.pytest(filter);
     pytest.arg(package().join("tests")).env("ISOPHOTE_HOST", host_file("debug"));
     run_tests(&mut pytest, filter)?;
+    let nodes = pack_nodes(&environment, &wheel, &target_dir("python").join("comfyui"))?;
+    let mut pytest = environment.pytest(filter);
+    run_tests(pytest.arg(package().join(COMFYUI_TESTS)).env("ISOPHOTE_COMFYUI", nodes), filter)?;
     test_in_blender(&environment, &wheel, filter)
 }
+
+/// Tests of the nodes of ComfyUI, in the package's folder.
+const COMFYUI_TESTS: &str = "comfyui/tests";
 
 /// Tests of the Blender extension, in the package's folder.
 const BLENDER_TESTS: &str = "blender/tests";

@@ -56,7 +56,13 @@ def writable(out: Any) -> Array:
         return out
     if not hasattr(out, "__dlpack__"):
         raise InvalidValueError(f"out is no array and no tensor with __dlpack__, but of {type(out)}")
-    return tensor(out, "out")
+    array = tensor(out, "out")
+    # Before its version 1, DLPack does not say whether memory may be written to, which NumPy takes for no.
+    if not array.flags.writeable and hasattr(out, "numpy"):
+        same = out.numpy()
+        if isinstance(same, np.ndarray) and np.shares_memory(same, array):
+            return same
+    return array
 
 
 class Target:

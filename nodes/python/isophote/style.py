@@ -145,6 +145,11 @@ class Style:
         return tuple(name for name in ("color", *GUIDES) if name in read)
 
     @property
+    def lengths(self) -> str:
+        """What its lengths are unless a picture says otherwise: `relative` or `pixels`, as in `Picture`."""
+        return "relative" if self._reference_height else "pixels"
+
+    @property
     def _reference_height(self) -> int:
         """Lines of the pictures that its lengths are meant for; 0: lengths are pixels."""
         return self._style.reference_height()

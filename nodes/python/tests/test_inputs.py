@@ -31,6 +31,16 @@ class Tensor:
         return self.device
 
 
+class OlderTensor(Tensor):
+    """One that hands over DLPack of before version 1, as those of PyTorch do, and has a method for arrays."""
+
+    def __dlpack__(self, **options: Any) -> Any:
+        return self.array.__dlpack__()
+
+    def numpy(self) -> np.ndarray:
+        return self.array
+
+
 def equal(a: np.ndarray, b: np.ndarray) -> bool:
     return a.shape == b.shape and a.dtype == b.dtype and np.array_equal(a, b)
 
@@ -130,6 +140,9 @@ def test_tensors_take_results_and_are_guides(small: np.ndarray) -> None:
     expected = isophote.apply("cartoon", small)
     out = Tensor(np.zeros_like(small))
     assert isophote.apply("cartoon", Tensor(small), out=out) is out and equal(out.array, expected)
+    older = OlderTensor(np.zeros_like(small))
+    assert not np.from_dlpack(older).flags.writeable
+    assert isophote.apply("cartoon", small, out=older) is older and equal(older.array, expected)
     depth = np.linspace(1, 9, small.shape[1], dtype=np.float32) * np.ones((small.shape[0], 1), np.float32)
     given = isophote.apply("cartoon", Tensor(small), depth=Tensor(depth), lengths="pixels")
     assert equal(given, isophote.apply("cartoon", small, depth=depth, lengths="pixels"))
@@ -192,3 +205,13 @@ def test_tensors_of_torch_are_taken(small: np.ndarray) -> None:
     assert isophote.apply("gaussian", tensor, out=tensor) is tensor and equal(tensor.numpy(), expected)
     with pytest.raises(isophote.InvalidValueError, match="cannot be read as a DLPack tensor"):
         isophote.apply("gaussian", tensor.float().requires_grad_())
+
+
+def test_a_control_map_without_alpha_leaves_the_medium_alone(small):
+    """Its alpha is the strength of the medium, and what is missing there changes nothing."""
+    plain = isophote.apply("ink", small)
+    for channels in (3, 4):
+        neutral = np.full((*small.shape[:2], channels), 0.5, np.float32)
+        assert np.array_equal(isophote.apply("ink", small, control=neutral), plain)
+    painted = np.dstack([neutral[..., :3], np.ones(small.shape[:2], np.float32)])
+    assert not np.array_equal(isophote.apply("ink", small, control=painted), plain)

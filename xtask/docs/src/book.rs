@@ -7,7 +7,7 @@ use isophote::registry;
 use std::path::Path;
 
 /// Pages written for the site: part, place, title.
-const WRITTEN: [(&str, &str, &str); 33] = [
+const WRITTEN: [(&str, &str, &str); 34] = [
     ("", "index", "Isophote"),
     ("", "install", "Install"),
     ("", "windows", "Windows"),
@@ -35,6 +35,7 @@ const WRITTEN: [(&str, &str, &str); 33] = [
     ("For render TDs", "farms/formats", "Formats"),
     ("For render TDs", "farms/memory", "Memory and threads"),
     ("For Python programmers", "python/arrays", "Arrays, looks, sequences"),
+    ("For Python programmers", "python/comfyui", "Nodes for ComfyUI"),
     ("For Blender users", "blender/extension", "The Blender extension"),
     ("For the web", "web/page", "The page"),
     ("For contributors", "contributors/start", "Where to begin"),
