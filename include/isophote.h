@@ -185,7 +185,7 @@ extern "C" {
 #define ISOPHOTE_KIND_POSITION 8
 
 // A control map: what an artist wants of places, 0.5 for no change; detail, width of lines, their amount, and strength of
-// the medium. Its values are data, which no colour space changes.
+// the medium: 4 channels; of fewer, that strength does not change. Its values are data, which no colour space changes.
 #define ISOPHOTE_KIND_CONTROL 9
 
 // A number.

@@ -68,7 +68,7 @@ pub const ISOPHOTE_KIND_MOTION: u32 = 7;
 /// but 0, 0, 0 is something.
 pub const ISOPHOTE_KIND_POSITION: u32 = 8;
 /// A control map: what an artist wants of places, 0.5 for no change; detail, width of lines, their amount, and strength of
-/// the medium. Its values are data, which no colour space changes.
+/// the medium: 4 channels; of fewer, that strength does not change. Its values are data, which no colour space changes.
 pub const ISOPHOTE_KIND_CONTROL: u32 = 9;
 
 /// Type of a parameter. One of `ISOPHOTE_PARAM_...`.

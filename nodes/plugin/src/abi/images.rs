@@ -17,6 +17,9 @@ use std::ops::Range;
 use std::sync::atomic::{AtomicU64, Ordering};
 use std::sync::{Mutex, PoisonError};
 
+/// Value of a control map that changes nothing.
+const NEUTRAL: f32 = 0.5;
+
 /// Rows that a thread reads or writes one after the other.
 const ROWS: u32 = 32;
 
@@ -211,6 +214,9 @@ impl Checked {
             for point in row.chunks_exact_mut(4) {
                 point[3] = f32::from(u8::from(point[..3] != [0.0; 3]));
             }
+        }
+        if input == GraphInput::Control && self.channels < 4 {
+            row.chunks_exact_mut(4).for_each(|map| map[3] = NEUTRAL);
         }
         // Numbers, not shares of the largest one.
         let most = match self.sample {
