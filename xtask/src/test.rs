@@ -35,6 +35,10 @@ pub struct Options {
     #[arg(long, conflicts_with_all = ["list", "tests_only"])]
     target: Option<target::Target>,
 
+    /// Besides, all that can be said of other machines: of each target
+    #[arg(long, conflicts_with_all = ["filter", "list", "tests_only", "target"])]
+    everywhere: bool,
+
     /// Only the job of this name, of those that a whole run starts beside the programs; all is built
     #[arg(long, hide = true)]
     job: Option<String>,
@@ -52,6 +56,15 @@ pub fn run(options: &Options) -> Result<()> {
     if let Some(target) = options.target {
         return target::run(target, options.filter.as_deref());
     }
+    if options.everywhere {
+        let here = run_here(options);
+        return target::run_all().and(here);
+    }
+    run_here(options)
+}
+
+/// Runs what can be said of this machine.
+fn run_here(options: &Options) -> Result<()> {
     setup::ensure(&[
         &C_COMPILER,
         &CPP_COMPILER,

@@ -1,7 +1,8 @@
 //! `cargo xtask test --target`: the tests on other machines than this one, emulated, and what can be said of systems that are
 //! not there.
 
-use crate::error::Result;
+use crate::error::{Failure, Result};
+use clap::ValueEnum;
 
 mod aarch64;
 mod check;
@@ -10,7 +11,7 @@ mod running;
 mod windows;
 
 /// Machines other than this one.
-#[derive(Clone, Copy, clap::ValueEnum)]
+#[derive(Clone, Copy, ValueEnum)]
 pub enum Target {
     /// 64-bit ARM with Linux, in QEMU
     Aarch64,
@@ -32,4 +33,18 @@ pub fn run(target: Target, filter: Option<&str>) -> Result<()> {
         Target::Windows => windows::run(filter),
         Target::Check => check::run(),
     }
+}
+
+/// Runs the tests of every target.
+///
+/// # Errors
+/// The targets that fail, each with its reason.
+pub fn run_all() -> Result<()> {
+    let failed = Target::value_variants().iter().filter_map(|target| {
+        let name = target.to_possible_value().map(|value| value.get_name().to_owned()).unwrap_or_default();
+        println!("\n=== {name}");
+        run(*target, None).err().map(|why| format!("{name}: {why}"))
+    });
+    let failed: Vec<String> = failed.collect();
+    if failed.is_empty() { Ok(()) } else { Err(Failure(failed.join("; "))) }
 }
