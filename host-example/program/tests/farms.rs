@@ -85,8 +85,9 @@ fn scripts_of_slurm_hold_what_the_command_asks_for() {
     let folder = folder();
     frames(folder.path(), 1..=7);
     let script = |more: &[&str], command: &[&str]| {
-        let arguments = [more, &["--"], &JOB[..], command].concat();
-        succeeds(&mut farm(folder.path(), "slurm", &arguments)).0
+        let arguments = [&["--force", "-o", "job.sh"], more, &["--"], &JOB[..], command].concat();
+        succeeds(&mut farm(folder.path(), "slurm", &arguments));
+        fs::read_to_string(folder.path().join("job.sh")).expect("a script")
     };
     let plain = script(&[], &[]);
     assert!(plain.contains("#SBATCH --array=0-6\n") && plain.contains("\n    7\n)\n"), "{plain}");

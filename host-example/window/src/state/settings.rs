@@ -167,7 +167,9 @@ mod tests {
         for folder in ["/looks", "/more", "/looks"] {
             settings.add_look_folder(Path::new(folder));
         }
-        settings.remove_look_folder(Path::new("/more"));
+        // With the letter of a disk, on Windows.
+        let [looks, more] = ["/looks", "/more"].map(|folder| std::path::absolute(folder).unwrap());
+        settings.remove_look_folder(&more);
         assert_eq!(settings.place_for_looks(), place.with_file_name("looks"));
         for number in 0..20 {
             settings.remember(Path::new(&format!("/pictures/{number}.png")));
@@ -180,9 +182,8 @@ mod tests {
         let read = Settings::read_from(&place).unwrap();
         assert_eq!((read.window, read.recent.len()), (Some((900, 500)), MOST_RECENT));
         assert_eq!(read.panel_width, Some(412.5));
-        // With the letter of a disk, on Windows.
         assert_eq!(read.recent[0], std::path::absolute("/pictures/12.png").unwrap());
-        assert_eq!(read.look_folders, [Path::new("/looks")]);
+        assert_eq!(read.look_folders, [looks]);
         assert_eq!(read.favourites, [Path::new("cartoon")]);
         assert_eq!(read.folder.as_deref(), Some(&*std::path::absolute("/pictures").unwrap()));
         for broken in ["", "{", r#"{"window": "large"}"#] {
