@@ -21,20 +21,21 @@ pub struct Archive {
 enum Contents {
     /// They are gathered and packed here.
     Gathered(fn(&Built, &mut Tree) -> Result<()>),
-    /// The tools of other languages have packed them, into a file with this ending.
-    Packed(&'static str),
+    /// The tools of other languages have packed them, into a file whose name begins and ends so.
+    Packed(&'static str, &'static str),
 }
 
 /// All archives.
-pub const ARCHIVES: [Archive; 8] = [
+pub const ARCHIVES: [Archive; 9] = [
     Archive { kind: "library", contents: Contents::Gathered(library) },
     Archive { kind: "openfx", contents: Contents::Gathered(openfx) },
     Archive { kind: "program", contents: Contents::Gathered(program) },
     Archive { kind: "card", contents: Contents::Gathered(card) },
-    Archive { kind: "wheel", contents: Contents::Packed("whl") },
-    Archive { kind: "blender", contents: Contents::Packed("zip") },
-    Archive { kind: "npm", contents: Contents::Packed("tgz") },
-    Archive { kind: "page", contents: Contents::Packed("html") },
+    Archive { kind: "wheel", contents: Contents::Packed("isophote-", ".whl") },
+    Archive { kind: "blender", contents: Contents::Packed("isophote-blender-", ".zip") },
+    Archive { kind: "comfyui", contents: Contents::Packed("isophote-comfyui-", ".zip") },
+    Archive { kind: "npm", contents: Contents::Packed("isophote-", ".tgz") },
+    Archive { kind: "page", contents: Contents::Packed("isophote", ".html") },
 ];
 
 impl Archive {
@@ -53,8 +54,8 @@ impl Archive {
                 let sum = pack::pack(&tree, &folder, &to.join(&name), built.draft)?;
                 Ok((name, sum))
             }
-            Contents::Packed(ending) => {
-                let file = built.only(self.kind, ending)?;
+            Contents::Packed(beginning, ending) => {
+                let file = built.only(self.kind, beginning, ending)?;
                 let name = file.file_name().unwrap_or_default().to_string_lossy().into_owned();
                 let copy = to.join(&name);
                 std::fs::copy(&file, &copy).map_err(Error::at(&file))?;
@@ -74,7 +75,7 @@ pub struct Built {
     pub bundle: PathBuf,
     /// Folder of the program's icons.
     pub icons: PathBuf,
-    /// Folder of what the tools of other languages have packed: wheel, Blender extension, npm package, page.
+    /// Folder of what the tools of other languages have packed: wheel, Blender extension, nodes of ComfyUI, npm package, page.
     pub packed: PathBuf,
     /// True where it is not what users get.
     pub draft: bool,
@@ -92,16 +93,21 @@ impl Built {
         Ok(())
     }
 
-    /// The one file with this ending that the tools of other languages have packed.
-    fn only(&self, kind: &str, ending: &str) -> Result<PathBuf> {
+    /// The one file with this beginning and ending that the tools of other languages have packed.
+    fn only(&self, kind: &str, beginning: &str, ending: &str) -> Result<PathBuf> {
         let entries = std::fs::read_dir(&self.packed).map_err(Error::at(&self.packed))?;
-        let files = entries.flatten().map(|entry| entry.path());
-        let found: Vec<PathBuf> =
-            files.filter(|path| path.extension().is_some_and(|e| e == ending)).collect();
+        let is_meant = |entry: &std::fs::DirEntry| {
+            entry
+                .file_name()
+                .to_str()
+                .is_some_and(|name| name.starts_with(beginning) && name.ends_with(ending))
+        };
+        let found: Vec<PathBuf> = entries.flatten().filter(is_meant).map(|entry| entry.path()).collect();
         match found.as_slice() {
             [file] => Ok(file.clone()),
             _ => {
-                let problem = format!("holds {} files .{ending} instead of one, the {kind}", found.len());
+                let problem =
+                    format!("holds {} files {beginning}...{ending} instead of one, the {kind}", found.len());
                 Err(Error::malformed(&self.packed, problem))
             }
         }
