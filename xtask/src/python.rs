@@ -92,16 +92,27 @@ pub fn pack(profile: &str, out: &Path) -> Result<()> {
 
 /// Packs the Blender extension with a wheel.
 fn pack_extension(environment: &Environment, wheel: &Path, out: &Path) -> Result<PathBuf> {
-    packed(environment, "extension.py", wheel, out)
+    packed(environment, "extension.py", "isophote-blender-", wheel, out)
 }
 
 /// Packs the nodes of ComfyUI for a wheel.
 fn pack_nodes(environment: &Environment, wheel: &Path, out: &Path) -> Result<PathBuf> {
-    packed(environment, "comfyui.py", wheel, out)
+    packed(environment, "comfyui.py", "isophote-comfyui-", wheel, out)
 }
 
-/// The file that a tool of the package packs for a wheel, whose name it prints.
-fn packed(environment: &Environment, tool: &str, wheel: &Path, out: &Path) -> Result<PathBuf> {
+/// The file that a tool of the package packs for a wheel, whose name it prints, in the place of others that begin as it does.
+fn packed(
+    environment: &Environment,
+    tool: &str,
+    beginning: &str,
+    wheel: &Path,
+    out: &Path,
+) -> Result<PathBuf> {
+    let begins =
+        |path: &Path| path.file_name().is_some_and(|name| name.to_string_lossy().starts_with(beginning));
+    for old in files(out, "zip").unwrap_or_default().into_iter().filter(|path| begins(path)) {
+        std::fs::remove_file(&old).context(|| format!("cannot replace {}", old.display()))?;
+    }
     let cannot = || format!("{tool} cannot pack for {}", wheel.display());
     let mut python = environment.program("python");
     let output =

@@ -11,9 +11,6 @@ from typing import Any
 
 import isophote
 
-_STEADY = "steadiness"
-"""The parameter that makes frames depend on their neighbours."""
-
 
 def stylized(style: Any, params: dict[str, Any], image: Any, guides: dict[str, Any]) -> Any:
     """The result of a style on a batch, a tensor where the batch is.
