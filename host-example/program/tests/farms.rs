@@ -197,7 +197,7 @@ fn outlines_of_opencue_run_the_command() {
     let mut run = Command::new("python3");
     run.current_dir(folder.path()).args(["run.py", "job.outline", "[[1, 2], [3, 4], [1, 2]]"]);
     let (text, _) = succeeds(run.env("ISOPHOTE_LIBRARY", crate::support::library()));
-    assert!(text.contains("1-4 2 3 1024m"), "{text}");
+    assert!(text.contains("1-4 2 3 1280m"), "{text}");
     are_as_without_a_farm(folder.path(), 1..=4);
     // Steps are written otherwise there, and variables are its own.
     let (text, _) = succeeds(&mut farm(

@@ -46,8 +46,8 @@ impl OpenCueArgs {
         if job.parsed.threads > 0 {
             values.push_str(&format!(", cores={}", job.parsed.threads));
         }
-        if let Some(memory) = job.parsed.memory {
-            values.push_str(&format!(", memory=\"{}m\"", memory.0.div_ceil(1 << 20)));
+        if let Some(mebibytes) = job.memory() {
+            values.push_str(&format!(", memory=\"{mebibytes}m\""));
         }
         let name = literal(&layer(&job.name(&self.job)?))?;
         let head = "# An outline of OpenCue: pycuerun FILE RANGE. A task is a chunk of frames.";

@@ -14,9 +14,6 @@ use isophote_files::frames::range_expression;
 /// Most tasks of an array in a cluster that does not say otherwise (`MaxArraySize` is 1001, and numbers begin at 0).
 const MOST_TASKS: usize = 1001;
 
-/// Memory of a task beyond the limit of the command, which bounds its pictures: the program, its library and files, bytes.
-const BESIDES: u64 = 256 << 20;
-
 /// What follows the frames in the script. Exit code 1 is a fault of the machine, and 2 one of the input, which is the same on
 /// every machine. A signal, such as that of Slurm where memory ends, is neither.
 const RUN: &str = r#"code=$?
@@ -89,8 +86,8 @@ impl SlurmArgs {
         if job.parsed.threads > 0 {
             options.push(format!("--cpus-per-task={}", job.parsed.threads));
         }
-        if let Some(memory) = job.parsed.memory {
-            options.push(format!("--mem={}M", (memory.0 + BESIDES).div_ceil(1 << 20)));
+        if let Some(mebibytes) = job.memory() {
+            options.push(format!("--mem={mebibytes}M"));
         }
         Ok(options)
     }
