@@ -5,7 +5,9 @@ use crate::packing;
 use crate::python;
 use crate::scene;
 use crate::setup::{self, BLENDER, C_COMPILER, FFMPEG, PYTHON, VULKAN};
-use crate::tools::{HandedOn, build_with_host, heading, host, program, run as run_command, target_dir};
+use crate::tools::{
+    HandedOn, build, build_with_host, heading, host, program, run as run_command, target_dir,
+};
 
 /// The package that makes the site.
 const PACKAGE: &str = "isophote-docs";
@@ -30,4 +32,13 @@ pub fn run(options: &HandedOn) -> Result<()> {
         docs.arg("--blender").arg(blender);
     }
     run_command(docs.args(&options.arguments))
+}
+
+/// Checks the pages, and the links between them, without commands and pictures.
+///
+/// # Errors
+/// What is wrong with them.
+pub fn check() -> Result<()> {
+    build("debug", &[PACKAGE])?;
+    run_command(&mut program(PACKAGE, "debug"))
 }

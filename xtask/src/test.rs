@@ -2,8 +2,8 @@
 
 use crate::error::{Context, Failure, Result};
 use crate::setup::{
-    self, BINUTILS, BLENDER, BROWSER, C_COMPILER, CLANG, CPP_COMPILER, FFMPEG, NODE, PACKAGING, PYTHON,
-    SLURM, VALGRIND, VULKAN, VULKAN_HEADERS, WASM, XVFB,
+    self, BINUTILS, BLENDER, C_COMPILER, CLANG, CPP_COMPILER, FFMPEG, PACKAGING, PYTHON, SLURM, VALGRIND,
+    VULKAN, VULKAN_HEADERS, XVFB,
 };
 use crate::tools::{cargo, cargo_command, heading, library_file, root, target_dir};
 use crate::{cases, python, web};
@@ -31,11 +31,11 @@ pub struct Options {
     #[arg(long)]
     tests_only: bool,
 
-    /// Only what can be said of another machine
+    /// Only what a whole run leaves out: tests of the browser, of packages, or of another machine
     #[arg(long, conflicts_with_all = ["list", "tests_only"])]
     target: Option<target::Target>,
 
-    /// Besides, all that can be said of other machines: of each target
+    /// Besides, the tests of each target
     #[arg(long, conflicts_with_all = ["filter", "list", "tests_only", "target"])]
     everywhere: bool,
 
@@ -74,14 +74,10 @@ fn run_here(options: &Options) -> Result<()> {
         &VALGRIND,
         &XVFB,
         &FFMPEG,
-        &BROWSER,
         &CLANG,
-        &PACKAGING,
         &PYTHON,
         &BLENDER,
         &SLURM,
-        &NODE,
-        &WASM,
     ])?;
     let is_everything = options.filter.is_none() && !options.list;
     if is_everything && !options.tests_only {
@@ -101,7 +97,7 @@ fn run_here(options: &Options) -> Result<()> {
     heading("tests");
     let failed = match &options.filter {
         Some(filter) => run_named(programs, filter)?,
-        None => run_all(programs),
+        None => run_all(programs.into_iter().filter(|p| !target::PACKED.contains(&&*p.name)).collect()),
     };
     heading("end");
     if failed.is_empty() { Ok(()) } else { Err(Failure(format!("these tests fail: {}", failed.join(", ")))) }
@@ -120,6 +116,7 @@ fn check_sources() -> Result<()> {
     crate::crates::run(&crate::crates::Options { check: true })?;
     crate::gpu_cost::run(&crate::gpu_cost::Options { check: true, kernel: None })?;
     heading("documents");
+    crate::docs::check()?;
     cargo(&["doc", "--workspace", "--no-deps", "--quiet"])
 }
 
@@ -157,8 +154,7 @@ struct OutsideTest {
     run: fn() -> Result<()>,
 }
 
-const OUTSIDE_TESTS: [OutsideTest; 4] = [
-    OutsideTest { name: "web", run: || web::test(None) },
+const OUTSIDE_TESTS: [OutsideTest; 3] = [
     OutsideTest { name: "python", run: || python::test(None) },
     OutsideTest { name: "documents", run: documents },
     OutsideTest { name: "interface", run: interface },
@@ -215,6 +211,9 @@ fn run_named(programs: Vec<Program>, filter: &str) -> Result<Vec<String>> {
     for program in programs {
         let Some(program) = program.narrowed(filter, |program| program.command(&[]))? else { continue };
         found += 1;
+        if target::PACKED.contains(&&*program.name) {
+            setup::ensure(&[&PACKAGING])?;
+        }
         println!("\n-- {}", program.name);
         if crate::tools::run(&mut prepared(program.command(&[]))).is_err() {
             failed.push(program.name);
@@ -234,11 +233,9 @@ fn run_named(programs: Vec<Program>, filter: &str) -> Result<Vec<String>> {
 }
 
 /// Programs that take long, the longest first.
-const LONG: [&str; 15] = [
+const LONG: [&str; 13] = [
     "experiments_steadiness",
     "documents",
-    "docs",
-    "dist",
     "experiments_marks",
     "experiments_flow",
     "view_life",
@@ -255,17 +252,9 @@ const LONG: [&str; 15] = [
 /// Programs that measure time, and run when nothing else does.
 const ALONE: [&str; 1] = ["openfx_faults"];
 
-/// Programs that leave a core idle, as they wait for browsers, and begin at once. The others leave them the processor when they
-/// want it.
-const FIRST: [&str; 1] = ["web"];
-
-/// Other programs that run at a time. Each has as many threads as there are cores; while one waits for a
+/// Programs that run at a time. Each has as many threads as there are cores; while one waits for a
 /// device, or for its last test, the other computes.
 const LANES: usize = 2;
-
-/// Priority of the others, so that they leave the first the processor. The lowest would leave them nearly nothing of two busy
-/// cores, and a thread that holds what others wait for would be held up for seconds.
-const PATIENT: [&str; 3] = ["nice", "-n", "10"];
 
 /// A program of tests with the library that it loads, which must find a graphics adapter.
 fn prepared(mut command: Command) -> Command {
@@ -279,29 +268,26 @@ fn run_all(mut programs: Vec<Program>) -> Vec<String> {
     programs.sort_by_key(|p| LONG.iter().position(|long| *long == p.name).unwrap_or(LONG.len()));
     let (alone, together): (Vec<Program>, Vec<Program>) =
         programs.into_iter().partition(|p| ALONE.contains(&p.name.as_str()));
-    let (first, together): (Vec<Program>, Vec<Program>) =
-        together.into_iter().partition(|p| FIRST.contains(&p.name.as_str()));
     let ran = Mutex::new(Vec::new());
-    let run = |program: Program, runner: &[&str]| {
-        let (output, seconds) = timed(&program, runner);
+    let run = |program: Program| {
+        let (output, seconds) = timed(&program);
         // Locked, so that what two programs print stays apart.
         let mut ran = lock(&ran);
         ran.push(report::show(program, &output, seconds));
     };
     let waiting = Mutex::new(together.into_iter());
     std::thread::scope(|scope| {
-        scope.spawn(|| first.into_iter().for_each(|program| run(program, &[])));
         for _ in 0..LANES {
             scope.spawn(|| {
                 loop {
                     // Not in the head of a `while let`: its guard would be held while the program runs.
                     let Some(program) = lock(&waiting).next() else { break };
-                    run(program, &PATIENT);
+                    run(program);
                 }
             });
         }
     });
-    alone.into_iter().for_each(|program| run(program, &[]));
+    alone.into_iter().for_each(run);
     let ran = ran.into_inner().unwrap_or_else(PoisonError::into_inner);
     report::sum_up(ran.into_iter().map(tried_again).collect())
 }
@@ -311,14 +297,14 @@ fn run_all(mut programs: Vec<Program>) -> Vec<String> {
 fn tried_again(ran: Ran) -> Ran {
     let Some(why) = ran.failure else { return ran };
     println!("\n-- {} failed beside others, and runs again: {why}", ran.program.name);
-    let (output, seconds) = timed(&ran.program, &[]);
+    let (output, seconds) = timed(&ran.program);
     Ran { is_second: true, ..report::show(ran.program, &output, ran.seconds + seconds) }
 }
 
 /// Output of a program, and the seconds that it takes.
-fn timed(program: &Program, runner: &[&str]) -> (std::io::Result<Output>, f64) {
+fn timed(program: &Program) -> (std::io::Result<Output>, f64) {
     let started = Instant::now();
-    let output = prepared(program.command(runner)).output();
+    let output = prepared(program.command(&[])).output();
     (output, started.elapsed().as_secs_f64())
 }
 

@@ -24,7 +24,7 @@ mod template;
 use book::pages;
 use clap::Parser;
 use error::{Error, Result};
-use markdown::{APP, Rendered, Site, place_of_copied, place_of_made, render};
+use markdown::{APP, PICTURES, Rendered, Site, place_of_copied, place_of_made, render};
 use page::Page;
 use scratch::Seed;
 use shot::Shot;
@@ -51,20 +51,28 @@ struct Options {
     /// Folder of the pages that are written
     #[arg(long, value_name = "DIR", hide = true)]
     pages: Option<PathBuf>,
+    #[command(flatten)]
+    means: Option<Means>,
+}
+
+/// What commands and pictures are made with. Without it pages and the links between them are only checked;
+/// with a part of it, what lacks is named.
+#[derive(clap::Args)]
+struct Means {
     /// The sample host
-    #[arg(long, value_name = "FILE", hide = true)]
+    #[arg(long, value_name = "FILE", hide = true, required = false)]
     host: PathBuf,
     /// The dynamic library
-    #[arg(long, value_name = "FILE", hide = true)]
+    #[arg(long, value_name = "FILE", hide = true, required = false)]
     library: PathBuf,
     /// The demo scene
-    #[arg(long, value_name = "FILE", hide = true)]
+    #[arg(long, value_name = "FILE", hide = true, required = false)]
     scene: PathBuf,
     /// Folder of the wheel and the Blender extension
-    #[arg(long, value_name = "DIR", hide = true)]
+    #[arg(long, value_name = "DIR", hide = true, required = false)]
     packages: PathBuf,
     /// Folder of wheels of others
-    #[arg(long, value_name = "DIR", hide = true)]
+    #[arg(long, value_name = "DIR", hide = true, required = false)]
     wheels: PathBuf,
     /// Folder of the Python that has Blender as a module; without it, what needs Blender is not run
     #[arg(long, value_name = "DIR", hide = true)]
@@ -104,41 +112,42 @@ fn run(options: &Options) -> Result<()> {
     let out = root.join(&options.out);
     let scratch = tempfile::tempdir().map_err(Error::at(&out))?;
     // Whole before it has its name.
-    let site = out.with_extension("partial");
+    let site = match options.means {
+        Some(_) => out.with_extension("partial"),
+        None => scratch.path().join("site"),
+    };
     replace(&site)?;
-    let pictures = site.join("pictures");
+    let pictures = site.join(PICTURES);
     std::fs::create_dir_all(&pictures).map_err(Error::at(&pictures))?;
 
     // What is wrong with pages is found before pictures are made.
-    let looks = looks::all()?;
-    let mut pages = pages(&sources, &root)?;
-    let mut shots = shots::all(&looks)?;
-    for page in &mut pages {
-        page.text = gallery::filled(&page.text, &looks)?;
-        moving::fill(page)?;
-        shots.extend(series::fill(page)?);
-    }
+    let (pages, shots) = filled_pages(&sources, &root)?;
     let around = Site { root: &root, has_app: options.page.is_some() };
     let rendered: Vec<Rendered> = pages.iter().map(|page| render(page, around)).collect::<Result<_>>()?;
     write(&site, &pages, &rendered)?;
+    let Some(means) = &options.means else {
+        let links = links::check(&site, &[APP, PICTURES])?;
+        println!("{} pages, {} links followed", pages.len(), links.inner);
+        return Ok(());
+    };
 
     println!("commands of pages");
     let seed = Seed {
         folder: scratch.path().join("seed"),
-        host: &options.host,
-        scene: &options.scene,
-        library: &options.library,
+        host: &means.host,
+        scene: &means.scene,
+        library: &means.library,
         root: &root,
-        packages: &options.packages,
-        wheels: &options.wheels,
-        blender: options.blender.as_deref(),
+        packages: &means.packages,
+        wheels: &means.wheels,
+        blender: means.blender.as_deref(),
     };
     let counts = commands(&seed, &pages, &rendered, [&root, scratch.path(), &site])?;
 
     println!("pictures of nodes and looks");
-    photograph(options, &shots, scratch.path(), &pictures)?;
+    photograph(options, means, &shots, scratch.path(), &pictures)?;
     add_app(options, &root, &site)?;
-    let links = links::check(&site)?;
+    let links = links::check(&site, &[])?;
     let size = size_of(&pictures)?;
     replace(&out)?;
     std::fs::rename(&site, &out).map_err(Error::at(&out))?;
@@ -156,32 +165,45 @@ fn run(options: &Options) -> Result<()> {
     Ok(())
 }
 
+/// All pages, and the pictures that they show.
+fn filled_pages(sources: &Path, root: &Path) -> Result<(Vec<Page>, Vec<Shot>)> {
+    let looks = looks::all()?;
+    let mut pages = pages(sources, root)?;
+    let mut shots = shots::all(&looks)?;
+    for page in &mut pages {
+        page.text = gallery::filled(&page.text, &looks)?;
+        moving::fill(page)?;
+        shots.extend(series::fill(page)?);
+    }
+    Ok((pages, shots))
+}
+
 /// Makes all pictures: of a frame of the demo scene, of a photograph, and of the scene as it turns.
-fn photograph(options: &Options, shots: &[Shot], scratch: &Path, pictures: &Path) -> Result<()> {
+fn photograph(
+    options: &Options,
+    means: &Means,
+    shots: &[Shot],
+    scratch: &Path,
+    pictures: &Path,
+) -> Result<()> {
     let Size(width, height) = options.size;
     let scene = scratch.join("scene.exr");
-    let mut command = Command::new(&options.host);
-    command.arg("render").arg(&options.scene).arg(&scene).args(["--size", &format!("{width}x{height}")]);
+    let mut command = Command::new(&means.host);
+    command.arg("render").arg(&means.scene).arg(&scene).args(["--size", &format!("{width}x{height}")]);
     finish(&mut command)?;
     let photo = scratch.join("photo.png");
     let photographs = Path::new(env!("CARGO_MANIFEST_DIR")).join("pictures");
     studio::resized(&photographs.join("coffee.jpg"), &photo, width)?;
     let gallery = photographs.join("gallery");
-    let studio = Studio {
-        host: &options.host,
-        scene: &scene,
-        photo: &photo,
-        gallery: &gallery,
-        widest: width,
-        scratch,
-    };
+    let studio =
+        Studio { host: &means.host, scene: &scene, photo: &photo, gallery: &gallery, widest: width, scratch };
     studio.make(shots, pictures)?;
     println!("moving pictures");
     let small = studio::WIDEST_BESIDE.min(width);
     // Wide, as turntables are best seen.
     let size = (small, small * 9 / 16);
     let stage =
-        moving::Stage { host: &options.host, scene: &options.scene, scratch, frames: options.frames, size };
+        moving::Stage { host: &means.host, scene: &means.scene, scratch, frames: options.frames, size };
     moving::make(&stage, pictures)
 }
 

@@ -16,6 +16,10 @@ const ADDRESSES: [(&str, &str); 2] =
 
 /// Place of the page for browsers, `address:page`, on the site, where it is built in, and else the page about it.
 pub const APP: &str = "app/index.html";
+
+/// Folder of the pictures.
+pub const PICTURES: &str = "pictures";
+
 const ABOUT_APP: &str = "web/page.html";
 
 /// Surroundings of a page.
@@ -220,12 +224,12 @@ fn picture(link: &str, page: &Page, rendered: &mut Rendered) -> String {
 
 /// Place where a picture of the repository is kept.
 pub fn place_of_copied(file: &str) -> String {
-    format!("pictures/{}", file.rsplit('/').next().unwrap_or(file))
+    format!("{PICTURES}/{}", file.rsplit('/').next().unwrap_or(file))
 }
 
 /// Place where a picture that commands have made is kept.
 pub fn place_of_made(page: &Page, name: &str) -> String {
-    format!("pictures/{}-{}.jpg", page.path.replace('/', "-"), name.replace(['/', '.'], "-"))
+    format!("{PICTURES}/{}-{}.jpg", page.path.replace('/', "-"), name.replace(['/', '.'], "-"))
 }
 
 #[cfg(test)]

@@ -1,18 +1,26 @@
-//! `cargo xtask test --target`: the tests on other machines than this one, emulated, and what can be said of systems that are
-//! not there.
+//! `cargo xtask test --target`: what a whole run of the tests leaves out, as each takes as long as all the rest: the browser,
+//! packages and documentation, other machines than this one, emulated, and what can be said of systems that are not there.
 
 use crate::error::{Failure, Result};
 use clap::ValueEnum;
 
 mod aarch64;
 mod check;
+mod packages;
 mod running;
+mod web;
 #[cfg(unix)]
 mod windows;
 
-/// Machines other than this one.
+pub use packages::FILES as PACKED;
+
+/// Parts of the tests that run by themselves.
 #[derive(Clone, Copy, ValueEnum)]
 pub enum Target {
+    /// The page and the package for browsers, in a browser
+    Web,
+    /// What users install, unpacked and used; and the documentation, all of its commands run
+    Packages,
     /// 64-bit ARM with Linux, in QEMU
     Aarch64,
     /// Windows, in Wine
@@ -28,6 +36,8 @@ pub enum Target {
 /// Things that are missing, and the programs that fail.
 pub fn run(target: Target, filter: Option<&str>) -> Result<()> {
     match target {
+        Target::Web => web::run(filter),
+        Target::Packages => packages::run(filter),
         Target::Aarch64 => aarch64::run(filter),
         #[cfg(unix)]
         Target::Windows => windows::run(filter),
