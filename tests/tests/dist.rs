@@ -436,3 +436,44 @@ fn the_wheel_and_the_extension_hold_licences_too() {
     let same = format!("cmp zip/wheels/*.whl '{}'/*.whl", archives.display());
     unpacked.run_in(out.path(), &same);
 }
+
+/// Names of the packages in a bill of materials, which is whole and says nothing of the machine that it was made on.
+fn materials(bill: &str) -> BTreeSet<String> {
+    assert!(!bill.contains(library::root().to_str().unwrap()), "{bill}");
+    let bill: serde_json::Value = serde_json::from_str(bill).unwrap();
+    assert_eq!([&bill["bomFormat"], &bill["specVersion"]], ["CycloneDX", "1.6"]);
+    let of = |value: &serde_json::Value, name: &str| value[name].as_str().unwrap().to_owned();
+    let packages = bill["components"].as_array().unwrap();
+    let known: BTreeSet<String> = packages.iter().map(|package| of(package, "bom-ref")).collect();
+    assert_eq!(known.len(), packages.len());
+    // Every package is needed by Isophote or by another, and all that are needed are there.
+    let edges = bill["dependencies"].as_array().unwrap();
+    let needed = edges.iter().flat_map(|edge| edge["dependsOn"].as_array().unwrap());
+    assert_eq!(needed.map(|purl| purl.as_str().unwrap().to_owned()).collect::<BTreeSet<_>>(), known);
+    packages.iter().map(|package| of(package, "name")).collect()
+}
+
+#[test]
+fn bills_of_materials_name_all_that_binaries_are_made_of() {
+    let unpacked = Unpacked::get();
+    let read = |kind: &str, place: &str| {
+        let file = unpacked.of(kind).join(place).join("isophote.cdx.json");
+        materials(&std::fs::read_to_string(file).unwrap())
+    };
+    let library = read("library", "share/doc/isophote");
+    assert_eq!(read("openfx", "licences"), library);
+    let program = read("program", "share/doc/isophote");
+    assert_eq!(read("card", "licences"), program);
+    assert!(library.contains("wgpu") && !library.contains("winit"));
+    assert!(program.is_superset(&library) && program.contains("winit"));
+    assert!(!program.contains("allocation-counter"));
+    let out = TempDir::new().unwrap();
+    let archives = unpacked.archives();
+    let packed =
+        |line: &str| materials(&unpacked.run_in(out.path(), &format!("A='{}'; {line}", archives.display())));
+    // Alone in the folder that scanners look into.
+    let wheel = packed("python3 -m zipfile -e \"$A\"/*.whl whl; cat whl/*.dist-info/sboms/*");
+    assert!(wheel.is_superset(&library) && wheel.contains("pyo3"));
+    let npm = packed("tar xzOf \"$A\"/*.tgz package/isophote.cdx.json");
+    assert!(npm.contains("fearless_simd") && !npm.contains("wgpu"), "{npm:?}");
+}

@@ -1,4 +1,4 @@
-//! The program that packs, asked for what it knows of binaries: their licences and the C library that they need.
+//! The program that packs, asked for what it knows of binaries: what they are made of, and the C library that they need.
 
 use crate::error::{Context, Failure, Result};
 use crate::tools::{program, run};
@@ -7,15 +7,15 @@ use std::path::Path;
 /// The package of the program. It must be built before it is asked.
 pub const PACKAGE: &str = "isophote-dist";
 
-/// Name of the file that holds the licences of others.
-pub const OTHERS: &str = "LICENSES-OF-OTHERS.txt";
-
-/// Writes the licences of all that some of the workspace's packages are compiled of.
+/// Writes the licences and the bill of materials of all that some of the workspace's packages are compiled of into a folder.
+/// `alone` is the machine of packages that are compiled without the rest of the workspace.
 ///
 /// # Errors
 /// A licence that is not allowed, and what cannot be read or written.
-pub fn write_licences(of: &[&str], profile: &str, to: &Path) -> Result<()> {
-    run(program(PACKAGE, profile).arg("licences").arg(to).args(of))
+pub fn write_materials(of: &[&str], alone: Option<&str>, profile: &str, to: &Path) -> Result<()> {
+    let mut materials = program(PACKAGE, profile);
+    materials.arg("materials").arg(to).args(alone.iter().flat_map(|machine| ["--alone", machine])).args(of);
+    run(&mut materials)
 }
 
 /// The version of the GNU C library that a binary needs; none on other systems.

@@ -313,7 +313,7 @@ fn put_beside_the_package(profile: &str) -> Result<()> {
     for licence in ["LICENSE-APACHE", "LICENSE-MIT"] {
         copy(&root().join(licence), &package())?;
     }
-    packing::write_licences(&COMPILED, profile, &package().join(packing::OTHERS))?;
+    packing::write_materials(&COMPILED, None, profile, &package())?;
     let (library, inner) = (library_file(profile), package().join("isophote"));
     copy(&library, &inner)?;
     Ok(())

@@ -90,7 +90,7 @@ fn build(profile: &str) -> Result<Built> {
     install()?;
     let (package, page) = (target_dir("web").join("package"), target_dir("web").join(PAGE));
     stage(&modules, &package)?;
-    packing::write_licences(&["isophote-web"], profile, &package.join(packing::OTHERS))?;
+    packing::write_materials(&["isophote-web"], Some(WASM_TARGET), profile, &package)?;
     let mut bundle = node();
     bundle.arg(folder().join("page/bundle.mjs")).arg(&package).arg(&page);
     run_command(&mut bundle)?;

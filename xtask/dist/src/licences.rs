@@ -33,10 +33,13 @@ const NAMES: [&str; 6] = ["LICENSE", "LICENCE", "COPYING", "COPYRIGHT", "NOTICE"
 fn standard_library() -> Package {
     Package {
         name: "the Rust standard library".into(),
+        version: String::new(),
         licence: "MIT OR Apache-2.0".into(),
         authors: vec!["The Rust Project Developers".into()],
         folder: PathBuf::new(),
         licence_file: None,
+        purl: String::new(),
+        needs: Vec::new(),
     }
 }
 
@@ -50,7 +53,7 @@ pub fn text(packages: &[Package]) -> Result<String> {
         for text in of_package(package)? {
             // Copies differ in blanks and line ends.
             let key = text.split_whitespace().collect::<Vec<_>>().join(" ");
-            texts.entry(key).or_insert_with(|| (text, BTreeSet::new())).1.insert(package.name.clone());
+            texts.entry(key).or_insert_with(|| (text, BTreeSet::new())).1.insert(package.named());
         }
     }
     let mut all: Vec<(String, BTreeSet<String>)> = texts.into_values().collect();
@@ -77,21 +80,17 @@ fn of_package(package: &Package) -> Result<Vec<String>> {
         texts.extend(used.iter().filter_map(|licence| standard_text(package, licence)));
     }
     if texts.is_empty() {
-        return Err(refused(package));
+        return Err(package.refused());
     }
     Ok(texts)
-}
-
-fn refused(package: &Package) -> Error {
-    Error::Licence { package: package.name.clone(), licence: package.licence.clone() }
 }
 
 /// The licences that a package is used under.
 fn requirements(package: &Package) -> Result<Vec<LicenseReq>> {
     let allowed: Vec<Licensee> = ALLOWED.iter().filter_map(|name| Licensee::parse(name).ok()).collect();
     let expression =
-        Expression::parse_mode(&package.licence, ParseMode::LAX).map_err(|_| refused(package))?;
-    expression.minimized_requirements(&allowed).map_err(|_| refused(package))
+        Expression::parse_mode(&package.licence, ParseMode::LAX).map_err(|_| package.refused())?;
+    expression.minimized_requirements(&allowed).map_err(|_| package.refused())
 }
 
 /// The text of the SPDX list, with the names of the authors in it.
@@ -152,8 +151,17 @@ mod tests {
     use super::*;
 
     fn package(name: &str, licence: &str, folder: &Path) -> Package {
-        let (name, licence) = (name.to_owned(), licence.to_owned());
-        Package { name, licence, authors: vec!["Ann".into()], folder: folder.to_owned(), licence_file: None }
+        let (name, version) = name.split_once(' ').unwrap();
+        Package {
+            name: name.to_owned(),
+            version: version.to_owned(),
+            licence: licence.to_owned(),
+            authors: vec!["Ann".into()],
+            folder: folder.to_owned(),
+            licence_file: None,
+            purl: String::new(),
+            needs: Vec::new(),
+        }
     }
 
     #[test]

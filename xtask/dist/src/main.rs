@@ -1,6 +1,6 @@
 //! `isophote-dist`, run by `cargo xtask dist`: packs what was built into what users install, and writes the checksums.
 //! Every file appears under its name only when all of them are complete. Wheel, Blender extension, npm
-//! package and page are made by tools of other languages; this gives them the licences of others, and publishes them with the rest.
+//! package and page are made by tools of other languages; this gives them the licences of others and the bill of materials, and publishes them with the rest.
 
 mod archives;
 mod binary;
@@ -10,6 +10,7 @@ mod error;
 mod licences;
 mod metadata;
 mod pack;
+mod sbom;
 mod share;
 mod tree;
 
@@ -31,11 +32,14 @@ enum Options {
         #[arg(value_name = "FILE")]
         binary: PathBuf,
     },
-    /// Writes the licences of all packages that some of the workspace's are compiled of
-    Licences {
-        /// The file
-        #[arg(value_name = "FILE")]
+    /// Writes the licences and the bill of materials of all packages that some of the workspace's are compiled of
+    Materials {
+        /// The folder that they go to
+        #[arg(value_name = "DIR")]
         to: PathBuf,
+        /// The machine that they are compiled for, without the rest of the workspace
+        #[arg(long, value_name = "TRIPLE")]
+        alone: Option<String>,
         /// Packages of the workspace
         #[arg(value_name = "PACKAGE", required = true)]
         of: Vec<String>,
@@ -70,9 +74,9 @@ fn main() -> ExitCode {
         Options::Needs { binary } => {
             binary::needed_glibc(&binary).map(|version| println!("{}", version.unwrap_or_default()))
         }
-        Options::Licences { to, of } => {
-            share::licences_of(&root(), &of.iter().map(String::as_str).collect::<Vec<_>>())
-                .and_then(|text| pack::write_text(&to, &text))
+        Options::Materials { to, alone, of } => {
+            let of: Vec<&str> = of.iter().map(String::as_str).collect();
+            share::write_materials(&to, &root(), &of, alone.as_deref())
         }
     };
     match done {

@@ -1,4 +1,4 @@
-//! Packages of others that a binary is made of, as cargo resolved them.
+//! Packages of others that binaries are made of, as cargo resolved them.
 
 use crate::error::{Error, Result};
 use serde_json::Value;
@@ -9,8 +9,10 @@ use std::process::Command;
 /// A package of others.
 #[derive(Clone, Debug, PartialEq, Eq, PartialOrd, Ord)]
 pub struct Package {
-    /// Its name and version.
+    /// Its name.
     pub name: String,
+    /// Its version.
+    pub version: String,
     /// The SPDX expression of its manifest; empty where there is none.
     pub licence: String,
     /// People named in the manifest.
@@ -19,19 +21,70 @@ pub struct Package {
     pub folder: PathBuf,
     /// The file that its manifest names as its licence.
     pub licence_file: Option<PathBuf>,
+    /// Address that the registry gives it, as `purl` of ECMA-427 writes it; its identity in lists.
+    pub purl: String,
+    /// Those of the packages that are linked into it, in their order.
+    pub needs: Vec<String>,
 }
 
-/// All packages that some of the workspace's packages are compiled of, for the machine that runs this.
+impl Package {
+    /// Name and version.
+    pub fn named(&self) -> String {
+        format!("{} {}", self.name, self.version).trim_end().to_owned()
+    }
+
+    /// The error that its licence is not allowed.
+    pub fn refused(&self) -> Error {
+        Error::Licence { package: self.named(), licence: self.licence.clone() }
+    }
+}
+
+/// Packages of others that some of the workspace's packages are compiled of.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct Linked {
+    /// All of them, by name and version.
+    pub packages: Vec<Package>,
+    /// The `purl` of those that the workspace itself names.
+    pub direct: Vec<String>,
+}
+
+/// All packages that some of the workspace's packages are compiled of: with the rest of the workspace for the machine that runs
+/// this, or alone for another, which is named.
 ///
 /// # Errors
 /// [`Error::Program`] when cargo fails, [`Error::Malformed`] when it prints something else.
-pub fn dependencies(root: &Path, of: &[&str]) -> Result<Vec<Package>> {
+pub fn dependencies(root: &Path, of: &[&str], alone: Option<&str>) -> Result<Linked> {
     let cargo = PathBuf::from(std::env::var_os("CARGO").unwrap_or_else(|| "cargo".into()));
-    let triple = host_triple(&cargo, root)?;
+    let triple = alone.map_or_else(|| host_triple(&cargo, root), |triple| Ok(triple.to_owned()))?;
     let arguments = ["metadata", "--format-version", "1", "--locked", "--filter-platform", &triple];
     let printed = output(Command::new(&cargo).args(arguments).current_dir(root))?;
     let value: Value = serde_json::from_str(&printed).map_err(|error| Error::malformed(&cargo, error))?;
-    packages(&value, of).ok_or_else(|| Error::malformed(&cargo, "its metadata are not of version 1"))
+    let all = linked(&value, of);
+    let mut all = all.ok_or_else(|| Error::malformed(&cargo, "its metadata are not of version 1"))?;
+    if alone.is_some() {
+        // Metadata have every feature that some package of the workspace asks for.
+        let mut tree = Command::new(&cargo);
+        tree.args(["tree", "--locked", "--target", &triple, "--edges", "normal", "--prefix", "none"]);
+        tree.args(of.iter().flat_map(|package| ["--package", package])).current_dir(root);
+        all.retain(&output(&mut tree)?);
+    }
+    Ok(all)
+}
+
+impl Linked {
+    /// Drops packages that a tree of cargo's does not name.
+    fn retain(&mut self, tree: &str) {
+        let named: BTreeSet<String> = tree
+            .lines()
+            .filter_map(|line| {
+                let mut words = line.split_whitespace();
+                Some(purl_of(words.next()?, words.next()?.strip_prefix('v')?))
+            })
+            .collect();
+        self.packages.retain(|package| named.contains(&package.purl));
+        self.direct.retain(|purl| named.contains(purl));
+        self.packages.iter_mut().for_each(|package| package.needs.retain(|purl| named.contains(purl)));
+    }
 }
 
 fn output(command: &mut Command) -> Result<String> {
@@ -51,7 +104,7 @@ fn host_triple(cargo: &Path, root: &Path) -> Result<String> {
 }
 
 /// Follows what is linked in, from the packages `of`; what only builds or tests need stays out.
-fn packages(metadata: &Value, of: &[&str]) -> Option<Vec<Package>> {
+fn linked(metadata: &Value, of: &[&str]) -> Option<Linked> {
     let all = metadata["packages"].as_array()?;
     let by_id: BTreeMap<&str, &Value> = all.iter().filter_map(|p| Some((p["id"].as_str()?, p))).collect();
     let nodes = metadata["resolve"]["nodes"].as_array()?;
@@ -65,7 +118,8 @@ fn packages(metadata: &Value, of: &[&str]) -> Option<Vec<Package>> {
     if open.len() != of.len() {
         return None;
     }
-    let mut seen = BTreeSet::new();
+    let (mut seen, mut direct) = (BTreeSet::new(), BTreeSet::new());
+    let mut packages = Vec::new();
     while let Some(id) = open.pop() {
         if !seen.insert(id) {
             continue;
@@ -73,24 +127,44 @@ fn packages(metadata: &Value, of: &[&str]) -> Option<Vec<Package>> {
         let is_linked = |dep: &&Value| {
             dep["dep_kinds"].as_array().is_some_and(|kinds| kinds.iter().any(|kind| kind["kind"].is_null()))
         };
-        open.extend(edges.get(id)?.iter().filter(is_linked).filter_map(|dep| dep["pkg"].as_str()));
+        let needs = edges.get(id)?.iter().filter(is_linked).filter_map(|dep| dep["pkg"].as_str());
+        let needs: Vec<&str> = needs.collect();
+        let others = needs.iter().filter_map(|id| by_id.get(id)).filter(|other| !other["source"].is_null());
+        let others = others.map(|other| purl(other)).collect::<Option<BTreeSet<String>>>()?;
+        open.extend(needs);
+        let value = by_id.get(id)?;
+        if value["source"].is_null() {
+            direct.extend(others);
+        } else {
+            packages.push(package(value, others)?);
+        }
     }
-    let others = seen.iter().filter_map(|id| by_id.get(id)).filter(|package| !package["source"].is_null());
-    let mut found = others.map(|value| package(value)).collect::<Option<Vec<Package>>>()?;
-    found.sort();
-    Some(found)
+    packages.sort();
+    Some(Linked { packages, direct: direct.into_iter().collect() })
 }
 
-fn package(value: &Value) -> Option<Package> {
+fn package(value: &Value, needs: BTreeSet<String>) -> Option<Package> {
     let folder = Path::new(value["manifest_path"].as_str()?).parent()?.to_owned();
     let authors = value["authors"].as_array()?.iter().filter_map(Value::as_str);
     Some(Package {
-        name: format!("{} {}", value["name"].as_str()?, value["version"].as_str()?),
+        name: value["name"].as_str()?.to_owned(),
+        version: value["version"].as_str()?.to_owned(),
         licence: value["license"].as_str().unwrap_or_default().to_owned(),
         authors: authors.map(str::to_owned).collect(),
         licence_file: value["license_file"].as_str().map(|file| folder.join(file)),
         folder,
+        purl: purl(value)?,
+        needs: needs.into_iter().collect(),
     })
+}
+
+fn purl(value: &Value) -> Option<String> {
+    Some(purl_of(value["name"].as_str()?, value["version"].as_str()?))
+}
+
+fn purl_of(name: &str, version: &str) -> String {
+    // A plus sign stands for a blank in addresses.
+    format!("pkg:cargo/{name}@{}", version.replace('+', "%2B"))
 }
 
 #[cfg(test)]
@@ -101,8 +175,9 @@ mod tests {
     #[test]
     fn what_is_linked_is_followed_and_nothing_else() {
         let package = |name: &str, source: Value| {
+            let version = if name == "b" { "1.0.0+2" } else { "1.0.0" };
             json!({
-                "id": name, "name": name, "version": "1.0.0", "source": source, "license": "MIT",
+                "id": name, "name": name, "version": version, "source": source, "license": "MIT",
                 "license_file": null, "authors": [], "manifest_path": format!("/src/{name}/Cargo.toml"),
             })
         };
@@ -121,9 +196,16 @@ mod tests {
                 { "id": "tester", "deps": [] }, { "id": "builder", "deps": [] },
             ] },
         });
-        let found = packages(&metadata, &["own"]).unwrap();
-        let names: Vec<&str> = found.iter().map(|p| p.name.as_str()).collect();
-        assert_eq!(names, ["a 1.0.0", "b 1.0.0"]);
-        assert_eq!(packages(&metadata, &["absent"]), None);
+        let found = linked(&metadata, &["own"]).unwrap();
+        let [a, b] = ["pkg:cargo/a@1.0.0", "pkg:cargo/b@1.0.0%2B2"];
+        let names: Vec<(&str, &str)> = found.packages.iter().map(|p| (&*p.name, &*p.purl)).collect();
+        assert_eq!(names, [("a", a), ("b", b)]);
+        assert_eq!(found.direct, [a]);
+        assert_eq!([&found.packages[0].needs, &found.packages[1].needs], [&[b], &[a]]);
+        assert_eq!(linked(&metadata, &["absent"]), None);
+        let mut fewer = found.clone();
+        fewer.retain("own v1.0.0 (/src/own)\na v1.0.0\nb v2.0.0 (*)\n");
+        assert_eq!(fewer.packages, [Package { needs: Vec::new(), ..found.packages[0].clone() }]);
+        assert_eq!(fewer.direct, [a]);
     }
 }

@@ -1,9 +1,11 @@
-//! Files that several archives hold: the licences, and the dynamic library as systems want it.
+//! Files that several archives hold: the licences, the bill of materials, and the dynamic library as systems want it.
 
 use crate::binary;
 use crate::error::{Error, Result};
 use crate::licences;
 use crate::metadata::dependencies;
+use crate::pack::write_text;
+use crate::sbom;
 use crate::tree::{Entry, Tree};
 use std::path::Path;
 
@@ -21,7 +23,7 @@ pub fn abi_version(root: &Path) -> Result<u32> {
     number.and_then(|n| n.trim().parse().ok()).ok_or_else(|| Error::malformed(&header, "declares no version"))
 }
 
-/// Adds Isophote's licences, and those of all packages that `packages` are compiled of.
+/// Adds Isophote's licences, and those and the list of all packages that `packages` are compiled of.
 ///
 /// # Errors
 /// A licence that is not allowed, and what cannot be read.
@@ -29,16 +31,27 @@ pub fn add_licences(tree: &mut Tree, place: &str, root: &Path, packages: &[&str]
     for name in ["LICENSE-APACHE", "LICENSE-MIT"] {
         tree.copy(format!("{place}/{name}"), root.join(name));
     }
-    tree.text(format!("{place}/LICENSES-OF-OTHERS.txt"), licences_of(root, packages)?);
+    for (name, text) in materials(root, packages, None)? {
+        tree.text(format!("{place}/{name}"), text);
+    }
     Ok(())
 }
 
-/// The licences of all packages that `packages` are compiled of, as one text.
+/// Writes the licences and the list of all packages that `packages` are compiled of into a folder; of those that are compiled
+/// alone for another machine, where it is named.
 ///
 /// # Errors
-/// A licence that is not allowed, and what cannot be read.
-pub fn licences_of(root: &Path, packages: &[&str]) -> Result<String> {
-    licences::text(&dependencies(root, packages)?)
+/// A licence that is not allowed, and what cannot be read or written.
+pub fn write_materials(folder: &Path, root: &Path, packages: &[&str], alone: Option<&str>) -> Result<()> {
+    materials(root, packages, alone)?
+        .into_iter()
+        .try_for_each(|(name, text)| write_text(&folder.join(name), &text))
+}
+
+/// Names and texts of the files that tell what `packages` are compiled of.
+fn materials(root: &Path, packages: &[&str], alone: Option<&str>) -> Result<[(&'static str, String); 2]> {
+    let linked = dependencies(root, packages, alone)?;
+    Ok([("LICENSES-OF-OTHERS.txt", licences::text(&linked.packages)?), (sbom::FILE, sbom::text(&linked)?)])
 }
 
 /// Names of the installed library: the file, and those that lead to it.
