@@ -3,7 +3,6 @@
 
 use crate::error::Result;
 use crate::metadata::{Linked, Package};
-use crate::share::VERSION;
 use serde_json::{Value, json};
 use spdx::Expression;
 
@@ -13,11 +12,11 @@ pub const FILE: &str = "isophote.cdx.json";
 /// Isophote in it.
 const OWN: &str = "isophote";
 
-/// The bill as a text.
+/// The bill of a version of Isophote as a text.
 ///
 /// # Errors
 /// [`Error::Licence`](crate::error::Error::Licence) for a licence that is no expression of SPDX's.
-pub fn text(linked: &Linked) -> Result<String> {
+pub fn text(version: &str, linked: &Linked) -> Result<String> {
     let components = linked.packages.iter().map(component).collect::<Result<Vec<Value>>>()?;
     let needs = |of: &str, on: &[String]| json!({ "ref": of, "dependsOn": on });
     let mut edges = vec![needs(OWN, &linked.direct)];
@@ -31,7 +30,7 @@ pub fn text(linked: &Linked) -> Result<String> {
             "type": "library",
             "bom-ref": OWN,
             "name": OWN,
-            "version": VERSION,
+            "version": version,
             "description": "Structure-adaptive stylization filters",
             "licenses": [{ "expression": env!("CARGO_PKG_LICENSE") }],
         } },

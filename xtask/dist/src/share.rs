@@ -51,7 +51,10 @@ pub fn write_materials(folder: &Path, root: &Path, packages: &[&str], alone: Opt
 /// Names and texts of the files that tell what `packages` are compiled of.
 fn materials(root: &Path, packages: &[&str], alone: Option<&str>) -> Result<[(&'static str, String); 2]> {
     let linked = dependencies(root, packages, alone)?;
-    Ok([("LICENSES-OF-OTHERS.txt", licences::text(&linked.packages)?), (sbom::FILE, sbom::text(&linked)?)])
+    Ok([
+        ("LICENSES-OF-OTHERS.txt", licences::text(&linked.packages)?),
+        (sbom::FILE, sbom::text(VERSION, &linked)?),
+    ])
 }
 
 /// Names of the installed library: the file, and those that lead to it.
