@@ -2,8 +2,8 @@
 
 use crate::error::{Context, Failure, Result};
 use crate::setup::{
-    self, BINUTILS, BLENDER, C_COMPILER, CLANG, CPP_COMPILER, FFMPEG, PACKAGING, PYTHON, SLURM, VALGRIND,
-    VULKAN, VULKAN_HEADERS, XVFB,
+    self, BINUTILS, BLENDER, BROWSER, C_COMPILER, CLANG, CPP_COMPILER, FFMPEG, PACKAGING, PYTHON, SLURM,
+    VALGRIND, VULKAN, VULKAN_HEADERS, XVFB,
 };
 use crate::tools::{cargo, cargo_command, heading, library_file, root, target_dir};
 use crate::{cases, python, web};
@@ -74,7 +74,9 @@ fn run_here(options: &Options) -> Result<()> {
         &VALGRIND,
         &XVFB,
         &FFMPEG,
+        &BROWSER,
         &CLANG,
+        &PACKAGING,
         &PYTHON,
         &BLENDER,
         &SLURM,
@@ -211,9 +213,6 @@ fn run_named(programs: Vec<Program>, filter: &str) -> Result<Vec<String>> {
     for program in programs {
         let Some(program) = program.narrowed(filter, |program| program.command(&[]))? else { continue };
         found += 1;
-        if target::PACKED.contains(&&*program.name) {
-            setup::ensure(&[&PACKAGING])?;
-        }
         println!("\n-- {}", program.name);
         if crate::tools::run(&mut prepared(program.command(&[]))).is_err() {
             failed.push(program.name);

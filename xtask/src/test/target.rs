@@ -1,4 +1,4 @@
-//! `cargo xtask test --target`: what a whole run of the tests leaves out, as each takes as long as all the rest: the browser,
+//! `cargo xtask test --target`: what a whole run of the tests leaves out, as together it takes longer than that: the browser,
 //! packages and documentation, other machines than this one, emulated, and what can be said of systems that are not there.
 
 use crate::error::{Failure, Result};
