@@ -7,6 +7,8 @@
 //! Everything is plain data of fixed layout. What comes from outside is never a Rust enum, reference
 //! or `bool`, so that a wrong value is an error and not undefined behaviour.
 
+#![no_std]
+
 pub mod constants;
 pub mod guides;
 pub mod memory;

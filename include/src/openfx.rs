@@ -6,7 +6,7 @@
 
 #![allow(non_upper_case_globals, non_snake_case, missing_docs, reason = "the standard's own names")]
 
-use std::ffi::{CStr, c_char, c_int, c_uint, c_void};
+use core::ffi::{CStr, c_char, c_int, c_uint, c_void};
 
 /// Declares strings, and lists them for the test that compares them.
 macro_rules! strings {

@@ -30,11 +30,11 @@ const CPU: [&str; 2] = ["simd", "trace"];
 fn main() {
     let library = PathBuf::from(env::var_os("CARGO_MANIFEST_DIR").expect("cargo sets it"));
     let out = PathBuf::from(env::var_os("OUT_DIR").expect("cargo sets it"));
-    let (shaders, twins) = (library.join("../../shaders"), library.join("src/kernels"));
+    let (shaders, twins) = (isophote_shaders::folder(), library.join("src/kernels"));
     println!("cargo::rerun-if-changed={}", shaders.display());
     println!("cargo::rerun-if-changed={}", twins.display());
 
-    let wgsl = files_in_groups(&shaders, "wgsl", &[GPU]);
+    let wgsl = files_in_groups(shaders, "wgsl", &[GPU]);
     let rust = files_in_groups(&twins, "rs", &CPU);
     let mut faults = without_twin(&wgsl, &rust);
     let mut kernels = BTreeMap::new();
@@ -43,7 +43,7 @@ fn main() {
         if name.0 == SHARED {
             continue;
         }
-        match Shader::read(&shaders, path) {
+        match Shader::read(shaders, path) {
             Ok(shader) => drop(kernels.insert(name.clone(), shader)),
             Err(fault) => faults.push(format!("{}: {fault}", path.display())),
         }
@@ -52,7 +52,7 @@ fn main() {
     let target = out.join("kernels.rs");
     let _ = fs::remove_file(&target);
     assert!(faults.is_empty(), "\n{}\n", faults.join("\n"));
-    let text = generated::text(&shaders, &kernels, &rust);
+    let text = generated::text(shaders, &kernels, &rust);
     fs::write(&target, text.unwrap_or_else(|fault| panic!("\n{fault}\n"))).expect("OUT_DIR is writable");
 }
 

@@ -3,6 +3,7 @@
 
 #![cfg(target_os = "linux")]
 
+mod crates;
 mod editors;
 
 use isophote::registry;
@@ -130,7 +131,12 @@ fn files(folder: &Path) -> BTreeSet<String> {
 #[test]
 fn there_are_archives_and_checksums_and_nothing_half_done() {
     let archives = ["library", "openfx", "program", "card"].map(|kind| format!("{}.tar.gz", name(kind)));
-    let others = [format!("isophote-{VERSION}.tgz"), "isophote.html".to_owned(), "SHA256SUMS".to_owned()];
+    let others = [
+        format!("isophote-{VERSION}.tgz"),
+        "isophote.html".to_owned(),
+        "SHA256SUMS".to_owned(),
+        "NOTES.md".to_owned(),
+    ];
     let expected: BTreeSet<String> = archives.into_iter().chain(others).collect();
     let mut found = files(&Unpacked::get().archives());
     for (beginning, ending) in
@@ -142,6 +148,8 @@ fn there_are_archives_and_checksums_and_nothing_half_done() {
         found.remove(&named[0]);
     }
     assert_eq!(found, expected);
+    let notes = std::fs::read_to_string(Unpacked::get().archives().join("NOTES.md")).unwrap();
+    assert!(notes.starts_with(&format!("# Isophote {VERSION}\n\n")) && notes.lines().count() > 2, "{notes}");
 }
 
 #[test]

@@ -86,6 +86,8 @@ pub fn pack(profile: &str, out: &Path) -> Result<()> {
     let _turn = turn()?;
     let environment = Environment::tools()?;
     let wheel = build_wheel(&environment, profile, out)?;
+    // What the registry would refuse.
+    run_command(environment.program("twine").args(["check", "--strict"]).arg(&wheel))?;
     pack_extension(&environment, &wheel, out)?;
     pack_nodes(&environment, &wheel, out).map(drop)
 }

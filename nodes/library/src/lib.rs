@@ -35,7 +35,7 @@ pub use plan::request::Request;
 pub use plan::{planned, request, sequence};
 pub use stages::optical_flow;
 
-/// The example of the documentation's page for Rust, compiled with the documentation tests.
+/// The example of the README, compiled with the documentation tests.
 #[cfg(doctest)]
-#[doc = include_str!("../../../xtask/docs/pages/engines/rust.md")]
-pub struct Page;
+#[doc = include_str!("../README.md")]
+pub struct Readme;

@@ -9,6 +9,7 @@ mod editors;
 mod error;
 mod licences;
 mod metadata;
+mod notes;
 mod pack;
 mod sbom;
 mod share;
@@ -110,7 +111,9 @@ fn pack_all(options: &Pack) -> Result<()> {
         sums.push_str(&format!("{sum}  {name}\n"));
         names.push(name);
     }
-    names.push("SHA256SUMS".to_owned());
+    let notes = half_done.path().join(notes::FILE);
+    std::fs::write(&notes, notes::of_version(&built.root)?).map_err(Error::at(&notes))?;
+    names.extend([notes::FILE, "SHA256SUMS"].map(str::to_owned));
     let list = half_done.path().join("SHA256SUMS");
     std::fs::write(&list, sums).map_err(Error::at(&list))?;
     publish(half_done.path(), &options.out, &names)

@@ -7,7 +7,7 @@ use isophote::registry;
 use std::path::Path;
 
 /// Pages written for the site: part, place, title.
-const WRITTEN: [(&str, &str, &str); 34] = [
+const WRITTEN: [(&str, &str, &str); 33] = [
     ("", "index", "Isophote"),
     ("", "install", "Install"),
     ("", "windows", "Windows"),
@@ -27,7 +27,6 @@ const WRITTEN: [(&str, &str, &str); 34] = [
     ("For engine authors", "engines/plans", "Plans on your own device"),
     ("For engine authors", "engines/vulkan", "Vulkan"),
     ("For engine authors", "engines/graphics", "Other graphics APIs"),
-    ("For engine authors", "engines/rust", "From Rust"),
     ("For render TDs", "farms/sequences", "Sequences"),
     ("For render TDs", "farms/colours", "Colours"),
     ("For render TDs", "farms/masks", "Masks and layered looks"),
