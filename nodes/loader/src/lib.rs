@@ -4,6 +4,19 @@
 //! [`Error`]s, pointers become slices and text, and images are whatever implements [`AsImage`]. The declarations are those
 //! of `isophote-abi`. For hosts that run plans themselves, [`history`] counts the images of past frames and [`uniforms`]
 //! places uniform bytes in a buffer.
+//!
+//! ```no_run
+//! # fn main() -> isophote_loader::Result<()> {
+//! let library = isophote_loader::Library::open()?;
+//! let graph = library.single("cartoon")?;
+//! graph.set(0, "detail", "0.4")?;
+//! let plan = graph.plan(&library.request((1920, 1080))?)?;
+//! for pass in plan.passes()? {
+//!     println!("{} in {:?} workgroups", pass.kernel, pass.workgroups);
+//! }
+//! # Ok(())
+//! # }
+//! ```
 
 #![allow(unsafe_code, reason = "foreign functions are called here")]
 
@@ -41,8 +54,3 @@ pub use printable::printable;
 pub use process::{Control, Input, Report};
 pub use sequence::Sequence;
 pub use style::Style;
-
-/// The example of the README, compiled with the documentation tests.
-#[cfg(doctest)]
-#[doc = include_str!("../README.md")]
-pub struct Readme;
