@@ -16,10 +16,9 @@ use crate::kernels::shared::sampled_sectors::{sample, table};
 use crate::kernels::shared::sectors::{INSIDE, MIN_RADIUS, Response, Sector};
 use crate::kernels::simd::moment_buffer::{CHANNELS, for_rows};
 use crate::kernels::simd::pixels::{Block, eight, read, write};
-use block_convolution::{Convolution, Mask, Number, block_side};
-use isophote_engine::fearless_simd::{Level, Simd, dispatch, f32x8, prelude::*};
+use block_convolution::{Block as Square, Convolution, Mask, Real, Reals, block_side};
+use isophote_engine::fearless_simd::{Level, Simd, dispatch, f32x8, f64x4, prelude::*};
 use isophote_engine::{Band, Class, CpuPass, ImageId, PlanBuilder, Support, Tolerance, View, memory};
-use rustfft::num_complex::Complex;
 use std::f32::consts::FRAC_1_SQRT_2;
 
 #[path = "generalized_kuwahara/block_convolution.rs"]
@@ -111,8 +110,8 @@ fn run(pass: &CpuPass<'_>, band: &mut Band<'_>) {
     match (params.block, params.sectors) {
         (0, 8) => dispatch!(pass.level, simd => spatial::<_, 8>(simd, pass, &params, &masks, band)),
         (0, _) => dispatch!(pass.level, simd => spatial::<_, 4>(simd, pass, &params, &masks, band)),
-        (_, 8) => by_blocks::<8>(pass, &params, &masks, band),
-        _ => by_blocks::<4>(pass, &params, &masks, band),
+        (_, 8) => dispatch!(pass.level, simd => by_blocks::<_, 8>(simd, pass, &params, &masks, band)),
+        _ => dispatch!(pass.level, simd => by_blocks::<_, 4>(simd, pass, &params, &masks, band)),
     }
 }
 
@@ -206,14 +205,21 @@ impl Sums {
     }
 }
 
-fn by_blocks<const N: usize>(pass: &CpuPass<'_>, params: &Params, masks: &[Mask], band: &mut Band<'_>) {
+#[inline(always)]
+fn by_blocks<S: Simd, const N: usize>(
+    simd: S,
+    pass: &CpuPass<'_>,
+    params: &Params,
+    masks: &[Mask],
+    band: &mut Band<'_>,
+) {
     let (side, reach) = (params.block as usize, params.reach);
     let kept = side - 2 * reach as usize;
     let stride = kept.next_multiple_of(8);
     let mut sums = Sums { values: Vec::new(), kept, stride };
     memory::resize(&mut sums.values, N * CHANNELS * stride * kept, 0.0);
-    let mut single: Convolution<f32> = Convolution::new(side, masks);
-    let mut double: Option<Convolution<f64>> = None;
+    let mut single: Convolution<S, f32x8<S>> = Convolution::new(simd, side, masks);
+    let mut double: Option<Convolution<S, f64x4<S>>> = None;
     let totals: Vec<f32> = masks.iter().map(|m| m.iter().map(|(_, w)| w).sum()).collect();
     let mut planes = vec![Vec::new(); CHANNELS];
     let step = kept as i32;
@@ -222,7 +228,7 @@ fn by_blocks<const N: usize>(pass: &CpuPass<'_>, params: &Params, masks: &[Mask]
         for bx in (window.x0.div_euclid(step)..=(window.x1 - 1).div_euclid(step)).map(|b| b * step) {
             let [opaque, bright] = block(&pass.inputs[0], [bx - reach, by - reach], side, &mut planes);
             if bright {
-                let double = double.get_or_insert_with(|| Convolution::new(side, masks));
+                let double = double.get_or_insert_with(|| Convolution::new(simd, side, masks));
                 convolve(double, &planes, N, opaque, reach as usize, &mut sums);
             } else {
                 convolve(&mut single, &planes, N, opaque, reach as usize, &mut sums);
@@ -232,7 +238,7 @@ fn by_blocks<const N: usize>(pass: &CpuPass<'_>, params: &Params, masks: &[Mask]
                     sums.channel(k, 4).fill(*total);
                 }
             }
-            dispatch!(pass.level, simd => respond::<_, N>(simd, pass, params, &sums, &totals, [bx, by], band));
+            respond::<_, N>(simd, pass, params, &sums, &totals, [bx, by], band);
         }
     }
 }
@@ -257,8 +263,9 @@ fn block(view: &View<'_>, [x0, y0]: [i32; 2], side: usize, planes: &mut [Vec<f32
     [opaque, bright]
 }
 
-fn convolve<T: Number>(
-    convolution: &mut Convolution<T>,
+#[inline(always)]
+fn convolve<S: Simd, V: Reals<S>>(
+    convolution: &mut Convolution<S, V>,
     planes: &[Vec<f32>],
     sectors: usize,
     opaque: bool,
@@ -267,23 +274,21 @@ fn convolve<T: Number>(
 ) {
     let (kept, stride) = (sums.kept, sums.stride);
     let side = kept + 2 * reach;
-    let value = |v: f32| T::from_f32(v).unwrap_or_else(T::zero);
-    let mut product = Vec::new();
+    let values = |plane: &[f32]| plane.iter().map(|v| V::Element::near(f64::from(*v))).collect();
+    let mut product = Square::new(side);
     // Two channels at a time are the real and the imaginary part.
     for pair in [[0, 1], [2, 3], [4, 4]].into_iter().take(if opaque { 2 } else { 3 }) {
-        let (re, im) = (&planes[pair[0]], &planes[pair[1]]);
-        let mut spectrum: Vec<Complex<T>> =
-            re.iter().zip(im).map(|(a, b)| Complex::new(value(*a), value(*b))).collect();
+        let mut spectrum = Square { real: values(&planes[pair[0]]), imaginary: values(&planes[pair[1]]) };
         convolution.spectrum(&mut spectrum);
         for k in 0..sectors {
             convolution.convolved(&spectrum, k, &mut product);
-            for (part, channel) in pair.into_iter().enumerate() {
+            for (channel, part) in pair.into_iter().zip([&product.real, &product.imaginary]) {
                 let rows = sums.channel(k, channel).chunks_exact_mut(stride);
                 for (row, target) in rows.enumerate() {
-                    let source = &product[(row + reach) * side + reach..][..kept];
-                    for (target, c) in target.iter_mut().zip(source) {
-                        let v: f64 = if part == 0 { c.re } else { c.im }.into();
-                        *target = v as f32;
+                    let source = &part[(row + reach) * side + reach..][..kept];
+                    for (target, value) in target.iter_mut().zip(source) {
+                        let value: f64 = (*value).into();
+                        *target = value as f32;
                     }
                 }
             }
