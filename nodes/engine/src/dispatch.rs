@@ -28,8 +28,7 @@ macro_rules! dispatch {
         let result = $crate::dispatch::vectors::dispatch!(level, $simd => $op);
         #[cfg(target_arch = "x86_64")]
         let result = match (level.as_avx512(), level.as_avx2(), level.as_sse2()) {
-            #[cfg(not(debug_assertions))]
-            (Some(token), _, _) => $crate::dispatch!(@on token, $simd => $op),
+            (Some(token), _, _) if $crate::dispatch::IS_FOR_AVX512 => $crate::dispatch!(@on token, $simd => $op),
             (_, Some(token), _) => $crate::dispatch!(@on token, $simd => $op),
             (_, _, Some(token)) => $crate::dispatch!(@on token, $simd => $op),
             (_, _, None) => unreachable!("x86-64 has SSE2"),
@@ -37,6 +36,11 @@ macro_rules! dispatch {
         result
     }};
 }
+
+/// True in builds that have code for AVX-512. A constant of this crate, since a crate of kernels may be built without debug
+/// assertions beside it; code behind it is not compiled where it is false.
+#[doc(hidden)]
+pub const IS_FOR_AVX512: bool = !cfg!(debug_assertions);
 
 /// Hides which instruction set it is, so that code is written for all.
 #[doc(hidden)]
@@ -66,8 +70,9 @@ pub fn levels() -> Vec<(&'static str, Level)> {
         let mut levels = Vec::new();
         levels.extend(widest.as_sse2().map(|token| ("SSE2", Level::Sse2(token))));
         levels.extend(widest.as_avx2().map(|token| ("AVX2", Level::Avx2(token))));
-        #[cfg(not(debug_assertions))]
-        levels.extend(widest.as_avx512().map(|token| ("AVX-512", Level::Avx512(token))));
+        if IS_FOR_AVX512 {
+            levels.extend(widest.as_avx512().map(|token| ("AVX-512", Level::Avx512(token))));
+        }
         levels
     };
     levels

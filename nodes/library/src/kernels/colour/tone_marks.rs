@@ -179,7 +179,6 @@ fn drawn<S: Simd>(
     [d, ground]: [f32x8<S>; 2],
 ) -> f32x8<S> {
     let one = f32x8::splat(simd, 1.0);
-    let least = one * 1e-6;
     let [e, f, g, _]: [f32x8<S>; 4] = block.read(simd, &pass.inputs[1]);
     let tangent = tensor::tangent(e, f, g);
     // By the change from pixel to pixel of the full-size picture, so that proxies show the same marks.
@@ -208,7 +207,8 @@ fn drawn<S: Simd>(
         means = [stroke_mean(first, params), stroke_mean(second, params)];
         let [a, ..]: [f32x8<S>; 4] = block.read(simd, &pass.inputs[4]);
         let [b, ..]: [f32x8<S>; 4] = block.read(simd, &pass.inputs[5]);
-        [(a, first), (b, second)].map(|(v, d)| stroke((v - 0.5) * params.given_gain, d, params))
+        let gain = params.given_gain;
+        [stroke((a - 0.5) * gain, first, params), stroke((b - 0.5) * gain, second, params)]
     } else {
         let q = [0, 1].map(|i| (place[i] + params.origin[i]) * params.inverse_scale);
         let shift = (ground - 50.0) * params.bend;
@@ -227,7 +227,7 @@ fn drawn<S: Simd>(
             * (one - stroke_mean(crossed, params))
             * (one - means[0])
             * (one - means[1]);
-        bare *= ((one - d) / left.at_least(least)).at_most(one);
+        bare *= ((one - d) / left.at_least(one * 1e-6)).at_most(one);
     }
     one - bare
 }

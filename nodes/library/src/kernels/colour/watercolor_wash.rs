@@ -164,13 +164,14 @@ fn painted<S: Simd>(
     let density = (gathered + backrun + uneven + 0.55).at_least(-0.7);
 
     // What is brighter than paper stays.
-    let through = |c: f32x8<S>| {
-        let absorbed = one - c;
+    let mut seen = v;
+    for channel in 0..3 {
+        let absorbed = one - color[channel];
         let paint = one - covered * absorbed.at_least(0.0);
         let dense = paint / (density * (one - paint).within(0.0, 1.0) + 1.0);
-        one - (one - dense) * params.pigment - absorbed.at_most(0.0)
-    };
-    [through(color[0]), through(color[1]), through(color[2]), v[3]]
+        seen[channel] = one - (one - dense) * params.pigment - absorbed.at_most(0.0);
+    }
+    seen
 }
 
 /// A smooth step from 0 at `start` to 1 at start + 1 / `inverse`.

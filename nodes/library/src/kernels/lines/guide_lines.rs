@@ -178,8 +178,9 @@ fn strength<S: Simd>(
 #[inline(always)]
 fn weights<S: Simd>(d: f32x8<S>, params: &Params, kind: usize) -> [f32x8<S>; 2] {
     let near = d.abs().simd_le(params.halfwidth[kind]);
-    [params.narrow[kind], params.wide[kind]]
-        .map(|falloff| near.select((d * falloff * d).exp(), f32x8::splat(d.simd, 0.0)))
+    let zero = f32x8::splat(d.simd, 0.0);
+    let [narrow, wide] = [d * params.narrow[kind] * d, d * params.wide[kind] * d];
+    [near.select(narrow.exp(), zero), near.select(wide.exp(), zero)]
 }
 
 /// Weighted sums of the breaks of three guides.

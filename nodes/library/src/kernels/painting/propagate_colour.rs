@@ -57,32 +57,36 @@ fn merge<S: Simd>(simd: S, pass: &CpuPass<'_>, params: &Params, band: &mut Band<
     let columns = [band.window.x0, band.window.x1];
     let (mut filtered, mut deviations): (Vec<f32>, Vec<f32>) = (Vec::new(), Vec::new());
     let (zero, one, least) = (f32x8::splat(simd, 0.0), f32x8::splat(simd, 1.0), f32x8::splat(simd, 1e-3));
-    for_blocks::<4>(band, |block, target| {
-        if block.x == columns[0] {
-            filtered.clear();
-            filtered.extend_from_slice(colours.row::<4>(&pass.inputs[1], block.y, columns, true));
-            deviations.clear();
-            deviations.extend_from_slice(spreads.row::<1>(&pass.inputs[2], block.y, columns, false));
-        }
-        let at = (block.x - columns[0]) as usize;
-        let [r, g, b, a] = block.read(simd, &pass.inputs[0]);
-        let below: [f32x8<S>; 4] = read(simd, &filtered[4 * at..4 * at + 32]);
-        let deviation = eight(simd, &deviations, at);
-        let beta = (deviation * params.gain - params.threshold).within(zero, one);
-        let beta = if params.edge >= 0.0 {
-            let [e, _, g, _]: [f32x8<S>; 4] = block.read(simd, &pass.inputs[3]);
-            let steep = ((e + g).at_least(zero).sqrt() - params.edge) * params.inverse_ramp;
-            beta.at_least(steep.within(zero, one))
-        } else {
-            beta
-        };
-        let beta = below[3].simd_lt(least).select(one, beta);
-        let n = one / below[3].at_least(least);
-        let mut out = [r, g, b, a];
-        for (out, below) in out.iter_mut().zip(below).take(3) {
-            let below = below * n;
-            *out = (*out - below).mul_add(beta, below);
-        }
-        write(out, target);
-    });
+    for_blocks::<4>(
+        band,
+        #[inline(always)]
+        |block, target| {
+            if block.x == columns[0] {
+                filtered.clear();
+                filtered.extend_from_slice(colours.row::<4>(&pass.inputs[1], block.y, columns, true));
+                deviations.clear();
+                deviations.extend_from_slice(spreads.row::<1>(&pass.inputs[2], block.y, columns, false));
+            }
+            let at = (block.x - columns[0]) as usize;
+            let [r, g, b, a] = block.read(simd, &pass.inputs[0]);
+            let below: [f32x8<S>; 4] = read(simd, &filtered[4 * at..4 * at + 32]);
+            let deviation = eight(simd, &deviations, at);
+            let beta = (deviation * params.gain - params.threshold).within(zero, one);
+            let beta = if params.edge >= 0.0 {
+                let [e, _, g, _]: [f32x8<S>; 4] = block.read(simd, &pass.inputs[3]);
+                let steep = ((e + g).at_least(zero).sqrt() - params.edge) * params.inverse_ramp;
+                beta.at_least(steep.within(zero, one))
+            } else {
+                beta
+            };
+            let beta = below[3].simd_lt(least).select(one, beta);
+            let n = one / below[3].at_least(least);
+            let mut out = [r, g, b, a];
+            for (out, below) in out.iter_mut().zip(below).take(3) {
+                let below = below * n;
+                *out = (*out - below).mul_add(beta, below);
+            }
+            write(out, target);
+        },
+    );
 }

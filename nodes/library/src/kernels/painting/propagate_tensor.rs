@@ -34,20 +34,24 @@ fn merge<S: Simd>(simd: S, pass: &CpuPass<'_>, band: &mut Band<'_>) {
     let columns = [band.window.x0, band.window.x1];
     let mut coarse: Vec<f32> = Vec::new();
     let floor = f32x8::splat(simd, FLOOR);
-    for_blocks::<4>(band, |block, target| {
-        if block.x == columns[0] {
-            coarse.clear();
-            coarse.extend_from_slice(upsampling.row::<4>(&pass.inputs[1], block.y, columns, false));
-        }
-        let at = 4 * (block.x - columns[0]) as usize;
-        let mut own: [f32x8<S>; 4] = block.read(simd, &pass.inputs[0]);
-        let below: [f32x8<S>; 4] = read(simd, &coarse[at..at + 32]);
-        let a = anisotropy(own[0], own[1], own[2]).at_least(floor);
-        let b = anisotropy(below[0], below[1], below[2]).at_least(floor);
-        let share = b / (a + b);
-        for (own, below) in own.iter_mut().zip(below) {
-            *own = (below - *own).mul_add(share, *own);
-        }
-        write(own, target);
-    });
+    for_blocks::<4>(
+        band,
+        #[inline(always)]
+        |block, target| {
+            if block.x == columns[0] {
+                coarse.clear();
+                coarse.extend_from_slice(upsampling.row::<4>(&pass.inputs[1], block.y, columns, false));
+            }
+            let at = 4 * (block.x - columns[0]) as usize;
+            let mut own: [f32x8<S>; 4] = block.read(simd, &pass.inputs[0]);
+            let below: [f32x8<S>; 4] = read(simd, &coarse[at..at + 32]);
+            let a = anisotropy(own[0], own[1], own[2]).at_least(floor);
+            let b = anisotropy(below[0], below[1], below[2]).at_least(floor);
+            let share = b / (a + b);
+            for (own, below) in own.iter_mut().zip(below) {
+                *own = (below - *own).mul_add(share, *own);
+            }
+            write(own, target);
+        },
+    );
 }

@@ -30,13 +30,18 @@ pub fn plain<S: Simd>(pixels: [f32x8<S>; 4], premultiplied: u32) -> [f32x8<S>; 4
 /// becomes a straight colour of thousands.
 #[inline(always)]
 pub fn beyond_coverage<S: Simd>([r, g, b, a]: [f32x8<S>; 4]) -> [f32x8<S>; 3] {
-    let (zero, one) = (f32x8::splat(a.simd, 0.0), f32x8::splat(a.simd, 1.0));
+    let one = f32x8::splat(a.simd, 1.0);
     let share = (one - a) * (one - a);
     let most = a / (share * share).at_least(f32x8::splat(a.simd, 1e-30));
-    [r, g, b].map(|v| {
-        let excess = (v.abs() - most).at_least(zero);
-        v.simd_lt(zero).select(-excess, excess)
-    })
+    [beyond(r, most), beyond(g, most), beyond(b, most)]
+}
+
+/// The part of a number that is further from 0 than `most`.
+#[inline(always)]
+fn beyond<S: Simd>(v: f32x8<S>, most: f32x8<S>) -> f32x8<S> {
+    let zero = f32x8::splat(v.simd, 0.0);
+    let excess = (v.abs() - most).at_least(zero);
+    v.simd_lt(zero).select(-excess, excess)
 }
 
 /// Values cut to the largest half, 0 for what is not a number; alpha is cut to 0..=1.
@@ -60,26 +65,32 @@ pub fn has_light(rgba: &[f32]) -> bool {
 
 #[inline(always)]
 fn any_light<S: Simd>(simd: S, rgba: &[f32]) -> bool {
-    let zero = f32x8::splat(simd, 0.0);
     let (blocks, rest) = rgba.as_chunks::<32>();
     let mut padded = [0.0; 32];
     padded[..rest.len()].copy_from_slice(rest);
-    blocks.iter().chain([&padded]).any(
-        #[inline(always)]
-        |block| {
-            let pixel = |at: usize| {
-                let low = [block[4 * at], block[4 * at + 1], block[4 * at + 2], block[4 * at + 3]];
-                let high = [block[4 * at + 16], block[4 * at + 17], block[4 * at + 18], block[4 * at + 19]];
-                f32x8::simd_from(simd, [low[0], low[1], low[2], low[3], high[0], high[1], high[2], high[3]])
-            };
-            let pixels = transposed([pixel(0), pixel(1), pixel(2), pixel(3)]);
-            if pixels[3].simd_ge(1.0).all_true() {
-                return false;
-            }
-            let [r, g, b] = beyond_coverage(finite_pixels(pixels));
-            !(r.simd_eq(zero) & g.simd_eq(zero) & b.simd_eq(zero)).all_true()
-        },
-    )
+    // Not by an iterator's `any`, which would be compiled for every machine.
+    for block in blocks {
+        if is_light_in(simd, block) {
+            return true;
+        }
+    }
+    is_light_in(simd, &padded)
+}
+
+#[inline(always)]
+fn is_light_in<S: Simd>(simd: S, block: &[f32; 32]) -> bool {
+    let zero = f32x8::splat(simd, 0.0);
+    let pixel = |at: usize| {
+        let low = [block[4 * at], block[4 * at + 1], block[4 * at + 2], block[4 * at + 3]];
+        let high = [block[4 * at + 16], block[4 * at + 17], block[4 * at + 18], block[4 * at + 19]];
+        f32x8::simd_from(simd, [low[0], low[1], low[2], low[3], high[0], high[1], high[2], high[3]])
+    };
+    let pixels = transposed([pixel(0), pixel(1), pixel(2), pixel(3)]);
+    if pixels[3].simd_ge(1.0).all_true() {
+        return false;
+    }
+    let [r, g, b] = beyond_coverage(finite_pixels(pixels));
+    !(r.simd_eq(zero) & g.simd_eq(zero) & b.simd_eq(zero)).all_true()
 }
 
 /// The same for one pixel.

@@ -60,15 +60,19 @@ fn fade<S: Simd>(simd: S, pass: &CpuPass<'_>, params: &Params, band: &mut Band<'
 fn faded<S: Simd>(simd: S, pass: &CpuPass<'_>, params: &Params, block: &Block) -> [[f32x8<S>; 4]; 2] {
     let one = f32x8::splat(simd, 1.0);
     let [l, a, b, alpha]: [f32x8<S>; 4] = block.read(simd, &pass.inputs[0]);
-    let apart = |of: usize| {
+    let mut paintings = [[one; 4]; 2];
+    for (painting, of) in paintings.iter_mut().zip([1, 3]) {
         let [pl, pa, pb, _]: [f32x8<S>; 4] = block.read(simd, &pass.inputs[of]);
         let [height, ..]: [f32x8<S>; 4] = block.read(simd, &pass.inputs[of + 1]);
-        [pl - l, pa - a, pb - b, (height - MIDDLE) * HEIGHT]
-    };
+        *painting = [pl - l, pa - a, pb - b, (height - MIDDLE) * HEIGHT];
+    }
     let square = |v: [f32x8<S>; 4]| v[0] * v[0] + v[1] * v[1] + v[2] * v[2] + v[3] * v[3];
-    let (first, second) = (apart(1), apart(3));
+    let [first, second] = paintings;
     let (rest, share) = (1.0 - params.share, params.share);
-    let mean = [0, 1, 2, 3].map(|i| first[i] * rest + second[i] * share);
+    let mut mean = [one; 4];
+    for i in 0..4 {
+        mean[i] = first[i] * rest + second[i] * share;
+    }
     let wanted = square(first) * rest + square(second) * share;
     let gain = (wanted / square(mean).at_least(one * 1e-6)).sqrt().at_most(one * MOST);
     let height = mean[3] * gain * (1.0 / HEIGHT) + MIDDLE;

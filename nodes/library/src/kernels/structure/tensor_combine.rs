@@ -64,14 +64,14 @@ fn upsampled<S: Simd>(simd: S, coarse: &View<'_>, x: f32x8<S>, y: f32x8<S>) -> [
     let (left, top) = ((x - 0.5).floor(), (y - 0.5).floor());
     let (fx, fy) = (x - 0.5 - left, y - 0.5 - top);
     let (left, top): (i32x8<S>, i32x8<S>) = (left.to_int(), top.to_int());
-    let corner = |dx, dy| {
+    let mut corners = [[fx; 5]; 4];
+    for (corner, [dx, dy]) in corners.iter_mut().zip([[0, 0], [1, 0], [0, 1], [1, 1]]) {
         let [e, f, g, w] = fetch4(simd, coarse, left + dx, top + dy);
-        [e, f, g, w, anisotropy(e, f, g)]
-    };
-    let corners = [corner(0, 0), corner(1, 0), corner(0, 1), corner(1, 1)];
+        *corner = [e, f, g, w, anisotropy(e, f, g)];
+    }
     let mut result = corners[0];
     for (i, value) in result.iter_mut().enumerate() {
-        let [a, b, c, d] = corners.map(|corner| corner[i]);
+        let [a, b, c, d] = [corners[0][i], corners[1][i], corners[2][i], corners[3][i]];
         let upper = (b - a).mul_add(fx, a);
         let lower = (d - c).mul_add(fx, c);
         *value = (lower - upper).mul_add(fy, upper);

@@ -80,13 +80,16 @@ fn faded<S: Simd>(simd: S, pass: &CpuPass<'_>, block: Block, params: &Params) ->
     [value, value, value, one]
 }
 
+/// A place along an axis of so many pixels; beyond its ends it is mirrored.
+#[inline(always)]
+fn mirrored<S: Simd>(p: f32x8<S>, full: i32) -> f32x8<S> {
+    let full = f32x8::splat(p.simd, full as f32);
+    full - (full - p.abs()).abs()
+}
+
 /// The noise at places; beyond the border it is mirrored.
 #[inline(always)]
 fn noise_at<S: Simd>(simd: S, view: &View<'_>, x: f32x8<S>, y: f32x8<S>) -> f32x8<S> {
-    let mirrored = |p: f32x8<S>, full: i32| {
-        let full = f32x8::splat(simd, full as f32);
-        full - (full - p.abs()).abs()
-    };
     let [w, h] = view.full();
     sample_sharp_covered4(simd, view, mirrored(x, w), mirrored(y, h))[0] - 0.5
 }

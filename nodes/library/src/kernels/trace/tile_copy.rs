@@ -55,7 +55,7 @@ impl Frame {
                 let tile = Rect { x0, y0, x1: (x0 + width).min(window.x1), y1: (y0 + height).min(window.y1) };
                 let window =
                     Rect { x0: x0 - reach, y0: y0 - reach, x1: tile.x1 + reach, y1: tile.y1 + reach };
-                debug_assert!(window.area() <= MOST as u64);
+                assert!(window.area() <= MOST as u64);
                 Self { tile, window }
             })
         })
