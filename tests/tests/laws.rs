@@ -265,6 +265,31 @@ fn promised_ids_are_there() {
     assert!(missing.is_empty(), "missing: {}", missing.join(", "));
 }
 
+/// A closure that is handed on is compiled for every machine where it is not inlined, and calls a function for each
+/// operation on vectors.
+#[test]
+fn closures_handed_on_by_kernels_are_inlined() {
+    let kernels = root().join("nodes/library/src/kernels");
+    let (mut found, mut wrong) = (0, Vec::new());
+    for path in sources(&[".rs"]).into_iter().filter(|path| path.starts_with(&kernels)) {
+        let text = std::fs::read_to_string(&path).unwrap();
+        let code = text.split("#[cfg(test)]").next().unwrap_or_default();
+        let mut before = "";
+        for (n, line) in code.lines().map(str::trim).enumerate() {
+            let is_alone = line.starts_with('|') && line.ends_with("| {");
+            let is_behind_others = line.ends_with("| {") && line.contains("(band, |");
+            let is_inlined = before == "#[inline(always)]" || line.contains("#[inline(always)] |");
+            found += usize::from(is_alone);
+            if (is_alone && !is_inlined) || is_behind_others {
+                wrong.push(format!("{}:{}: {line}", path.display(), n + 1));
+            }
+            before = line;
+        }
+    }
+    assert!(found > 30, "{found}");
+    assert!(wrong.is_empty(), "without #[inline(always)] before them:\n{}", wrong.join("\n"));
+}
+
 /// Lines of a file, and of a function, at most.
 const LINES_OF_A_FILE: usize = 500;
 const LINES_OF_A_FUNCTION: usize = 60;

@@ -11,10 +11,7 @@ crate::kernel!(keep_detail {
     block: |simd, pass, params| |block| {
         let simple: [f32x8<_>; 4] = block.read(simd, &pass.inputs[0]);
         let v: [f32x8<_>; 4] = block.read(simd, &pass.inputs[1]);
-        let d = [0, 1, 2].map(
-            #[inline(always)]
-            |c| v[c] - simple[c],
-        );
+        let d = [v[0] - simple[0], v[1] - simple[1], v[2] - simple[2]];
         let light = (simple[0] * 0.2126 + simple[1] * 0.7152 + simple[2] * 0.0722).within(0.0, 1.0);
         let difference = d[0].abs().at_least(d[1].abs().at_least(d[2].abs())) / (light + 0.35);
         let t = ((difference - params.faint) * params.inverse).within(0.0, 1.0);

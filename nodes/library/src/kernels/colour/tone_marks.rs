@@ -169,6 +169,12 @@ fn remaining<S: Simd>(d: f32x8<S>, first: f32x8<S>) -> f32x8<S> {
     one - (one - d) / (one - first).at_least(one * 1e-6)
 }
 
+/// A place in pixels of the full-size picture, from the paper's corner.
+#[inline(always)]
+fn on_paper<S: Simd>([x, y]: [f32x8<S>; 2], params: &Params) -> [f32x8<S>; 2] {
+    [(x + params.origin[0]) * params.inverse_scale, (y + params.origin[1]) * params.inverse_scale]
+}
+
 /// Mask of the ink on the paper, for marks that cover the share `d` of it.
 #[inline(always)]
 fn drawn<S: Simd>(
@@ -210,7 +216,7 @@ fn drawn<S: Simd>(
         let gain = params.given_gain;
         [stroke((a - 0.5) * gain, first, params), stroke((b - 0.5) * gain, second, params)]
     } else {
-        let q = [0, 1].map(|i| (place[i] + params.origin[i]) * params.inverse_scale);
+        let q = on_paper(place, params);
         let shift = (ground - 50.0) * params.bend;
         [
             hatch(simd, q, (HATCHING[0], shift), (first, 301), params),

@@ -168,7 +168,7 @@ fn strength<S: Simd>(
         sums[0].add([found[0], zero, zero], weights);
         sums[1].add([found[1], found[2], found[3]], others);
     }
-    let [creases, outlines] = sums.map(GuideSums::ridge);
+    let [creases, outlines] = [sums[0].ridge(), sums[1].ridge()];
     // A lone break is the fainter the wider it is smoothed.
     let evened = factor.simd_ge(1.0).select(factor, factor.sqrt());
     (creases * params.amount[0]).at_least(outlines * params.amount[1]) * evened

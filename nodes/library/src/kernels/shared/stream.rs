@@ -127,7 +127,7 @@ impl<S: Simd> Field<S> for FieldView<'_> {
     #[inline(always)]
     fn at(&self, simd: S, place: &[f32x8<S>; 2]) -> [f32x8<S>; 2] {
         // At the centre of a pixel nothing is interpolated.
-        let [x, y] = if self.nearest { place.map(|v| v.floor() + 0.5) } else { *place };
+        let [x, y] = if self.nearest { [place[0].floor() + 0.5, place[1].floor() + 0.5] } else { *place };
         if self.tensors.channels() == 2 {
             return sample_linear2(simd, &self.tensors, x, y);
         }

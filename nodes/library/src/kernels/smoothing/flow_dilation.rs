@@ -58,7 +58,7 @@ fn run(pass: &CpuPass<'_>, band: &mut Band<'_>) {
     dispatch!(pass.level, simd => for_blocks::<4>(band, #[inline(always)] |block, target| {
         let own: [_; 4] = block.read(simd, &pass.inputs[0]);
         let at = brightest(simd, &params, &field, &pass.inputs[2], &block);
-        let [x, y] = at.map(|v| v.floor().to_int());
+        let [x, y] = [at[0].floor().to_int(), at[1].floor().to_int()];
         let [r, g, b, alpha] = fetch4(simd, &pass.inputs[0], x, y);
         let seen = alpha.simd_ge(f32x8::splat(simd, 0.5));
         let values = [seen.select(r, own[0]), seen.select(g, own[1]), seen.select(b, own[2]), own[3]];

@@ -68,8 +68,9 @@ fn wavering<S: Simd>(simd: S, params: &Params, source: &View<'_>, band: &mut Ban
         #[inline(always)]
         |block, target| {
             let [cx, cy] = block.centres(simd);
-            let q = [cx + params.origin[0], cy + params.origin[1]]
-                .map(|v| v * params.inverse_scale * params.frequency);
+            let (scale, frequency) = (params.inverse_scale, params.frequency);
+            let q =
+                [(cx + params.origin[0]) * scale * frequency, (cy + params.origin[1]) * scale * frequency];
             let (dx, dy) = (offset(simd, q, 3001, params.amount), offset(simd, q, 5003, params.amount));
             write(unpremultiply(sample_linear4(simd, source, cx + dx, cy + dy)), target);
         },

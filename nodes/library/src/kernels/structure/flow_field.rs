@@ -38,7 +38,8 @@ fn run(pass: &CpuPass<'_>, band: &mut Band<'_>) {
     let sign = if params.invert_y != 0 { -1.0 } else { 1.0 };
     dispatch!(pass.level, simd => map_pixels(simd, pass, band, #[inline(always)] |pixels| {
         let (zero, one) = (f32x8::splat(simd, 0.0), f32x8::splat(simd, 1.0));
-        let [r, g, _, a] = finite_pixels(pixels).map(|v| v.within(zero, one));
+        let [r, g, _, a] = finite_pixels(pixels);
+        let [r, g, a] = [r.within(zero, one), g.within(zero, one), a.within(zero, one)];
         let (x, y) = (r * 2.0 - 1.0, (g * 2.0 - 1.0) * sign);
         let square = x * x + y * y;
         let length = square.sqrt();

@@ -59,15 +59,24 @@ pub fn pass(plan: &mut PlanBuilder, tensor: ImageId, guide: ImageId, options: &O
     plan.pass(&KERNEL, &[tensor, guide], &params, Class::Field, Support::Pixels(1))
 }
 
+#[expect(clippy::redundant_closure, reason = "a function that is handed on itself is called, not inlined")]
 fn run(pass: &CpuPass<'_>, band: &mut Band<'_>) {
     let params: Params = pass.params();
     match Guide::of(params.kind) {
         Guide::Normal => dispatch!(pass.level, simd => normals(simd, pass, &params, band)),
         Guide::Depth => {
-            dispatch!(pass.level, simd => scalars(simd, pass, &params, band, clean_depth, relative));
+            dispatch!(pass.level, simd => scalars(
+                simd, pass, &params, band,
+                #[inline(always)] |v| clean_depth(v),
+                #[inline(always)] |v, centre| relative(v, centre),
+            ));
         }
         Guide::ObjectId => {
-            dispatch!(pass.level, simd => scalars(simd, pass, &params, band, clean_number, other));
+            dispatch!(pass.level, simd => scalars(
+                simd, pass, &params, band,
+                #[inline(always)] |v| clean_number(v),
+                #[inline(always)] |v, centre| other(v, centre),
+            ));
         }
     }
 }
@@ -141,7 +150,15 @@ fn normals<S: Simd>(simd: S, pass: &CpuPass<'_>, params: &Params, band: &mut Ban
         params,
         band,
         #[inline(always)]
-        |rows, y| rows.load_mapped(simd, &pass.inputs[1], y, clean_normal),
+        |rows, y| {
+            rows.load_mapped(
+                simd,
+                &pass.inputs[1],
+                y,
+                #[inline(always)]
+                |v| clean_normal(v),
+            )
+        },
         #[inline(always)]
         |rows: &[[&[f32]; 3]; 4], i| {
             let around = neighbours(simd, &rows[3], i);

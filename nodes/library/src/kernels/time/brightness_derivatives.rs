@@ -5,7 +5,7 @@
 
 use crate::kernels::simd::around::{Around, rows};
 use crate::kernels::simd::pixels::{BLOCK, Block};
-use isophote_engine::fearless_simd::Simd;
+use isophote_engine::fearless_simd::{Simd, f32x8};
 use isophote_engine::{Band, Class, CpuPass, ImageId, PlanBuilder, Support, Tolerance};
 
 /// Levels of brightness to 1.
@@ -27,6 +27,12 @@ pub fn pass(plan: &mut PlanBuilder, warped: [ImageId; 2]) -> [ImageId; 2] {
     let level = plan.desc(warped[0]).level;
     let first = plan.pass_at(&KERNEL, &warped, &(), &[Class::Field; 2], Support::Pixels(1), level);
     [first, plan.sibling(first, 1)]
+}
+
+/// Numbers of 0 to 1 in levels of eight bits.
+#[inline(always)]
+fn in_levels<S: Simd>([a, b, c, d]: [f32x8<S>; 4]) -> [f32x8<S>; 4] {
+    [a * LEVELS, b * LEVELS, c * LEVELS, d * LEVELS]
 }
 
 #[inline(always)]
@@ -52,22 +58,8 @@ fn derivatives<S: Simd>(simd: S, pass: &CpuPass<'_>, band: &mut Band<'_>) {
             let z = other.value(simd, 0, 0)[0];
             let first = [(right - left) * 0.5, (down - up) * 0.5, z, xx];
             let second = [(falling - rising) * 0.25, yy, xz * 0.5, yz * 0.5];
-            block.write(
-                first.map(
-                    #[inline(always)]
-                    |v| v * LEVELS,
-                ),
-                band,
-                0,
-            );
-            block.write(
-                second.map(
-                    #[inline(always)]
-                    |v| v * LEVELS,
-                ),
-                band,
-                1,
-            );
+            block.write(in_levels(first), band, 0);
+            block.write(in_levels(second), band, 1);
         }
     }
 }
