@@ -281,7 +281,7 @@ fn convolve<S: Simd, V: Reals<S>>(
         let mut spectrum = Square { real: values(&planes[pair[0]]), imaginary: values(&planes[pair[1]]) };
         convolution.spectrum(&mut spectrum);
         for k in 0..sectors {
-            convolution.convolved(&spectrum, k, &mut product);
+            convolution.convolved(&spectrum, k, reach..side - reach, &mut product);
             for (channel, part) in pair.into_iter().zip([&product.real, &product.imaginary]) {
                 let rows = sums.channel(k, channel).chunks_exact_mut(stride);
                 for (row, target) in rows.enumerate() {

@@ -10,6 +10,7 @@ use isophote_engine::fearless_simd::{Simd, prelude::*};
 use isophote_engine::memory;
 use std::f64::consts::TAU;
 use std::iter::successors;
+use std::ops::Range;
 
 /// A mask: its weights by offset from the pixel, at most `reach` along either axis.
 pub type Mask = Vec<([i32; 2], f32)>;
@@ -104,24 +105,35 @@ impl<S: Simd, V: Reals<S>> Convolution<S, V> {
     #[inline(always)]
     pub fn spectrum(&mut self, block: &mut Block<V::Element>) {
         let (simd, turned) = (self.simd, &mut self.turned);
+        let all = 0..self.columns.rows.len();
         self.columns.transform::<false, true>(
+            all.clone(),
             #[inline(always)]
             |at| block.vectors(simd, at),
             turned,
         );
         self.columns.transform::<false, false>(
+            all,
             #[inline(always)]
             |at| turned.vectors(simd, at),
             block,
         );
     }
 
-    /// The block of `spectrum` convolved with mask `index`, in `out`. Real and imaginary parts stay
-    /// apart, since masks are real.
+    /// The block of `spectrum` convolved with mask `index`, in `out`, whose columns but for the `kept` ones may hold anything.
+    /// Real and imaginary parts stay apart, since masks are real.
     #[inline(always)]
-    pub fn convolved(&mut self, spectrum: &Block<V::Element>, index: usize, out: &mut Block<V::Element>) {
+    pub fn convolved(
+        &mut self,
+        spectrum: &Block<V::Element>,
+        index: usize,
+        kept: Range<usize>,
+        out: &mut Block<V::Element>,
+    ) {
         let (simd, mask, turned) = (self.simd, &self.spectra[index], &mut self.turned);
+        let all = 0..self.columns.rows.len();
         self.columns.transform::<true, true>(
+            all,
             #[inline(always)]
             |at| {
                 let [[a, b], [c, d]]: [[V; 2]; 2] = [spectrum.vectors(simd, at), mask.vectors(simd, at)];
@@ -130,6 +142,7 @@ impl<S: Simd, V: Reals<S>> Convolution<S, V> {
             turned,
         );
         self.columns.transform::<true, false>(
+            kept,
             #[inline(always)]
             |at| turned.vectors(simd, at),
             out,
@@ -163,16 +176,17 @@ impl<S: Simd, V: Reals<S>> Columns<S, V> {
         Self { steps: widths.map(step).collect(), rows: vec![[zero; 2]; side] }
     }
 
-    /// Transforms each column of `given`, which says the numbers of a block from an index on, into a column of `out`, or where
+    /// Transforms each of the `columns` of `given`, which says the numbers of a block from an index on, into a column of `out`, or where
     /// it is `TURNED`, into a row.
     #[inline(always)]
     fn transform<const INVERSE: bool, const TURNED: bool>(
         &mut self,
+        columns: Range<usize>,
         given: impl Fn(usize) -> [V; 2],
         out: &mut Block<V::Element>,
     ) {
         let side = self.rows.len();
-        for x in (0..side).step_by(V::LEN) {
+        for x in (columns.start / V::LEN * V::LEN..columns.end).step_by(V::LEN) {
             for (y, row) in self.rows.iter_mut().enumerate() {
                 *row = given(y * side + x);
             }
@@ -298,7 +312,7 @@ mod tests {
         dispatch!(Level::new(), simd => {
             let mut convolution = Convolution::<_, f64x4<_>>::new(simd, 32, &masks);
             convolution.spectrum(&mut block);
-            convolution.convolved(&block, 0, &mut out);
+            convolution.convolved(&block, 0, 3..31, &mut out);
         });
         for (x, y) in [(3, 4), (20, 9), (29, 30)] {
             let (real, imaginary) = (out.real[y * 32 + x], out.imaginary[y * 32 + x]);
