@@ -16,7 +16,7 @@ use crate::kernels::shared::sampled_sectors::{sample, table};
 use crate::kernels::shared::sectors::{INSIDE, MIN_RADIUS, Response, Sector};
 use crate::kernels::simd::moment_buffer::{CHANNELS, for_rows};
 use crate::kernels::simd::pixels::{Block, eight, read, write};
-use block_convolution::{Block as Square, Convolution, Mask, Real, Reals, block_side};
+use block_convolution::{Convolution, Mask, Real, Reals, Square, block_side};
 use isophote_engine::fearless_simd::{Level, Simd, dispatch, f32x8, f64x4, prelude::*};
 use isophote_engine::{Band, Class, CpuPass, ImageId, PlanBuilder, Support, Tolerance, View, memory};
 use std::f32::consts::FRAC_1_SQRT_2;

@@ -45,12 +45,12 @@ impl Real for f64 {
 }
 
 /// Complex numbers of a square, row by row.
-pub struct Block<T> {
+pub struct Square<T> {
     pub real: Vec<T>,
     pub imaginary: Vec<T>,
 }
 
-impl<T: Real> Block<T> {
+impl<T: Real> Square<T> {
     /// Zeros.
     pub fn new(side: usize) -> Self {
         let mut this = Self { real: Vec::new(), imaginary: Vec::new() };
@@ -77,8 +77,8 @@ pub struct Convolution<S: Simd, V: Reals<S>> {
     simd: S,
     columns: Columns<S, V>,
     /// Rows and columns of spectra are exchanged.
-    spectra: Vec<Block<V::Element>>,
-    turned: Block<V::Element>,
+    spectra: Vec<Square<V::Element>>,
+    turned: Square<V::Element>,
 }
 
 impl<S: Simd, V: Reals<S>> Convolution<S, V> {
@@ -86,10 +86,10 @@ impl<S: Simd, V: Reals<S>> Convolution<S, V> {
     #[inline(always)]
     pub fn new(simd: S, side: usize, masks: &[Mask]) -> Self {
         let columns = Columns::new(simd, side);
-        let mut this = Self { simd, columns, spectra: Vec::new(), turned: Block::new(side) };
+        let mut this = Self { simd, columns, spectra: Vec::new(), turned: Square::new(side) };
         let share = 1.0 / (side * side) as f64;
         for mask in masks {
-            let mut image = Block::new(side);
+            let mut image = Square::new(side);
             for ([dx, dy], weight) in mask {
                 // A weight at offset d counts the pixel at x + d: the convolution's kernel is mirrored.
                 let (x, y) = ((-dx).rem_euclid(side as i32) as usize, (-dy).rem_euclid(side as i32) as usize);
@@ -103,7 +103,7 @@ impl<S: Simd, V: Reals<S>> Convolution<S, V> {
 
     /// The spectrum of a block in place.
     #[inline(always)]
-    pub fn spectrum(&mut self, block: &mut Block<V::Element>) {
+    pub fn spectrum(&mut self, block: &mut Square<V::Element>) {
         let (simd, turned) = (self.simd, &mut self.turned);
         let all = 0..self.columns.rows.len();
         self.columns.transform::<false, true>(
@@ -125,10 +125,10 @@ impl<S: Simd, V: Reals<S>> Convolution<S, V> {
     #[inline(always)]
     pub fn convolved(
         &mut self,
-        spectrum: &Block<V::Element>,
+        spectrum: &Square<V::Element>,
         index: usize,
         kept: Range<usize>,
-        out: &mut Block<V::Element>,
+        out: &mut Square<V::Element>,
     ) {
         let (simd, mask, turned) = (self.simd, &self.spectra[index], &mut self.turned);
         let all = 0..self.columns.rows.len();
@@ -176,14 +176,14 @@ impl<S: Simd, V: Reals<S>> Columns<S, V> {
         Self { steps: widths.map(step).collect(), rows: vec![[zero; 2]; side] }
     }
 
-    /// Transforms each of the `columns` of `given`, which says the numbers of a block from an index on, into a column of `out`, or where
-    /// it is `TURNED`, into a row.
+    /// Transforms each of the `columns` of `given`, which says the numbers of a block from an index on, into a column of
+    /// `out`, or into a row where it is `TURNED`.
     #[inline(always)]
     fn transform<const INVERSE: bool, const TURNED: bool>(
         &mut self,
         columns: Range<usize>,
         given: impl Fn(usize) -> [V; 2],
-        out: &mut Block<V::Element>,
+        out: &mut Square<V::Element>,
     ) {
         let side = self.rows.len();
         for x in (columns.start / V::LEN * V::LEN..columns.end).step_by(V::LEN) {
@@ -304,11 +304,11 @@ mod tests {
     fn a_mask_counts_the_pixels_at_its_offsets() {
         let masks = [vec![([2, -1], 0.5), ([0, 0], 2.0)]];
         let value = |x: usize, y: usize| ((x * 7 + y * 13) % 11) as f64;
-        let mut block = Block {
+        let mut block = Square {
             real: (0..32 * 32).map(|i| value(i % 32, i / 32)).collect(),
             imaginary: (0..32 * 32).map(|i| -value(i / 32, i % 32)).collect(),
         };
-        let mut out = Block::new(32);
+        let mut out = Square::new(32);
         dispatch!(Level::new(), simd => {
             let mut convolution = Convolution::<_, f64x4<_>>::new(simd, 32, &masks);
             convolution.spectrum(&mut block);
