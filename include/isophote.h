@@ -188,6 +188,10 @@ extern "C" {
 // the medium: 4 channels; of fewer, that strength does not change. Its values are data, which no colour space changes.
 #define ISOPHOTE_KIND_CONTROL 9
 
+// Hatching in up to four tones, the lightest first; 1 is paper and 0 is ink: 4 channels; of 3, there is no fourth tone. Its
+// values are data, which no colour space changes.
+#define ISOPHOTE_KIND_HATCHING 10
+
 // A number.
 #define ISOPHOTE_PARAM_FLOAT 0
 
@@ -286,6 +290,14 @@ extern "C" {
 // Bit of `IsophoteRequest::guides` for `control`: a control map, 0.5 for no change: detail, width of lines, their
 // amount, and strength of the medium.
 #define ISOPHOTE_GUIDE_CONTROL 2048
+
+// Bit of `IsophoteRequest::guides` for `paper`: a sheet of paper: its colours, and its grain, which is deep where it
+// is darker than around; white where it is transparent.
+#define ISOPHOTE_GUIDE_PAPER 4096
+
+// Bit of `IsophoteRequest::guides` for `hatching`: hatching in up to four tones, the lightest in red and the darkest
+// in alpha: 1 is paper, 0 is ink.
+#define ISOPHOTE_GUIDE_HATCHING 8192
 
 // The host binds its own texture, which shows the window of the picture that the plan names.
 #define ISOPHOTE_ROLE_INPUT 0

@@ -70,6 +70,9 @@ pub const ISOPHOTE_KIND_POSITION: u32 = 8;
 /// A control map: what an artist wants of places, 0.5 for no change; detail, width of lines, their amount, and strength of
 /// the medium: 4 channels; of fewer, that strength does not change. Its values are data, which no colour space changes.
 pub const ISOPHOTE_KIND_CONTROL: u32 = 9;
+/// Hatching in up to four tones, the lightest first; 1 is paper and 0 is ink: 4 channels; of 3, there is no fourth tone. Its
+/// values are data, which no colour space changes.
+pub const ISOPHOTE_KIND_HATCHING: u32 = 10;
 
 /// Type of a parameter. One of `ISOPHOTE_PARAM_...`.
 pub type IsophoteParamKind = u32;
@@ -155,6 +158,12 @@ pub const ISOPHOTE_GUIDE_SPECULAR: u32 = 1024;
 /// Bit of `IsophoteRequest::guides` for `control`: a control map, 0.5 for no change: detail, width of lines, their
 /// amount, and strength of the medium.
 pub const ISOPHOTE_GUIDE_CONTROL: u32 = 2048;
+/// Bit of `IsophoteRequest::guides` for `paper`: a sheet of paper: its colours, and its grain, which is deep where it
+/// is darker than around; white where it is transparent.
+pub const ISOPHOTE_GUIDE_PAPER: u32 = 4096;
+/// Bit of `IsophoteRequest::guides` for `hatching`: hatching in up to four tones, the lightest in red and the darkest
+/// in alpha: 1 is paper, 0 is ink.
+pub const ISOPHOTE_GUIDE_HATCHING: u32 = 8192;
 // end of guides
 
 /// Purpose of a texture of a plan. One of `ISOPHOTE_ROLE_...`.

@@ -1,7 +1,7 @@
 // The sheet of a blueprint: tinted paper with texture and grid, a hint of the picture's tones and the
 // lines. All lengths and the texture's cells are those of the full-size picture, so that tiles and
 // proxies show the same sheet.
-// Cost: two loads, twelve hashes and about 100 multiply-adds.
+// Cost: three loads, twelve hashes and about 100 multiply-adds.
 #import shared/value_noise
 #import gpu/grid
 
@@ -24,10 +24,14 @@ struct Params {
     cover: u32,
     /// Where the picture stands in the canonical one, pixels.
     origin: vec2f,
+    /// Nonzero: its colours are those of the given sheet.
+    given: u32,
 }
 
 #params
 #input lightness, edges
+// Colours of a given paper.
+#input given_sheet
 #output target_image rgba32float
 
 // How much of a pixel at `x` is covered by lines `width` wide, `spacing` apart.
@@ -37,15 +41,18 @@ fn ruled(x: vec2f, spacing: f32, width: f32) -> f32 {
     return max(covered.x, covered.y);
 }
 
-fn of_pixel(id: vec3u, lightness: vec4f, edges: vec4f) -> vec4f {
+fn of_pixel(id: vec3u, lightness: vec4f, edges: vec4f, given_sheet: vec4f) -> vec4f {
     let x = centre(id) + params.origin;
     let q = x * params.inverse_scale;
-    let grain = 0.45 * value_noise(q * 0.4, 0u) + 0.3 * value_noise(q * 0.13, 1013u) + 0.25 * value_noise(q * 0.037, 2027u);
+    var paper = given_sheet.rgb;
+    if params.given == 0u {
+        let grain = 0.45 * value_noise(q * 0.4, 0u) + 0.3 * value_noise(q * 0.13, 1013u) + 0.25 * value_noise(q * 0.037, 2027u);
+        paper = vec3f(1.0 + params.texture_amount * (grain - 0.5));
+    }
     let v = lightness.xy;
     let tone = clamp(v.x / max(v.y, 1e-6) * 0.01, 0.0, 1.0);
     let fill = params.fill * clamp(v.y, 0.0, 1.0);
-    let shade = (1.0 + params.texture_amount * (grain - 0.5)) * (1.0 - 0.5 * fill * (1.0 - tone));
-    var sheet = params.paper.rgb * shade;
+    var sheet = params.paper.rgb * (paper * (1.0 - 0.5 * fill * (1.0 - tone)));
     sheet += 0.35 * fill * tone * (params.line.rgb - sheet);
     if params.spacing > 0.0 {
         let fine = 0.16 * ruled(x, params.spacing, params.scale);

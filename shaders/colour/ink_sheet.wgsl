@@ -1,6 +1,6 @@
 // Lays ink, graphite, charcoal or chalk on paper (section 4.3, 4.4): lines, and the marks of tones, both of which catch
 // on the paper's grain. Cells of grain are those of the full-size picture.
-// Cost: five loads, 12 hashes and about 100 multiply-adds.
+// Cost: six loads, 12 hashes and about 100 multiply-adds.
 #import gpu/grid
 #import shared/coverage
 #import shared/mark_tones
@@ -41,6 +41,8 @@ struct Params {
     inverse_fade: f32,
     /// Nonzero: what is drawn alone, without the paper.
     bare: u32,
+    /// Nonzero: colours and grain are those of the sheet.
+    given: u32,
 }
 
 #params
@@ -51,6 +53,8 @@ struct Params {
 #input marks
 // Those of the picture, (L alpha, alpha).
 #input tones
+// Colours of a given paper, and the depth of its grain.
+#input sheet
 #output target_image rgba32float
 
 // Noise whose values fill 0..1.
@@ -64,11 +68,16 @@ fn catches(d: f32, h: f32, depth: f32) -> f32 {
     return clamp(d + depth * 4.0 * d * (1.0 - d) * (0.5 - h), 0.0, 1.0);
 }
 
-fn of_pixel(id: vec3u, lines: vec4f, v: vec4f, strokes: vec4f, marks: vec4f, tones: vec4f) -> vec4f {
+fn of_pixel(id: vec3u, lines: vec4f, v: vec4f, strokes: vec4f, marks: vec4f, tones: vec4f, sheet: vec4f) -> vec4f {
     let q = (centre(id) + params.origin) * params.inverse_scale;
     let g = q * params.grain_frequency;
-    let tooth = even(0.45 * value_noise(g, 11u) + 0.25 * value_noise(g * 2.13, 1013u)
-        + 0.3 * value_noise(g * 0.31, 2027u));
+    var tooth = sheet.w;
+    var paper = params.paper.rgb * sheet.rgb;
+    if params.given == 0u {
+        tooth = even(0.45 * value_noise(g, 11u) + 0.25 * value_noise(g * 2.13, 1013u)
+            + 0.3 * value_noise(g * 0.31, 2027u));
+        paper = params.paper.rgb * (1.0 + params.texture_amount * (tooth - 0.5));
+    }
     let alpha = clamp(v.a, 0.0, 1.0);
     let stroke = clamp(strokes.x, 0.0, 1.0);
     let height = mix(tooth, stroke, params.follow);
@@ -85,7 +94,6 @@ fn of_pixel(id: vec3u, lines: vec4f, v: vec4f, strokes: vec4f, marks: vec4f, ton
     // Chalk: the picture's own colours, a little lighter, where the paper catches them.
     let own = clamp(v.rgb, vec3f(0.0), vec3f(1.0));
     let chalk = catches(params.ground, height, params.grain * grain) * params.colour * alpha;
-    let paper = params.paper.rgb * (1.0 + params.texture_amount * (tooth - 0.5));
     let laid = mix(paper, own * 0.94 + 0.06, chalk);
     let colour = mix(params.line.rgb, own * params.tint, params.colour);
     if params.bare != 0u {

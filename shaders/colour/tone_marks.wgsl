@@ -47,6 +47,8 @@ struct Params {
     bend: f32,
     /// Share of the tone that is lifted out where a place is lighter than the relief, 0..=1.
     lift: f32,
+    /// Nonzero: the hatching is what ink covers in four tones, and the second image of it the same around a place.
+    drawn_tones: u32,
 }
 
 #params
@@ -64,6 +66,8 @@ const FULL_HATCHES: f32 = 0.7;
 // Units of L above the relief from which on tone is lifted out, and the share of it per further unit.
 const LIFT_FROM: f32 = 2.0;
 const LIFT_SLOPE: f32 = 0.12;
+// Share of the paper that a given tone covers at least beyond the one before.
+const LEAST_STEP: f32 = 0.01;
 
 // Density of the first of two directions that are to cover `d` together.
 fn shared_out(d: f32, full: f32) -> f32 {
@@ -128,6 +132,25 @@ fn border_gain(p: vec2f, t: vec2f, inverse_length: f32) -> f32 {
     return 1.0 / sqrt((1.0 + along.x) * (1.0 + along.y) * (1.0 + beside.x) * (1.0 + beside.y));
 }
 
+// Hatching that covers the share `d` of the paper, by tones that cover `tones` of a pixel and `around` of what is around it.
+// Between two tones the darker one fades in; beyond the last all is solid.
+fn given_tones(tones: vec4f, around: vec4f, d: f32) -> f32 {
+    var covered = 0.0;
+    var mean = 0.0;
+    for (var i = 0u; i < 5u; i += 1u) {
+        var tone = vec2f(1.0);
+        if i < 4u {
+            tone = vec2f(tones[i], around[i]);
+        }
+        let step = tone.y - mean;
+        if step > LEAST_STEP {
+            covered = mix(covered, tone.x, clamp((d - mean) / step, 0.0, 1.0));
+            mean = tone.y;
+        }
+    }
+    return covered;
+}
+
 fn main(@builtin(global_invocation_id) id: vec3u) {
     if outside(id) {
         return;
@@ -142,7 +165,10 @@ fn main(@builtin(global_invocation_id) id: vec3u) {
     let d = (eased - params.open * eased * eased * eased) * (1.0 - lifted);
     let marked = (1.0 - params.rubbed) * rise((params.smooth_from - lightness) * params.inverse_fade);
     var density = d;
-    if marked > 0.0 {
+    if marked > 0.0 && params.drawn_tones != 0u {
+        let drawn = given_tones(fetch(first_hatching, 4u, p), fetch(second_hatching, 5u, p), d);
+        density = d + marked * (drawn - d);
+    } else if marked > 0.0 {
         let structure = fetch(tensor, 1u, p);
         let tangent = tensor_tangent(structure);
         // By the change from pixel to pixel of the full-size picture.

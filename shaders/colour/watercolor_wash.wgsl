@@ -2,7 +2,7 @@
 // clouds, in the grain of the paper and where water has pushed it to a rim (Bousseau et al. 2006). Wet places
 // bleed; dry ones leave gaps beside dark shapes and bare peaks of the grain (Montesdeoca et al. 2017).
 // Clouds and grain belong to the full-size picture, so that tiles and proxies show the same paper.
-// Cost: four loads, 16 hashes and about 250 multiply-adds.
+// Cost: five loads, 16 hashes and about 250 multiply-adds.
 #import shared/value_noise
 #import gpu/grid
 
@@ -33,10 +33,14 @@ struct Params {
     dry: f32,
     /// Density at the rim of water that ran back.
     backruns: f32,
+    /// Nonzero: the paper is that of the fifth image.
+    papered: u32,
 }
 
 #params
 #input source, blurred, wide, given_clouds
+// Colours of a given paper, and the depth of its grain.
+#input sheet
 #output target_image rgba32float
 
 // Luma within the range of paper.
@@ -50,14 +54,19 @@ fn rise(v: f32, start: f32, inverse: f32) -> f32 {
     return t * t * (3.0 - 2.0 * t);
 }
 
-fn of_pixel(id: vec3u, v: vec4f, blurred: vec4f, wide: vec4f, given_clouds: vec4f) -> vec4f {
+fn of_pixel(id: vec3u, v: vec4f, blurred: vec4f, wide: vec4f, given_clouds: vec4f, sheet: vec4f) -> vec4f {
     let q = (centre(id) + params.origin) * params.inverse_scale;
     var cloud = given_clouds.x;
     if params.given == 0u {
         cloud = 0.62 * value_noise(q * 0.009, 11u) + 0.38 * value_noise(q * 0.025, 503u);
     }
     let g = q * params.grain_frequency;
-    let grain = 0.6 * value_noise(g, 1013u) + 0.4 * value_noise(g * 2.3, 2027u);
+    var grain = 0.5 + 0.65 * (sheet.w - 0.5);
+    var paper = sheet.rgb;
+    if params.papered == 0u {
+        grain = 0.6 * value_noise(g, 1013u) + 0.4 * value_noise(g * 2.3, 2027u);
+        paper = vec3f(1.0);
+    }
 
     // Detail counts against the light that is there.
     let tone = luma(v.rgb);
@@ -91,5 +100,5 @@ fn of_pixel(id: vec3u, v: vec4f, blurred: vec4f, wide: vec4f, given_clouds: vec4
     let absorbed = 1.0 - color;
     let paint = 1.0 - covered * max(absorbed, vec3f(0.0));
     let dense = paint / (1.0 + density * clamp(1.0 - paint, vec3f(0.0), vec3f(1.0)));
-    return vec4f(1.0 - params.pigment * (1.0 - dense) - min(absorbed, vec3f(0.0)), v.a);
+    return vec4f(paper * (1.0 - params.pigment * (1.0 - dense) - min(absorbed, vec3f(0.0))), v.a);
 }

@@ -196,7 +196,8 @@ fn name_of(param: &Param, value: Value) -> String {
     }
 }
 
-/// The request that suits a kind of picture, with all guides, neighbouring frames and its light apart, or with none.
+/// The request that suits a kind of picture, with all guides but materials, neighbouring frames and its light apart, or with
+/// none.
 pub fn request(kind: Kind, width: u32, height: u32, guides: bool) -> Request {
     let space = match kind {
         Kind::Hdr if width < 10 => ColourSpace::AcesCg,
@@ -207,7 +208,7 @@ pub fn request(kind: Kind, width: u32, height: u32, guides: bool) -> Request {
         space,
         premultiplied: kind != Kind::Noise,
         emission: guides,
-        guides: Guides::of(|_| guides),
+        guides: Guides::of(|guide| guides && !is_material(guide)),
         frames: if guides { Frames::around(2, 1) } else { Frames::NONE },
         // Shorter than some motion of the pictures, so that there is some of which nothing is known.
         max_motion: 3.25,
@@ -233,6 +234,21 @@ pub fn fading(spec: &NodeSpec) -> Option<Setting> {
 pub fn request_without_rest(kind: Kind, width: u32, height: u32) -> Request {
     let request = request(kind, width, height, true);
     Request { guides: Guides { rest_position: false, ..request.guides }, frame: 3, ..request }
+}
+
+/// For nodes that draw on paper or with hatching: their defaults.
+pub fn on_materials(spec: &NodeSpec) -> Option<Setting> {
+    let takes = spec.inputs.iter().any(|port| GraphInput::from_id(port.id).is_some_and(is_material));
+    takes.then(|| Setting { label: "on materials".into(), values: Vec::new() })
+}
+
+/// As [`request`] with all guides, materials too.
+pub fn request_on_materials(kind: Kind, width: u32, height: u32) -> Request {
+    Request { guides: Guides::of(|_| true), ..request(kind, width, height, true) }
+}
+
+fn is_material(guide: GraphInput) -> bool {
+    matches!(guide, GraphInput::Paper | GraphInput::Hatching)
 }
 
 /// True when the node has an optional input that is not a picture of the graph's own.

@@ -199,6 +199,13 @@ pub fn field(kind: ImageKind, width: u32, height: u32) -> Image {
             let mut v = || if empty(x, y) { 0.5 } else { random.unit() as f32 };
             [v(), v(), v(), v()]
         }),
+        // Crossed lines in four tones, and paper that nobody drew on.
+        ImageKind::Hatching => from_fn(width, height, |x, y| {
+            let mut tone = |every: i32| {
+                if empty(x, y) || (x + 2 * y) % every > 1 { 1.0 } else { 0.3 * random.unit() as f32 }
+            };
+            [tone(11), tone(7), tone(5), tone(3)]
+        }),
         ImageKind::ObjectId => {
             from_fn(width, height, |x, y| [if empty(x, y) { 0.0 } else { (1 + x / 13 + 7 * (y / 9)) as f32 }])
         }

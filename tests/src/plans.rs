@@ -35,14 +35,17 @@ pub struct Case {
     pub fields: Vec<Option<ImageKind>>,
 }
 
+/// Request of a full picture, of a kind and a size.
+type FullRequest = fn(Kind, u32, u32) -> Request;
+
 /// Variant in which a node is planned.
 struct Variant {
     setting: Setting,
     wired: bool,
     kind: Kind,
     guides: bool,
-    /// True where guides are rest positions, too.
-    rest: bool,
+    /// Request of the full picture.
+    request: FullRequest,
     scale: f32,
 }
 
@@ -63,7 +66,8 @@ fn variants(spec: &'static NodeSpec) -> Vec<Variant> {
     let (fields, guides) = (cases::has_optional_field(spec), cases::has_guides(spec));
     let mut all = Vec::new();
     let mut add = |setting: &Setting, wired, kind, guides, scale| {
-        all.push(Variant { setting: setting.clone(), wired, kind, guides, rest: true, scale });
+        let request = if guides { with_guides } else { without_guides };
+        all.push(Variant { setting: setting.clone(), wired, kind, guides, request, scale });
     };
     let settings = cases::settings(spec, RANDOM_SETS);
     let Some((default, others)) = settings.split_first() else { return all };
@@ -80,14 +84,19 @@ fn variants(spec: &'static NodeSpec) -> Vec<Variant> {
     for kind in Kind::ALL {
         add(default, false, kind, false, 0.5);
     }
-    for (marks, rest) in [(cases::carrying(spec), false), (cases::fading(spec), true)] {
-        all.extend(marks.into_iter().flat_map(|setting| {
+    let others: [(_, FullRequest); 3] = [
+        (cases::carrying(spec), cases::request_without_rest),
+        (cases::fading(spec), with_guides),
+        (cases::on_materials(spec), cases::request_on_materials),
+    ];
+    for (setting, request) in others {
+        all.extend(setting.into_iter().flat_map(|setting| {
             Kind::ALL.map(|kind| Variant {
                 setting: setting.clone(),
                 wired: false,
                 kind,
                 guides: true,
-                rest,
+                request,
                 scale: 1.0,
             })
         }));
@@ -95,15 +104,20 @@ fn variants(spec: &'static NodeSpec) -> Vec<Variant> {
     all
 }
 
+fn with_guides(kind: Kind, width: u32, height: u32) -> Request {
+    cases::request(kind, width, height, true)
+}
+
+fn without_guides(kind: Kind, width: u32, height: u32) -> Request {
+    cases::request(kind, width, height, false)
+}
+
 /// The case of a variant, unless it takes too long, or is a proxy whose kernels the full picture has.
 fn planned(spec: &'static NodeSpec, variant: &Variant, size: [u32; 2]) -> Option<Case> {
-    let ([width, height], &Variant { wired, kind, guides, scale, .. }) = (size, variant);
+    let ([width, height], &Variant { wired, kind, guides, scale, request, .. }) = (size, variant);
     let mut setup = cases::setup(spec, wired);
     variant.setting.apply(&mut setup.graph, setup.node);
-    let full = match variant.rest {
-        true => cases::request(kind, width, height, guides),
-        false => cases::request_without_rest(kind, width, height),
-    };
+    let full = request(kind, width, height);
     let request = Request { scale, ..full };
     let plan = run::planned(&setup.graph, request).plan().clone();
     let kernels = |plan: &Plan| plan.passes().iter().map(|p| p.kernel.name).collect::<BTreeSet<_>>();

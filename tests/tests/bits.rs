@@ -68,10 +68,10 @@ pub fn add(trials: &mut Trials) {
     }
 }
 
-/// A node with its defaults, with each option of each choice, and with marks that motion carries or that fade.
+/// A node with its defaults, with each option of each choice, with marks that motion carries or that fade, and on materials.
 fn settings(spec: &'static NodeSpec) -> impl Iterator<Item = Setting> {
     let all = cases::settings(spec, 0).into_iter().filter(|s| s.values.len() <= 1);
-    all.chain(cases::carrying(spec)).chain(cases::fading(spec))
+    all.chain(cases::carrying(spec)).chain(cases::fading(spec)).chain(cases::on_materials(spec))
 }
 
 /// All numbers that are 0 by default at half of their sliders, since what they weigh may not be read before.
@@ -93,9 +93,10 @@ fn results(
     for setting in settings {
         let mut setup = cases::setup(spec, true);
         setting.apply(&mut setup.graph, setup.node);
-        let request = match setting.label.starts_with("carrying") {
-            true => cases::request_without_rest(entering.kind(), width, height),
-            false => cases::request(entering.kind(), width, height, true),
+        let request = match setting.label.as_str() {
+            "carrying marks" => cases::request_without_rest(entering.kind(), width, height),
+            "on materials" => cases::request_on_materials(entering.kind(), width, height),
+            _ => cases::request(entering.kind(), width, height, true),
         };
         let planned = run::planned(&setup.graph, request);
         results.push((setting.label, result(&planned, entering, level)));

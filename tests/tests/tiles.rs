@@ -83,6 +83,10 @@ fn runs(spec: &'static NodeSpec, size: [u32; 2]) -> Vec<Run> {
         let request = cases::request_without_rest(Kind::Steps, size[0], size[1]);
         all.push(planned(spec, &setting, false, Kind::Steps, request));
     }
+    if let Some(setting) = cases::on_materials(spec) {
+        let request = cases::request_on_materials(Kind::Steps, size[0], size[1]);
+        all.push(planned(spec, &setting, false, Kind::Steps, request));
+    }
     all
 }
 

@@ -16,6 +16,7 @@
 //! | [`exr`] | layers, guides, masks and mattes of EXR files |
 //! | [`resize`] | pixels at another size |
 //! | [`mix`] | mixing of two pictures by a mask |
+//! | [`material`] | paper and hatching, of files and those that ship |
 //! | [`palette`] | colours of files of painting programs, and those that are found in pictures |
 
 #![forbid(unsafe_code)]
@@ -31,11 +32,13 @@ mod hdr;
 mod icc;
 mod inks;
 mod jpeg;
+pub mod material;
 pub mod meaning;
 pub mod mix;
 pub mod palette;
 pub mod pixels;
 mod png;
+mod random;
 pub mod read;
 pub mod resize;
 mod said;

@@ -2,7 +2,9 @@
 
 use clap::{CommandFactory, Parser, Subcommand};
 
-use crate::verbs::{apply, bench, colours, documents, farm, info, nodes, preset, render, sheet, view};
+use crate::verbs::{
+    apply, bench, colours, documents, farm, info, materials, nodes, preset, render, sheet, view,
+};
 use isophote_files::error::Result;
 
 const ABOUT: &str = "Turns pictures, sequences, videos and 3D scenes into cartoons, drawings and paintings.";
@@ -52,6 +54,8 @@ enum Command {
     Sheet(sheet::SheetArgs),
     /// Prints the colours of a picture or a palette, and writes them as a palette.
     Colours(colours::ColoursArgs),
+    /// Lists the papers and hatchings that ship, and writes them as pictures.
+    Materials(materials::MaterialsArgs),
     /// Saves, shows and checks presets: styles with their parameters as JSON files.
     Preset(preset::PresetArgs),
     /// Makes jobs for render farms.
@@ -78,6 +82,7 @@ impl Cli {
             Command::View(args) => view::run(args),
             Command::Sheet(args) => sheet::run(args),
             Command::Colours(args) => colours::run(args),
+            Command::Materials(args) => materials::run(args),
             Command::Preset(args) => preset::run(args),
             Command::Farm(args) => farm::run(args),
             Command::Info(args) => info::run(args),

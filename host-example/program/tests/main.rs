@@ -17,6 +17,7 @@ mod info;
 mod limits;
 mod looks;
 mod masks;
+mod materials;
 mod objects;
 mod palettes;
 mod places;

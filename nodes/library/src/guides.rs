@@ -128,6 +128,10 @@ guides! {
     Specular specular ("Specular light", Color, 10, Some(9)),
     /// A control map, 0.5 for no change: detail, width of lines, their amount, and strength of the medium.
     Control control ("Control", Control, 11, Some(10)),
+    /// A sheet of paper: its colours, and its grain, which is deep where it is darker than around; white where it is transparent.
+    Paper paper ("Paper", Color, 12, Some(11)),
+    /// Hatching in up to four tones, the lightest in red and the darkest in alpha: 1 is paper, 0 is ink.
+    Hatching hatching ("Hatching", Hatching, 13, Some(12)),
 }
 
 impl GraphInput {

@@ -27,6 +27,7 @@ pub(crate) mod marks;
 pub(crate) mod morphology;
 pub mod optical_flow;
 pub(crate) mod oriented_bilateral;
+pub(crate) mod paper;
 pub(crate) mod quantization;
 pub(crate) mod quantize_luminance;
 pub(crate) mod shock;

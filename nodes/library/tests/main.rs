@@ -6,6 +6,7 @@ mod graph;
 mod importance;
 mod line_wobble;
 mod lines;
+mod materials;
 mod result;
 mod shader_directives;
 mod smoothing;

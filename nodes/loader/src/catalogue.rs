@@ -74,6 +74,8 @@ pub enum Kind {
     Position,
     /// What an artist wants of places.
     Control,
+    /// Hatching in tones.
+    Hatching,
     /// Something that this program does not know.
     Other,
 }
@@ -91,6 +93,7 @@ impl Kind {
             c::ISOPHOTE_KIND_MOTION => Self::Motion,
             c::ISOPHOTE_KIND_POSITION => Self::Position,
             c::ISOPHOTE_KIND_CONTROL => Self::Control,
+            c::ISOPHOTE_KIND_HATCHING => Self::Hatching,
             _ => Self::Other,
         }
     }
@@ -113,6 +116,7 @@ impl Kind {
             Self::Motion => "motion",
             Self::Position => "position",
             Self::Control => "control map",
+            Self::Hatching => "hatching",
             Self::Other => "something unknown",
         }
     }

@@ -225,6 +225,7 @@ impl By {
             | ImageKind::Scalar
             | ImageKind::Tensor
             | ImageKind::Control
+            | ImageKind::Hatching
             | ImageKind::Flow => Self::Mean,
         }
     }

@@ -10,6 +10,9 @@ from ._inputs import Array, given, tensor
 from ._spaces import Colors
 from .errors import InvalidValueError
 
+MATERIALS = ("paper", "hatching")
+"""Guides that are tiles."""
+
 _FORMATS = "uint8, uint16, float16 or float32"
 
 
@@ -30,6 +33,15 @@ def pixels(image: Any, name: str) -> Array:
         # Grey and alpha.
         array = array[:, :, [0, 0, 0, 1]]
     return dense(array)
+
+
+def tiled(image: Any, name: str, size: tuple[int, ...]) -> Array:
+    """As `pixels`, of so many rows and columns where it is a material: those of any size are laid again and again."""
+    array = pixels(image, name)
+    if name not in MATERIALS or array.shape[:2] == size or 0 in array.shape:
+        return array
+    rows, columns = (np.arange(length) % own for length, own in zip(size, array.shape[:2]))
+    return array[rows[:, np.newaxis], columns]
 
 
 def _format(dtype: np.dtype[Any], what: str) -> np.dtype[Any]:

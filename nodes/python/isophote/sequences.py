@@ -8,7 +8,7 @@ from typing import Any
 
 from ._inputs import Array, given
 from ._library import native
-from ._pixels import Target, pixels
+from ._pixels import Target, pixels, tiled
 from .presets import StyleLike
 from .style import GUIDES, Settings, Style, opened
 
@@ -68,7 +68,7 @@ class Sequence:
             found = image if (name, frame) == ("color", number) else self._source(name, frame)
             if found is None:
                 return None
-            read = pixels(found, name)
+            read = tiled(found, name, image.shape[:2])
             return colors.entering(read) if name == "color" else read
 
         request = self._settings.request(pixels(image, "color"), self._guides, number, self.style)

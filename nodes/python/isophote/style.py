@@ -13,7 +13,7 @@ import numpy as np
 
 from ._inputs import Array, given
 from ._library import native
-from ._pixels import Target, pixels, writable
+from ._pixels import Target, tiled, writable
 from ._spaces import Colors
 from .devices import Device, DeviceLike, open_device
 from .errors import InvalidValueError
@@ -180,7 +180,8 @@ class Style:
     def _picture(self, images: dict[str, Array], out: Array | None, frame: int, settings: Settings) -> Array:
         """The result of one picture."""
         image = images["color"]
-        images = {name: pixels(each, name) for name, each in images.items()}
+        size = image.shape[:2]
+        images = {name: tiled(each, name, size) for name, each in images.items()}
         request = settings.request(images["color"], list(images), frame, self)
         images["color"] = settings.colors.entering(images["color"])
         with self._lock:
@@ -259,6 +260,8 @@ def apply(
     diffuse: Any = None,
     specular: Any = None,
     control: Any = None,
+    paper: Any = None,
+    hatching: Any = None,
     out: Any = None,
     frame: int = 0,
     color_space: str = "srgb",
@@ -298,8 +301,12 @@ def apply(
     - `diffuse`: light that surfaces reflect in all directions, in their colours and the picture's space.
     - `specular`: light that surfaces mirror: highlights and reflections, in the picture's space.
     - `control`: a control map, 0.5 for no change: detail, width of lines, their amount, and strength of the medium.
+    - `paper`: a sheet of paper: its colours, and its grain, which is deep where it is darker than around; white where
+      it is transparent.
+    - `hatching`: hatching in up to four tones, the lightest in red and the darkest in alpha: 1 is paper, 0 is ink.
 
-    Normals have 3 or 4 channels of floats, rest positions 32 bits a channel, and motion goes x right and y down.
+    Normals have 3 or 4 channels of floats, rest positions 32 bits a channel, and motion goes x right and y down. Paper and
+    hatching of another size than the picture's are tiled over it.
 
     `color_space` is `srgb` (gamma-encoded), `linear` (Rec. 709), `acescg`, `p3` or `rec2020` (linear), `aces2065-1`,
     `display-p3`, `adobe-rgb`, `encoded-rec709`, `encoded-rec2020`, `rec2100-pq` or `rec2100-hlg`, and the result has the
@@ -344,6 +351,8 @@ def apply(
         diffuse=diffuse,
         specular=specular,
         control=control,
+        paper=paper,
+        hatching=hatching,
     )
 
 

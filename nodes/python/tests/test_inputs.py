@@ -207,6 +207,18 @@ def test_tensors_of_torch_are_taken(small: np.ndarray) -> None:
         isophote.apply("gaussian", tensor.float().requires_grad_())
 
 
+def test_materials_of_any_size_are_tiled(small):
+    paper = np.ones((7, 5, 3), np.float32)
+    paper[:3, :2] = 0.5
+    rows, columns = (np.arange(length) % own for length, own in zip(small.shape[:2], paper.shape[:2]))
+    whole = paper[rows[:, None], columns]
+    tiled = isophote.apply("watercolor", small, paper=paper)
+    assert np.array_equal(tiled, isophote.apply("watercolor", small, paper=whole))
+    assert not np.array_equal(tiled, isophote.apply("watercolor", small))
+    with pytest.raises(isophote.Error):
+        isophote.apply("watercolor", small, control=paper)
+
+
 def test_a_control_map_without_alpha_leaves_the_medium_alone(small):
     """Its alpha is the strength of the medium, and what is missing there changes nothing."""
     plain = isophote.apply("ink", small)

@@ -82,12 +82,14 @@ pub fn clips_are_source_and_output_and_in_general_a_mask_and_guides(binary: &Bin
         ("diffuse", "Diffuse"),
         ("specular", "Specular"),
         ("control", "Control"),
+        ("paper", "Paper"),
+        ("hatching", "Hatching"),
     ] {
         general.extend(takes(port).then_some(clip));
     }
     // What an effect came to take later is its last input: projects store the numbers of the others.
     if ["cartoon", "blueprint"].contains(&node.id) {
-        general.sort_by_key(|clip| *clip == "RestPosition");
+        general.sort_by_key(|clip| ["RestPosition", "Paper"].iter().position(|later| later == clip));
     }
     assert_eq!(described.in_context(CONTEXTS[1]).clip_names(), general, "{}", node.id);
     host.no_faults();

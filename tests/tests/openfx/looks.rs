@@ -311,7 +311,9 @@ pub fn the_effect_for_looks_shows_all_that_ships(binary: &Binary) {
             "Albedo",
             "Diffuse",
             "Specular",
-            "Control"
+            "Control",
+            "Paper",
+            "Hatching"
         ]
     );
     let instance = in_host(&host, binary, LOOK_EFFECT, CONTEXTS[0]);

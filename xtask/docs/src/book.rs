@@ -7,7 +7,7 @@ use isophote::registry;
 use std::path::Path;
 
 /// Pages written for the site: part, place, title.
-const WRITTEN: [(&str, &str, &str); 33] = [
+const WRITTEN: [(&str, &str, &str); 34] = [
     ("", "index", "Isophote"),
     ("", "install", "Install"),
     ("", "windows", "Windows"),
@@ -17,6 +17,7 @@ const WRITTEN: [(&str, &str, &str); 33] = [
     ("For artists", "artists/recipes", "Recipes"),
     ("For artists", "artists/lines", "Too many lines, too few"),
     ("For artists", "artists/directing", "Direct a shot"),
+    ("For artists", "artists/materials", "Own paper, own hatching"),
     ("For artists", "artists/slow", "It is slow"),
     ("For artists", "artists/looks", "Looks"),
     ("For artists", "artists/styles", "Styles"),

@@ -1,4 +1,4 @@
-//! Masks of a run, and its painted maps: where they come from, and each in its picture's size.
+//! Masks of a run, its painted maps and its materials: where they come from, and each in its picture's size.
 //!
 //! A mask is a number for each pixel. Files of colours stand for their luminance, 0.2126 R + 0.7152 G + 0.0722 B of the numbers
 //! as they are stored; alpha is never looked at. What is no number is 0, and all is cut to 0..=1.
@@ -8,6 +8,7 @@ use std::sync::{Mutex, PoisonError};
 
 use isophote_exr_edit::Window;
 
+use super::materials::Laid;
 use super::objects::{self, Control, Covered};
 use super::painted::Painted;
 use super::tasks::Tasks;
@@ -31,6 +32,8 @@ pub struct MaskChoice {
 pub struct Masks {
     masks: Vec<Mask>,
     maps: Vec<Map>,
+    /// Paper and hatching.
+    materials: Vec<Laid>,
     /// What rules for things say. Where the things are, the last masks say.
     rules: Vec<Control>,
 }
@@ -93,6 +96,7 @@ impl Masks {
         Ok(Self {
             masks: choices.iter().map(mask).collect::<Result<_>>()?,
             maps: Vec::new(),
+            materials: Vec::new(),
             rules: Vec::new(),
         })
     }
@@ -106,6 +110,12 @@ impl Masks {
             Ok(Map { kind, place: Place::of(path)?, kept: Mutex::new(None) })
         };
         Ok(Self { maps: paths.iter().map(map).collect::<Result<_>>()?, ..self })
+    }
+
+    /// The same with materials.
+    #[must_use]
+    pub fn with_materials(self, materials: Vec<Laid>) -> Self {
+        Self { materials, ..self }
     }
 
     /// The same with rules for things, of which the last choices say where they are.
@@ -172,6 +182,7 @@ impl Masks {
                     }
                 }
             }
+            self.materials.iter().for_each(|material| material.lay(picture));
             picture.masks.resize(self.masks.len(), None);
             for (mask, slot) in self.masks.iter().zip(&mut picture.masks) {
                 let path = match &mask.place {

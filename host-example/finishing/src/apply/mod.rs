@@ -8,6 +8,7 @@ pub mod frame_cache;
 pub mod looks;
 mod machine;
 pub mod masks;
+pub mod materials;
 pub mod memory;
 pub mod objects;
 pub mod painted;

@@ -1,6 +1,8 @@
-//! Maps that artists paint over pictures: what their numbers are where nothing is painted.
+//! Guides that artists make: maps that they paint over pictures, with what their numbers are where nothing is painted, and
+//! materials.
 
 use isophote_pictures::exr::Guide;
+use isophote_pictures::material::MaterialKind;
 
 /// Kind of map that an artist paints: RGBA, read as it is stored.
 #[derive(Debug)]
@@ -38,3 +40,9 @@ pub const PAINTED: [Painted; 2] = [
         wanted: "is grey, and its colours are to say what is wanted of detail and lines",
     },
 ];
+
+/// True for a guide that artists make, which pictures without layers have, too.
+pub fn is_made_by_hand(guide: Guide) -> bool {
+    PAINTED.iter().any(|painted| painted.guide == guide)
+        || MaterialKind::ALL.iter().any(|kind| kind.guide() == guide)
+}

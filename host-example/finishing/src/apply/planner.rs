@@ -4,7 +4,7 @@ use std::path::Path;
 
 use super::filter::{Layer, MaskedStyle, at_frame, frames, layers};
 use super::memory::Needs;
-use super::painted::PAINTED;
+use super::painted::is_made_by_hand;
 use super::square;
 use super::stages::stages;
 use isophote_files::error::{AtPlace, Result};
@@ -23,7 +23,7 @@ pub struct Planner {
     library: Library,
     layers: Vec<Layer>,
     guides: Vec<Guide>,
-    /// Maps that are painted for the frames.
+    /// Maps and materials of the frames.
     painted: Vec<Guide>,
     /// Bytes that a frame may take.
     most: u64,
@@ -85,7 +85,7 @@ impl Planner {
         Self { keeps_samples, ..self }
     }
 
-    /// Counts the painted maps that each frame has.
+    /// Counts the painted maps and the materials that each frame has.
     pub fn with_painted(self, painted: Vec<Guide>) -> Self {
         Self { painted, ..self }
     }
@@ -105,9 +105,8 @@ impl Planner {
         let Filtered { size, has_layers, bound } = filtered;
         let refused = |e: isophote_loader::Error| e.at(name, "choose another picture or style");
         let pixels = u64::from(size.0) * u64::from(size.1);
-        let is_painted = |guide: &Guide| PAINTED.iter().any(|painted| painted.guide == *guide);
         let is_counted =
-            |guide: &&Guide| if is_painted(guide) { self.painted.contains(guide) } else { has_layers };
+            |guide: &&Guide| if is_made_by_hand(**guide) { self.painted.contains(guide) } else { has_layers };
         let guides = self.guides.iter().filter(is_counted).map(|guide| guide.id());
         // One look is made at a time; what it keeps of frames stays.
         let (mut kept, mut most) = (0, 0);

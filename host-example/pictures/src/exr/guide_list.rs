@@ -73,6 +73,10 @@ guides! {
     Flow "flow" "Flow" Flow ISOPHOTE_GUIDE_FLOW,
     /// A control map, 0.5 for no change: detail, width of lines, their amount, and strength of the medium.
     Control "control" "Control" Control ISOPHOTE_GUIDE_CONTROL,
+    /// A sheet of paper: its colours, and its grain, which is deep where it is darker than around; white where it is transparent.
+    Paper "paper" "Paper" Color ISOPHOTE_GUIDE_PAPER,
+    /// Hatching in up to four tones, the lightest in red and the darkest in alpha: 1 is paper, 0 is ink.
+    Hatching "hatching" "Hatching" Hatching ISOPHOTE_GUIDE_HATCHING,
     // end of guides
 }
 

@@ -206,7 +206,7 @@ pub fn listed(exr: &File, near: usize, guide: Guide, names: &str) -> Option<(usi
     let count = match guide.kind() {
         Kind::Normal | Kind::Position => 3,
         Kind::Motion => 2,
-        Kind::Control | Kind::Flow => 4,
+        Kind::Control | Kind::Hatching | Kind::Flow => 4,
         Kind::Color if names.len() == 3 => 3,
         Kind::Color => 4,
         _ => 1,
@@ -291,7 +291,7 @@ fn of_kind(group: &Group, kind: Kind) -> Option<Vec<usize>> {
             single(group, &["id", "object_id", "Y", "R"]).map(|channel| vec![channel])
         }
         Kind::Color => group.colours(true),
-        Kind::Control | Kind::Flow => rgba(group),
+        Kind::Control | Kind::Hatching | Kind::Flow => rgba(group),
         // Vectors have conventions.
         _ => None,
     }
@@ -308,8 +308,8 @@ pub fn named(exr: &File, group: &Group, guide: Guide, name: &str) -> Option<Guid
         light: Vec::new(),
     };
     let channel = group.members.iter().find(|(_, at)| part.channels[*at].name == name).map(|m| m.1);
-    let is_single =
-        !guide.is_of_surfaces() && !matches!(guide.kind(), Kind::Control | Kind::Flow | Kind::Color);
+    let is_single = !guide.is_of_surfaces()
+        && !matches!(guide.kind(), Kind::Control | Kind::Hatching | Kind::Flow | Kind::Color);
     if is_single && channel.is_some() {
         return channel.map(|c| found(vec![c]));
     }

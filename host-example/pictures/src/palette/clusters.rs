@@ -1,10 +1,10 @@
 //! Colours that stand for those of a picture or of a larger palette: clusters in CIELAB by k-means.
 //!
 //! Sources: S. Lloyd, "Least squares quantization in PCM" (1982); D. Arthur and S. Vassilvitskii, "k-means++: the advantages of
-//! careful seeding" (2007). Its random numbers are always the same (G. Steele and others, "Fast splittable pseudorandom number
-//! generators", 2014), so that a file always gives the same colours.
+//! careful seeding" (2007). Its random numbers are always the same, so that a file always gives the same colours.
 
 use super::spaces::{Colour, Lab, of_lab, to_lab};
+use crate::random::Random;
 
 /// Times that clusters are sought from other beginnings; those with the least error count.
 const TRIES: usize = 4;
@@ -75,7 +75,7 @@ fn clusters(points: &[Point], count: usize) -> Vec<Lab> {
     if points.len() <= count {
         return points.iter().map(|point| point.lab).collect();
     }
-    let mut random = Random(0);
+    let mut random = Random::new(0);
     let tries = (0..TRIES).map(|_| settled(points, seeds(points, count, &mut random)));
     tries.min_by(|a, b| a.1.total_cmp(&b.1)).map_or_else(Vec::new, |(middles, _)| middles)
 }
@@ -145,20 +145,6 @@ fn nearest(middles: &[Lab], lab: Lab) -> (usize, f32) {
 fn distance(a: Lab, b: Lab) -> f32 {
     let [l, x, y] = [a[0] - b[0], a[1] - b[1], a[2] - b[2]];
     l * l + x * x + y * y
-}
-
-/// Numbers of `SplitMix64`.
-struct Random(u64);
-
-impl Random {
-    /// A number from 0 to 1, without 1.
-    fn share(&mut self) -> f64 {
-        self.0 = self.0.wrapping_add(0x9e37_79b9_7f4a_7c15);
-        let mut z = self.0;
-        z = (z ^ z >> 30).wrapping_mul(0xbf58_476d_1ce4_e5b9);
-        z = (z ^ z >> 27).wrapping_mul(0x94d0_49bb_1331_11eb);
-        ((z ^ z >> 31) >> 11) as f64 / (1_u64 << 53) as f64
-    }
 }
 
 #[cfg(test)]

@@ -7,6 +7,7 @@ pub mod colours;
 pub mod documents;
 pub mod farm;
 pub mod info;
+pub mod materials;
 pub mod nodes;
 mod painted;
 mod places;

@@ -13,6 +13,7 @@ use isophote_finishing::apply::tasks::{Task, Tasks};
 use isophote_finishing::stylize::style;
 use isophote_finishing::video;
 use isophote_pictures::exr::MaskSource;
+use isophote_pictures::material::MaterialKind;
 
 /// The word for motion that is estimated.
 const ESTIMATE: &str = "estimate";
@@ -59,6 +60,12 @@ impl ApplyArgs {
             MaskSource::File(path) => Some(path.as_path()),
             MaskSource::Layer(_) | MaskSource::Mattes(_) | MaskSource::Ids(_) => None,
         });
+        let materials = self.painted.materials();
+        // Those that ship are no files.
+        let material = |wanted: MaterialKind| {
+            let found = materials.iter().find(|(kind, name)| *kind == wanted && !wanted.ships(name));
+            found.map(|(_, path)| *path)
+        };
         let others = [
             (
                 styled,
@@ -73,6 +80,8 @@ impl ApplyArgs {
             ("mask_from", Part::Frames, self.mask_from.as_deref()),
             ("flow", Part::Frames, self.painted.flow.as_deref()),
             ("control", Part::Frames, self.painted.control.as_deref()),
+            ("paper", Part::Style, material(MaterialKind::Paper)),
+            ("hatching", Part::Style, material(MaterialKind::Hatching)),
             ("motion", Part::Frames, self.motion.as_deref().filter(|_| !self.estimates_motion())),
         ];
         // Standard input and output have no path.

@@ -23,6 +23,7 @@ use crate::state::work::Request;
 use isophote_files::error::Result;
 use isophote_loader::Library;
 use isophote_pictures::exr::{Layer, Selection};
+use isophote_pictures::material::MaterialKind;
 
 /// The work beside the window.
 pub struct Background {
@@ -121,6 +122,8 @@ impl Background {
             Dialog::Look => self.opener.ask(OpenJob::Look(library, path)),
             Dialog::Surroundings => self.opener.ask(OpenJob::Surroundings(path)),
             Dialog::Palette => self.opener.ask(OpenJob::Palette(library, path)),
+            // The session asks for them.
+            Dialog::Material(_) => {}
             Dialog::LookFolder | Dialog::Save | Dialog::Export | Dialog::Several | Dialog::SeveralTo => {}
         }
     }
@@ -145,6 +148,7 @@ impl Background {
             match request {
                 Request::Open(path) => files.push(path),
                 Request::ChooseLayer(layer, view) => self.open_layer(session, layer, view),
+                Request::ChooseMaterial(kind, name) => self.open_on(session, kind, name),
                 Request::OpenDemo => self.opener.ask(OpenJob::Demo),
                 Request::OpenSample(index) => {
                     if let Some(sample) = SAMPLES.get(index) {
@@ -177,6 +181,17 @@ impl Background {
         let name = Some(layer.name).filter(|name| !name.is_empty());
         let force = layer.is_data && name.is_some();
         let selection = Selection { force, layer: name, view, ..Selection::default() };
-        self.opener.ask(OpenJob::Again(file.to_owned(), Box::new(selection)));
+        let materials = session.open.playback().map(|playback| playback.info().materials.clone());
+        self.opener.ask(OpenJob::Again(file.to_owned(), Box::new(selection), materials.unwrap_or_default()));
+    }
+
+    /// Opens the file that is open once more, on another paper or with other hatching, or on the look's own.
+    fn open_on(&mut self, session: &Session, kind: MaterialKind, name: Option<PathBuf>) {
+        let Some(playback) = session.open.playback() else { return };
+        let info = playback.info();
+        let others = info.materials.iter().filter(|(known, _)| *known != kind).cloned();
+        let materials = others.chain(name.map(|name| (kind, name))).collect();
+        let selection = Box::new(info.selection.clone());
+        self.opener.ask(OpenJob::Again(info.path.clone(), selection, materials));
     }
 }

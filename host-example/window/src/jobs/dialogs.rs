@@ -11,6 +11,7 @@ use crate::state::outcome::Dialog;
 use crate::state::saving::Saving;
 use crate::state::session::Session;
 use isophote_files::error::{Error, Result};
+use isophote_pictures::material::MaterialKind;
 
 /// Result of a dialog: its purpose, and what was chosen; nothing where it was closed.
 type DialogResult = (Dialog, Result<Vec<PathBuf>>);
@@ -75,7 +76,7 @@ fn proposed(dialog: Dialog, session: &Session) -> (Option<PathBuf>, String) {
             let results = session.dialogs.batch.as_ref().map(|batch| PathBuf::from(batch.folder.trim()));
             results.as_deref().and_then(Path::parent).map(Path::to_owned)
         }
-        Dialog::File | Dialog::Surroundings | Dialog::Palette | Dialog::Several => {
+        Dialog::File | Dialog::Surroundings | Dialog::Palette | Dialog::Material(_) | Dialog::Several => {
             session.settings.folder.clone()
         }
     };
@@ -139,6 +140,8 @@ impl Asked {
             }
             // Pictures are palettes as well, of many endings.
             Dialog::Palette => shown.set_title("Colours of a palette or a picture").pick_file(),
+            Dialog::Material(MaterialKind::Paper) => shown.set_title("A picture of paper").pick_file(),
+            Dialog::Material(MaterialKind::Hatching) => shown.set_title("A picture of hatching").pick_file(),
             Dialog::Surroundings => shown
                 .set_title("Surroundings")
                 .add_filter("Pictures of the surroundings", &["hdr", "exr"])

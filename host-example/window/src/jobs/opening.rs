@@ -15,6 +15,7 @@ use isophote_finishing::stylize::palette;
 use isophote_finishing::{naming, video};
 use isophote_loader::Library;
 use isophote_pictures::exr::Selection;
+use isophote_pictures::material::MaterialKind;
 use isophote_render::background::Background as Surround;
 use isophote_scene::Scene;
 use isophote_scene::environment::Environment;
@@ -28,7 +29,7 @@ pub enum OpenJob {
     /// The first of them that can be opened.
     Files(Library, Vec<PathBuf>),
     /// The file that is open, read in another way.
-    Again(PathBuf, Box<Selection>),
+    Again(PathBuf, Box<Selection>, Vec<(MaterialKind, PathBuf)>),
     /// A look.
     Look(Library, PathBuf),
     /// Surroundings of a scene.
@@ -55,8 +56,8 @@ pub fn open(job: OpenJob) -> Result<WithFrames> {
             return pictures(Document::open(&sample.file_in(&folder)?, &Options::default())?);
         }
         OpenJob::Files(library, files) => return files_or_folder(&library, files),
-        OpenJob::Again(path, selection) => {
-            let options = Options { selection: *selection, ..Options::default() };
+        OpenJob::Again(path, selection, materials) => {
+            let options = Options { selection: *selection, materials, ..Options::default() };
             let document = Document::open(&path, &options)?;
             return Ok((Opened::Again(Box::new(document.playback()?)), Some(document)));
         }

@@ -77,7 +77,7 @@ pub fn output(playback: &Playback) -> PathBuf {
     path.with_file_name(format!("{name}.{}", if is_kept { &extension } else { "png" }))
 }
 
-/// Options of `apply` for the layer and the view that were chosen.
+/// Options of `apply` for the layer, the view and the materials that were chosen.
 pub fn selection(playback: &Playback) -> Vec<String> {
     let selection = &playback.info().selection;
     let mut words = Vec::new();
@@ -85,6 +85,9 @@ pub fn selection(playback: &Playback) -> Vec<String> {
         words.extend(value.iter().flat_map(|value| [option.to_owned(), value.clone()]));
     }
     words.extend(selection.force.then(|| "--force-layer".to_owned()));
+    for (kind, name) in &playback.info().materials {
+        words.extend([format!("--{}", kind.guide().id()), name.to_string_lossy().into_owned()]);
+    }
     words
 }
 

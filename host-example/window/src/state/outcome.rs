@@ -15,6 +15,7 @@ use super::preview::order::Done;
 use super::progress::Progress;
 use isophote_files::error::{Error, Result};
 use isophote_loader::abi::IsophoteRequest;
+use isophote_pictures::material::MaterialKind;
 use isophote_pictures::palette::Palette;
 use isophote_render::background::Background;
 use isophote_scene::Scene;
@@ -82,6 +83,8 @@ pub enum Dialog {
     Surroundings,
     /// Take the colours of a file.
     Palette,
+    /// Take paper or hatching of a file.
+    Material(MaterialKind),
     /// Name the output of an export.
     Export,
     /// Choose pictures to use the look on.

@@ -5,6 +5,7 @@ use std::path::PathBuf;
 use super::outcome::Dialog;
 use super::running::Running;
 use isophote_pictures::exr::Layer;
+use isophote_pictures::material::MaterialKind;
 
 /// Request of the controls for work beside the window.
 #[derive(Clone, Debug, PartialEq)]
@@ -19,6 +20,8 @@ pub enum Request {
     Choose(Dialog),
     /// Show this layer of the file, and a view of it.
     ChooseLayer(Layer, Option<String>),
+    /// Lay the picture on this paper, or draw it with this hatching, by its name or file; on the look's own without.
+    ChooseMaterial(MaterialKind, Option<PathBuf>),
     /// Read which looks there are.
     ListLooks,
     /// Make what is planned.

@@ -25,6 +25,7 @@ pub mod keys;
 mod layers;
 mod leaving;
 mod lighting;
+mod materials;
 mod notes;
 mod number;
 mod order;

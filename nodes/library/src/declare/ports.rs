@@ -23,6 +23,24 @@ pub(crate) const REST_POSITION: Port = Port {
           on screen.",
 };
 
+/// Paper on which a style draws or paints.
+pub(crate) const PAPER: Port = Port {
+    id: "paper",
+    kind: ImageKind::Color,
+    optional: true,
+    doc: "A sheet of paper in the place of the style's own: its colours, and its grain, which is deep where it is darker than \
+          what is around it. It stays on the screen.",
+};
+
+/// Hatching by which a style says tones.
+pub(crate) const HATCHING: Port = Port {
+    id: "hatching",
+    kind: ImageKind::Hatching,
+    optional: true,
+    doc: "Hatching in the place of the style's own, in up to four tones: the lightest in red, then green, blue and alpha; 1 is \
+          paper, 0 is ink. A channel that is no darker than the one before is no tone. It stays on the screen.",
+};
+
 /// The picture that a node gives.
 pub(crate) const fn color_output(doc: &'static str) -> Port {
     Port { id: "color", kind: ImageKind::Color, optional: false, doc }

@@ -37,6 +37,9 @@ pub enum ImageKind {
     /// What an artist wants of places, 0.5 in each channel for no change. Its values are data, which no colour space changes
     /// and nothing multiplies.
     Control,
+    /// Hatching in up to four tones, a channel each: 1 is paper, 0 is ink. Its values are data, which no colour space changes
+    /// and nothing multiplies.
+    Hatching,
 }
 
 impl ImageKind {
@@ -50,6 +53,7 @@ impl ImageKind {
             Self::Depth => "depth",
             Self::ObjectId => "object_id",
             Self::Control => "control",
+            Self::Hatching => "hatching",
             Self::Flow => "flow",
             Self::Motion => "motion",
             Self::Position => "rest_position",
@@ -59,7 +63,13 @@ impl ImageKind {
     /// Values a pixel.
     pub const fn channels(self) -> u32 {
         match self {
-            Self::Color | Self::Tensor | Self::Normal | Self::Control | Self::Flow | Self::Position => 4,
+            Self::Color
+            | Self::Tensor
+            | Self::Normal
+            | Self::Control
+            | Self::Hatching
+            | Self::Flow
+            | Self::Position => 4,
             Self::Motion => 2,
             Self::Scalar | Self::Depth | Self::ObjectId => 1,
         }

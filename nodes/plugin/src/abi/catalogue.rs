@@ -174,6 +174,7 @@ pub fn kind(kind: ImageKind) -> IsophoteKind {
         ImageKind::Depth => ISOPHOTE_KIND_DEPTH,
         ImageKind::ObjectId => ISOPHOTE_KIND_OBJECT_ID,
         ImageKind::Control => ISOPHOTE_KIND_CONTROL,
+        ImageKind::Hatching => ISOPHOTE_KIND_HATCHING,
         ImageKind::Flow => ISOPHOTE_KIND_FLOW,
         ImageKind::Motion => ISOPHOTE_KIND_MOTION,
         ImageKind::Position => ISOPHOTE_KIND_POSITION,

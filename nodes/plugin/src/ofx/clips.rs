@@ -41,8 +41,11 @@ pub fn guides() -> impl Iterator<Item = GraphInput> {
 }
 
 /// Guides that effects of nodes came to take when projects of users existed, in the order in which they came.
-const LATER: [(&str, GraphInput); 2] =
-    [("cartoon", GraphInput::RestPosition), ("blueprint", GraphInput::RestPosition)];
+const LATER: [(&str, GraphInput); 3] = [
+    ("cartoon", GraphInput::RestPosition),
+    ("blueprint", GraphInput::RestPosition),
+    ("blueprint", GraphInput::Paper),
+];
 
 /// The guides among these of the effect of a node, in the order of its inputs: those that came later are the last, since
 /// projects store the numbers of inputs.

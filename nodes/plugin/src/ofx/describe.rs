@@ -156,8 +156,8 @@ fn clips(effect: &Effect, general: bool) -> Vec<Described> {
         clips.extend(effect.guides.iter().filter_map(|guide| {
             let name = guide_clip(*guide)?;
             let components: &[&CStr] = match guide.kind() {
-                // One channel holds no vector, and three have no place for its strength.
-                ImageKind::Motion | ImageKind::Position => &COMPONENTS[..2],
+                // One channel holds no vector and no tones, and three have no place for a strength.
+                ImageKind::Motion | ImageKind::Position | ImageKind::Hatching => &COMPONENTS[..2],
                 ImageKind::Control | ImageKind::Flow => &COMPONENTS[..1],
                 ImageKind::Color
                 | ImageKind::Scalar

@@ -145,6 +145,14 @@ impl Frame {
         Rect { x0: x(bounds[0]), y0: y(bounds[3]), x1: x(bounds[2]), y1: y(bounds[1]) }
     }
 
+    /// The pixels under a canonical region, those beside the picture too.
+    pub fn around(&self, region: &OfxRectD) -> Option<Rect> {
+        let bounds = self.pixels(region)?;
+        let x = |v: i32| v.saturating_sub(self.picture[0]);
+        let y = |v: i32| self.picture[3].saturating_sub(v);
+        Some(Rect { x0: x(bounds[0]), y0: y(bounds[3]), x1: x(bounds[2]), y1: y(bounds[1]) })
+    }
+
     /// The other way.
     pub fn outside(&self, rect: Rect) -> Bounds {
         let [left, _, _, top] = self.picture;

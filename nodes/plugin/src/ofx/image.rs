@@ -209,7 +209,15 @@ impl<'h> Fetched<'h> {
         Checked::new(&target, "the image").map_err(|_| kOfxStatErrImageFormat)
     }
 
-    /// The pixels of `window`. What the image does not hold repeats its edge, or is 0 if so wanted.
+    /// The window that the image fills.
+    ///
+    /// # Errors
+    /// Image format, when no image can have its shape.
+    pub fn window(&self, frame: &Frame) -> Outcome<Rect> {
+        Ok(self.checked(frame)?.window)
+    }
+
+    /// The pixels of `window`. What the image does not hold is as `beyond` says.
     ///
     /// # Errors
     /// Memory; image format, when no image can have its shape.
@@ -227,6 +235,10 @@ impl<'h> Fetched<'h> {
         let inside = window.intersection(&checked.window);
         // Normals are read as colours: integers hold them as shares of -1..=1.
         let as_input = if input == GraphInput::Normal { GraphInput::Color } else { input };
+        if beyond == Beyond::Tiled && inside != window {
+            let tile = self.read(frame, checked.window, input, Beyond::Edge, threads)?;
+            return repeated(&tile, window);
+        }
         if inside.is_empty() && beyond == Beyond::Zero {
             return zeros();
         }
@@ -323,6 +335,8 @@ impl<'h> Fetched<'h> {
             ImageKind::Position => self.channels >= 3 && is_float,
             // Strengths are in alpha.
             ImageKind::Control | ImageKind::Flow => self.channels == 4,
+            // Of three channels, the fourth tone is none.
+            ImageKind::Hatching => self.channels >= 3,
             ImageKind::Color
             | ImageKind::Depth
             | ImageKind::ObjectId
@@ -404,6 +418,34 @@ pub enum Beyond {
     Edge,
     /// Nothing.
     Zero,
+    /// What it holds, again and again.
+    Tiled,
+}
+
+impl Beyond {
+    /// Values outside what a clip holds of a guide.
+    pub fn of_guide(guide: GraphInput) -> Self {
+        match guide {
+            // Beside what they hold there is no object, and nothing is painted.
+            GraphInput::RestPosition | GraphInput::Flow => Self::Zero,
+            GraphInput::Paper | GraphInput::Hatching => Self::Tiled,
+            _ => Self::Edge,
+        }
+    }
+}
+
+/// The pixels of a window that is laid with an image.
+fn repeated(tile: &Image, window: Rect) -> Outcome<Image> {
+    let mut image = pool::image(window, tile.channels()).map_err(|_| kOfxStatErrMemory)?;
+    let (own, c) = (tile.window(), tile.channels() as usize);
+    for y in window.y0..window.y1 {
+        let from = tile.row(own.y0 + (y - own.y0).rem_euclid(own.y1 - own.y0));
+        for (x, pixel) in (window.x0..window.x1).zip(image.row_mut(y).chunks_exact_mut(c)) {
+            let at = (x - own.x0).rem_euclid(own.x1 - own.x0) as usize * c;
+            pixel.copy_from_slice(&from[at..at + c]);
+        }
+    }
+    Ok(image)
 }
 
 /// The one pixel of `bounds` nearest to a window beside it.

@@ -212,11 +212,11 @@ impl<'h> Inputs<'h> {
             Pixels::OfNeighbour(image, beyond) if input == GraphInput::Color => {
                 self.read_colour(&image, host, beyond)?
             }
-            Pixels::OfNeighbour(image, _) if input.is_colour() => self.read_layer(&image, host)?,
+            Pixels::OfNeighbour(image, _) if input.is_colour() => self.read_layer(input, &image, host)?,
             Pixels::OfNeighbour(image, _) => self.read_guide(input, &image, host)?,
             Pixels::OfFrame => match self.image(input) {
                 Some(image) if input != GraphInput::Color && input.is_colour() => {
-                    self.read_layer(image, host)?
+                    self.read_layer(input, image, host)?
                 }
                 Some(image) if input != GraphInput::Color => self.read_guide(input, image, host)?,
                 _ => self.read(host)?,
@@ -247,6 +247,10 @@ impl<'h> Inputs<'h> {
         let is_held = |image: &&Fetched<'_>| !is_part || self.is_held(name, taken.offset, image, part);
         let Some(image) = image.filter(is_held) else { return Ok(None) };
         let form = content::of_text(&format!("{window:?} {beyond:?} {:?}", self.field));
+        // Of a tile, all is read of it for any row.
+        let is_tiled = Beyond::of_guide(taken.input) == Beyond::Tiled;
+        let (window, part) =
+            if is_tiled { (image.window(&self.frame)?, image.window(&self.frame)?) } else { (window, part) };
         Ok(Some(Content { form, images: vec![image.rows(&self.frame, window, part, threads)?] }))
     }
 
@@ -329,8 +333,8 @@ impl<'h> Inputs<'h> {
     }
 
     /// A layer of colours, multiplied by its alpha where the source is.
-    fn read_layer(&self, image: &Fetched<'_>, window: Rect) -> Outcome<Image> {
-        let mut pixels = self.read_colour(image, window, Beyond::Edge)?;
+    fn read_layer(&self, guide: GraphInput, image: &Fetched<'_>, window: Rect) -> Outcome<Image> {
+        let mut pixels = self.read_colour(image, window, Beyond::of_guide(guide))?;
         match (self.is_straight(), image.alpha) {
             (true, Alpha::Premultiplied) => divide(&mut pixels),
             (false, Alpha::Unpremultiplied) => multiply(&mut pixels),
@@ -340,9 +344,7 @@ impl<'h> Inputs<'h> {
     }
 
     fn read_guide(&self, guide: GraphInput, image: &Fetched<'_>, window: Rect) -> Outcome<Image> {
-        // Beside what they hold there is no object, and nothing is painted.
-        let is_bounded = matches!(guide, GraphInput::RestPosition | GraphInput::Flow);
-        let beyond = if is_bounded { Beyond::Zero } else { Beyond::Edge };
+        let beyond = Beyond::of_guide(guide);
         self.of_field(window, |window| image.read(&self.frame, window, guide, beyond, self.threads.threads()))
     }
 

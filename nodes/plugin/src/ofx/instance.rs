@@ -5,7 +5,7 @@ use super::colours;
 use super::effects::{Effect, Form, Target};
 use super::frame::{Frame, bounded, is_endless};
 use super::host::{Host, Outcome, Properties};
-use super::image::Clip;
+use super::image::{Beyond, Clip};
 use super::known::{Known, clip_of};
 use super::neighbours::Lasting;
 use super::prepared::{Prepared, Quality};
@@ -132,7 +132,12 @@ pub fn regions_of_interest(
         let prepared = Prepared::new(&known, space, &frame, true, quality).map_err(|_| kOfxStatFailed)?;
         for (input, window) in read_for(&prepared, frame.size(), region) {
             let clip = clip_of(&settings, host, instance, input);
-            clip.into_iter().for_each(|clip| interest.add(clip, window.union(&region)));
+            // A tile is wanted whole.
+            let is_tiled = Beyond::of_guide(input) == Beyond::Tiled;
+            let tile = clip.filter(|_| is_tiled).and_then(|name| Clip::of(host, instance, name));
+            let tile = tile.and_then(|clip| frame.around(&clip.defined(moment.time)?));
+            let window = window.union(&region).union(&tile.unwrap_or_default());
+            clip.into_iter().for_each(|clip| interest.add(clip, window));
         }
     }
     if is_connected(host, instance, MASK) {

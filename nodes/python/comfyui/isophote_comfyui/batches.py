@@ -15,7 +15,8 @@ import isophote
 def stylized(style: Any, params: dict[str, Any], image: Any, guides: dict[str, Any]) -> Any:
     """The result of a style on a batch, a tensor where the batch is.
 
-    Guides are `mask`, pictures without channels, and `control`, pictures; None where they are not connected.
+    Guides are `mask`, pictures without channels, and `control`, `paper` and `hatching`, pictures; None where they are not
+    connected.
     """
     # Arrays in the memory of the tensors: what DLPack hands over is read-only in some versions.
     pictures, result = image.cpu().numpy(), image.cpu().new_empty(image.shape)
@@ -51,7 +52,7 @@ def _of_each(guide: Any, name: str, pictures: Any) -> Callable[[int], Any]:
         guide = guide[None]
     rows, columns = guide.shape[1:3]
     height, width = pictures.shape[1:3]
-    if (rows, columns) != (height, width):
+    if name not in ("paper", "hatching") and (rows, columns) != (height, width):
         raise ValueError(f"the {name} is {columns}x{rows}, and the pictures are {width}x{height}; scale it to their size")
     if len(guide) not in (1, len(pictures)):
         raise ValueError(

@@ -17,6 +17,11 @@ _GUIDES = {
         "IMAGE",
         {"tooltip": "A control map, grey for no change: red is detail, green the width of lines, blue their amount."},
     ),
+    "paper": ("IMAGE", {"tooltip": "Paper to draw or paint on, of any size: it is tiled."}),
+    "hatching": (
+        "IMAGE",
+        {"tooltip": "Hatching to draw tones with, of any size, dark on white; of several tones, one in each channel."},
+    ),
 }
 """Inputs beside the pictures, by the names of the library's ports."""
 
@@ -104,8 +109,8 @@ def _of_node(node: isophote.Node) -> type[_Stylizes]:
         def INPUT_TYPES(cls) -> dict[str, Any]:
             return _inputs({param.id: widget(param) for param in node.params}, tuple(port.id for port in node.inputs))
 
-        def stylize(self, image: Any, mask: Any = None, control: Any = None, **values: Any) -> tuple[Any]:
-            guides = {"mask": mask, "control": control}
+        def stylize(self, image: Any, **values: Any) -> tuple[Any]:
+            guides = {name: values.pop(name, None) for name in _GUIDES}
             return (stylized(node.id, changed(node.params, values), image, guides),)
 
     OfNode.__name__ = OfNode.__qualname__ = node.id

@@ -147,6 +147,9 @@ def test_masks_and_control_maps_are_for_all_or_for_each(pack, batch):
     plain = run(pack, "isophote_ink", batch)
     assert np.array_equal(run(pack, "isophote_ink", batch, control=neutral), plain)
     assert np.abs(run(pack, "isophote_ink", batch, control=none) - plain).mean() > 0.01
+    small = tensor(np.tile(np.linspace(0.2, 1, 8)[None, None, :, None], (1, 3, 1, 3)))
+    for material in ("paper", "hatching"):
+        assert np.abs(run(pack, "isophote_ink", batch, **{material: small}) - plain).mean() > 0.01
     assert "optional" in pack.NODE_CLASS_MAPPINGS["isophote_ink"].INPUT_TYPES()
     assert "control" not in pack.NODE_CLASS_MAPPINGS["isophote_gaussian"].INPUT_TYPES()["optional"]
     with pytest.raises(ValueError, match="the mask is 64x32, and the pictures are 120x64"):

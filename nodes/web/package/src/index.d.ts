@@ -118,7 +118,9 @@ export type Guide =
   | "albedo"
   | "diffuse"
   | "specular"
-  | "control";
+  | "control"
+  | "paper"
+  | "hatching";
 // end of guides
 
 /** A picture: anything that `GPUQueue.copyExternalImageToTexture` takes, or a texture of the same device. */

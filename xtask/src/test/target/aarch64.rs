@@ -22,7 +22,7 @@ const RUNNER: [&str; 3] = ["qemu-aarch64", "-L", "/usr/aarch64-linux-gnu"];
 const PACKAGES: [&str; 4] = ["isophote-engine", "isophote", "isophote-plugin", "isophote-tests"];
 
 /// Files of tests beside the packages' own.
-const FILES: [&str; 12] = [
+const FILES: [&str; 13] = [
     "plan",
     "control",
     "cpu",
@@ -31,6 +31,7 @@ const FILES: [&str; 12] = [
     "importance",
     "line_wobble",
     "lines",
+    "materials",
     "smoothing",
     "toon_shading",
     "bits",

@@ -7,12 +7,31 @@ use isophote_files::output;
 use isophote_finishing::apply::filter::MaskedStyle;
 use isophote_finishing::apply::looks::Entry;
 use isophote_finishing::apply::masks::{MaskChoice, Masks};
+use isophote_finishing::apply::materials::Laid;
 use isophote_finishing::apply::planner::Planner;
 use isophote_finishing::apply::tasks::Tasks;
 use isophote_finishing::stylize::preset;
 use isophote_loader::Library;
 use isophote_pictures::exr::{Guide, MaskSource, Selection};
 use isophote_pictures::read::Opened;
+
+/// Makes sure that one of the looks takes a guide.
+///
+/// # Errors
+/// [`Error::Input`] with this problem where none does.
+fn must_follow(looks: &[MaskedStyle], guide: Guide, problem: &str) -> Result<()> {
+    let id = guide.id();
+    for look in looks {
+        if look.style.takes(id)? {
+            return Ok(());
+        }
+    }
+    Err(Error::input(
+        format!("--{id}"),
+        problem,
+        format!("choose another style, or connect @{id} in its graph"),
+    ))
+}
 
 impl ApplyArgs {
     /// Guides that are looked for.
@@ -52,27 +71,24 @@ impl ApplyArgs {
         sources.map(|source| Ok(MaskChoice { source: source?, invert: false })).collect()
     }
 
-    /// Maps over the pictures: masks, those that are painted, and rules for things, whose masks are the last of the choices.
+    /// Maps over the pictures: masks, those that are painted, materials, and rules for things, whose masks are the last of the choices.
     ///
     /// # Errors
     /// As [`Masks::new`]; [`Error::Input`] for a map that no style would follow.
     pub(super) fn maps(&self, choices: &[MaskChoice], looks: &[MaskedStyle]) -> Result<Masks> {
-        let paths = self.painted.paths();
+        let (paths, materials) = (self.painted.paths(), self.painted.materials());
         for (painted, _) in &paths {
-            let id = painted.guide.id();
-            let mut followed = false;
-            for look in looks {
-                followed |= look.style.takes(id)?;
-            }
-            if !followed {
-                let problem = format!("the style follows no {}", painted.name);
-                let fix = format!("choose another style, or connect @{id} in its graph");
-                return Err(Error::input(format!("--{id}"), problem, fix));
-            }
+            must_follow(looks, painted.guide, &format!("the style follows no {}", painted.name))?;
+        }
+        let mut laid = Vec::new();
+        for (kind, name) in materials {
+            let guide = kind.guide();
+            must_follow(looks, guide, &format!("the style has no {} of its own to replace", guide.id()))?;
+            laid.push(Laid::new(kind.open(name)?, self.space));
         }
         let rules = looks.iter().flat_map(|look| &look.style.objects).map(|rule| rule.control);
         let masks = Masks::new(choices, self.mask_from.as_deref(), self.on_unknown)?;
-        Ok(masks.with_maps(&paths)?.with_rules(rules.collect()))
+        Ok(masks.with_maps(&paths)?.with_materials(laid).with_rules(rules.collect()))
     }
 
     /// The files of motion vectors.
@@ -134,8 +150,15 @@ impl ApplyArgs {
         // Other files than EXR have none; what was left out by hand is not missed, nor what few files have.
         let is_missed = |guide: &Guide| {
             let is_named = selection.guides.iter().any(|choice| choice.guide == *guide);
-            let is_rare =
-                matches!(guide, Guide::Flow | Guide::Control | Guide::RestPosition | Guide::MotionForward);
+            let is_rare = matches!(
+                guide,
+                Guide::Flow
+                    | Guide::Control
+                    | Guide::Paper
+                    | Guide::Hatching
+                    | Guide::RestPosition
+                    | Guide::MotionForward
+            );
             !offers.layers.is_empty() && is_used(guide) && !(is_named || is_rare || has(*guide))
         };
         let missed: Vec<&str> = Guide::ALL.into_iter().filter(is_missed).map(Guide::id).collect();

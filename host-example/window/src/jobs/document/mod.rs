@@ -22,9 +22,11 @@ use crate::state::document::{Frames, Info};
 use crate::state::playback::Playback;
 use isophote_files::error::{Error, Result};
 use isophote_files::frames::Pattern;
+use isophote_finishing::apply::materials::Laid;
 use isophote_finishing::apply::memory;
 use isophote_finishing::video::Clip;
 use isophote_pictures::exr::{Guide, Offers, Selection};
+use isophote_pictures::material::MaterialKind;
 use isophote_pictures::read;
 use isophote_pictures::space::Space;
 
@@ -41,6 +43,8 @@ pub struct Options {
     pub selection: Selection,
     /// Space of the numbers, where it is not the file that says so.
     pub space: Option<Space>,
+    /// Paper and hatching that lie on the pictures, by their names or files.
+    pub materials: Vec<(MaterialKind, PathBuf)>,
     /// True where a picture that is one of several numbered ones stands for all of them.
     pub as_sequence: bool,
     /// Most bytes of frames in memory.
@@ -51,7 +55,13 @@ impl Default for Options {
     fn default() -> Self {
         // The window's own pictures and the device need memory as well.
         let cache = memory::kept().0;
-        Self { selection: Selection::default(), space: None, as_sequence: false, cache }
+        Self {
+            selection: Selection::default(),
+            space: None,
+            materials: Vec::new(),
+            as_sequence: false,
+            cache,
+        }
     }
 }
 
@@ -88,19 +98,22 @@ impl Document {
     pub fn open(path: &Path, options: &Options) -> Result<Self> {
         let (kind, path) = Kind::of(path, options.as_sequence)?;
         let selection = Selection { wanted: Guide::ALL.to_vec(), ..options.selection.clone() };
-        let reading = Reading { selection, space: options.space };
+        let laid = |(kind, name): &(MaterialKind, PathBuf)| Ok(Laid::new(kind.open(name)?, options.space));
+        let materials = options.materials.iter().map(laid).collect::<Result<_>>()?;
+        let reading = Reading { selection, space: options.space, materials };
         let (offers, content) = match kind {
             Kind::Scene => (Offers::default(), Content::None),
             Kind::Picture => {
                 let opened = read::open(&path, &reading.selection)?;
                 let offers = opened.offers();
-                let frame = reader::decoded(&path, None, opened, reading.space)?;
+                let frame = reader::decoded(&path, None, opened, &reading)?;
                 (offers, Content::Still(Arc::new(frame)))
             }
             Kind::Sequence => sequence(&path, reading, options.cache)?,
             Kind::Video => video(&path, reading, options.cache)?,
         };
-        let info = Arc::new(Info { kind, path, offers, selection: options.selection.clone() });
+        let (selection, materials) = (options.selection.clone(), options.materials.clone());
+        let info = Arc::new(Info { kind, path, offers, selection, materials });
         Ok(Self { info, content })
     }
 

@@ -2,11 +2,13 @@
 
 use std::ops::RangeInclusive;
 use std::path::{Path, PathBuf};
+use std::sync::Arc;
 
 use crate::state::document::frame::Frame;
 use isophote_files::error::{Error, Result};
 use isophote_files::frames::Pattern;
 use isophote_files::limits;
+use isophote_finishing::apply::materials::Laid;
 use isophote_finishing::apply::square;
 use isophote_finishing::video::Clip;
 use isophote_loader::Library;
@@ -24,6 +26,8 @@ pub struct Reading {
     pub selection: Selection,
     /// Space of the numbers, where it is not the file that says so.
     pub space: Option<Space>,
+    /// Paper and hatching that lie on them.
+    pub materials: Arc<[Laid]>,
 }
 
 /// Reader of frames by their numbers.
@@ -72,29 +76,31 @@ impl FrameReader {
 
 /// Reads the file of a frame.
 fn file(path: &Path, number: i64, reading: &Reading) -> Result<Frame> {
-    decoded(path, Some(number), read::open(path, &reading.selection)?, reading.space)
+    decoded(path, Some(number), read::open(path, &reading.selection)?, reading)
 }
 
 /// Decodes a file that was opened.
 ///
 /// # Errors
 /// As [`Opened::decode`]; [`Error::Failure`] when memory is short.
-pub fn decoded(path: &Path, number: Option<i64>, opened: Opened, space: Option<Space>) -> Result<Frame> {
+pub fn decoded(path: &Path, number: Option<i64>, opened: Opened, reading: &Reading) -> Result<Frame> {
     let name = path.display().to_string();
     limits::must_have(opened.weight(false), &name)?;
     let mut source = opened.decode(path)?;
     // Nothing is written back.
     source.exr = None;
-    shown(&name, source, number, space)
+    shown(&name, source, number, reading)
 }
 
 /// The frame that is shown: of square pixels, which are those that looks are made of.
-fn shown(name: &str, mut source: Source, number: Option<i64>, space: Option<Space>) -> Result<Frame> {
+fn shown(name: &str, mut source: Source, number: Option<i64>, reading: &Reading) -> Result<Frame> {
     source.pictures.truncate(1);
+    let laid = |material: &Laid| source.pictures.iter_mut().for_each(|picture| material.lay(picture));
+    reading.materials.iter().for_each(laid);
     if !square::is_square(&source) {
         square::make(&Library::open()?, name, &mut source)?;
     }
-    Frame::of(name, source, number, space)
+    Frame::of(name, source, number, reading.space)
 }
 
 /// Decodes frames from the first up to the second number, and those that lie before.
@@ -110,7 +116,7 @@ fn decode(
     while let Some((at, pixels)) = clip.take()? {
         if sink.wants(at) {
             let source = Source::alone(pixels, clip.stream().meaning());
-            sink.put(at, shown(&name, source, Some(at), reading.space));
+            sink.put(at, shown(&name, source, Some(at), reading));
         }
         if at >= number || sink.is_elsewhere(at + 1..=number) {
             return Ok(());

@@ -10,6 +10,7 @@ use std::sync::Arc;
 use self::kind::Kind;
 use isophote_files::frames;
 use isophote_pictures::exr::{Offers, Selection};
+use isophote_pictures::material::MaterialKind;
 
 /// Properties of an open document, which stay while it is open.
 #[derive(Debug)]
@@ -22,6 +23,8 @@ pub struct Info {
     pub offers: Offers,
     /// Selection that was asked for of an EXR file.
     pub selection: Selection,
+    /// Paper and hatching that lie on it, by their names or files.
+    pub materials: Vec<(MaterialKind, PathBuf)>,
 }
 
 impl Info {

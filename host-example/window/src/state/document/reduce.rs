@@ -1,9 +1,11 @@
-//! Frames made smaller: colours are averaged over the area that each pixel covers, guides picked in its middle.
+//! Frames made smaller: colours and hatching are averaged over the area that each pixel covers, other guides picked in its
+//! middle.
 
 use rayon::prelude::*;
 
 use super::frame::{Frame, GuideImage};
 use isophote_loader::process::Part;
+use isophote_pictures::exr::Guide;
 
 /// The pixels that one of the smaller frame covers along an axis: the first, and the share of each.
 struct Span {
@@ -73,8 +75,10 @@ fn average((colors, width): (&[[f32; 4]], u32), column: &Span, row: &Span, strai
 }
 
 fn picked(frame: &Frame, image: &GuideImage, columns: &[Span], rows: &[Span]) -> GuideImage {
-    if let (true, (colors, [])) = (image.guide.is_colour(), image.data.as_chunks::<4>()) {
-        let (colors, straight) = ((colors, frame.width), !frame.is_premultiplied());
+    let is_averaged = image.guide.is_colour() || image.guide == Guide::Hatching;
+    if let (true, (colors, [])) = (is_averaged, image.data.as_chunks::<4>()) {
+        let straight = image.guide.is_colour() && !frame.is_premultiplied();
+        let colors = (colors, frame.width);
         let cells = rows.iter().flat_map(|row| columns.iter().map(move |column| (column, row)));
         let data = cells.flat_map(|(column, row)| average(colors, column, row, straight)).collect();
         return GuideImage { data, ..*image };

@@ -124,6 +124,9 @@ impl Session {
         let path = path.as_path();
         match dialog {
             Dialog::File | Dialog::Surroundings | Dialog::Palette => {}
+            Dialog::Material(kind) => {
+                self.work.ask(Request::ChooseMaterial(kind, Some(path.to_owned())));
+            }
             Dialog::Look => self.settings.look_folder = path.parent().map(Path::to_owned),
             Dialog::LookFolder => {
                 self.settings.add_look_folder(path);

@@ -1,6 +1,6 @@
 //! The sheet of a blueprint: tinted paper with texture and grid, a hint of the picture's tones and the
 //! lines. All lengths and the texture's cells are those of the full-size picture, so that tiles and
-//! proxies show the same sheet.
+//! proxies show the same sheet; a paper may be given, too.
 //!
 //! Cost: twelve hashes and about 100 multiply-adds per pixel.
 
@@ -42,8 +42,19 @@ pub struct Sheet {
     pub origin: [f32; 2],
 }
 
-/// Draws `edges` (1 = paper, 0 = line) on a sheet shaded after (L alpha, alpha).
-pub fn pass(plan: &mut PlanBuilder, lightness: ImageId, edges: ImageId, sheet: &Sheet) -> ImageId {
+/// What is drawn, and on what.
+#[derive(Clone, Copy, Debug)]
+pub struct Drawing {
+    /// (L alpha, alpha) of the picture.
+    pub lightness: ImageId,
+    /// 1 = paper, 0 = line.
+    pub edges: ImageId,
+    /// Colours of a paper ([`paper_relief`](super::paper_relief)).
+    pub paper: Option<ImageId>,
+}
+
+/// Draws lines on a sheet shaded after the lightness.
+pub fn pass(plan: &mut PlanBuilder, drawing: &Drawing, sheet: &Sheet) -> ImageId {
     let params = Params {
         line: sheet.line,
         paper: sheet.paper,
@@ -54,8 +65,11 @@ pub fn pass(plan: &mut PlanBuilder, lightness: ImageId, edges: ImageId, sheet: &
         fill: sheet.fill,
         cover: sheet.cover.into(),
         origin: sheet.origin,
+        given: drawing.paper.is_some().into(),
+        padding: Default::default(),
     };
-    plan.pass(&KERNEL, &[lightness, edges], &params, Class::Colour, Support::Pixels(0))
+    let inputs = [drawing.lightness, drawing.edges, drawing.paper.unwrap_or(drawing.lightness)];
+    plan.pass(&KERNEL, &inputs, &params, Class::Colour, Support::Pixels(0))
 }
 
 #[inline(always)]
@@ -70,13 +84,19 @@ fn sheet<S: Simd>(simd: S, pass: &CpuPass<'_>, params: &Params, band: &mut Band<
             let x = columns + 0.5 + params.origin[0];
             let y = f32x8::splat(simd, block.y as f32 + 0.5 + params.origin[1]);
             let (qx, qy) = (x * params.inverse_scale, y * params.inverse_scale);
-            let grain = noise(simd, qx * 0.4, qy * 0.4, 0) * 0.45
-                + noise(simd, qx * 0.13, qy * 0.13, 1013) * 0.3
-                + noise(simd, qx * 0.037, qy * 0.037, 2027) * 0.25;
+            let paper = if params.given != 0 {
+                let [r, g, b, _]: [f32x8<S>; 4] = block.read(simd, &pass.inputs[2]);
+                [r, g, b]
+            } else {
+                let grain = noise(simd, qx * 0.4, qy * 0.4, 0) * 0.45
+                    + noise(simd, qx * 0.13, qy * 0.13, 1013) * 0.3
+                    + noise(simd, qx * 0.037, qy * 0.037, 2027) * 0.25;
+                [(grain - 0.5) * params.texture_amount + 1.0; 3]
+            };
             let [l, alpha] = block.read(simd, lightness);
             let tone = (l / alpha.at_least(1e-6) * 0.01).within(0.0, 1.0);
             let fill = alpha.within(0.0, 1.0) * params.fill;
-            let shade = ((grain - 0.5) * params.texture_amount + 1.0) * (one - fill * 0.5 * (one - tone));
+            let shade = one - fill * 0.5 * (one - tone);
             let light = fill * 0.35 * tone;
             let mut rule = one * 0.0;
             if params.spacing > 0.0 {
@@ -86,7 +106,7 @@ fn sheet<S: Simd>(simd: S, pass: &CpuPass<'_>, params: &Params, band: &mut Band<
             }
             let [edge] = block.read(simd, edges);
             let ink = (one - edge.within(0.0, 1.0)) * params.line[3];
-            let drawn = Drawn { shade, light, rule, ink };
+            let drawn = Drawn { paper, shade, light, rule, ink };
             let [r, g, b] = [drawn.over(params, 0), drawn.over(params, 1), drawn.over(params, 2)];
             write([r, g, b, if params.cover != 0 { one } else { alpha }], target);
         },
@@ -96,6 +116,7 @@ fn sheet<S: Simd>(simd: S, pass: &CpuPass<'_>, params: &Params, band: &mut Band<
 /// Shares of what lies on the paper.
 #[derive(Clone, Copy)]
 struct Drawn<S: Simd> {
+    paper: [f32x8<S>; 3],
     shade: f32x8<S>,
     light: f32x8<S>,
     rule: f32x8<S>,
@@ -107,7 +128,7 @@ impl<S: Simd> Drawn<S> {
     #[inline(always)]
     fn over(&self, params: &Params, channel: usize) -> f32x8<S> {
         let line = f32x8::splat(self.ink.simd, params.line[channel]);
-        let sheet = self.shade * params.paper[channel];
+        let sheet = self.paper[channel] * self.shade * params.paper[channel];
         let sheet = sheet + self.light * (line - sheet);
         let sheet = sheet + self.rule * (line - sheet);
         sheet + self.ink * (line - sheet)

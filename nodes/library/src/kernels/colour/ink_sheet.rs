@@ -1,5 +1,6 @@
 //! Lays ink, graphite, charcoal or chalk on paper (§ 4.3, 4.4): lines, and the marks of tones, both of which catch on the
-//! paper's grain. Cells of grain are those of the full-size picture, so that tiles and proxies show the same sheet.
+//! paper's grain. Cells of grain are those of the full-size picture, so that tiles and proxies show the same sheet; a
+//! paper may be given, too.
 //!
 //! Cost: 12 hashes and about 120 multiply-adds per pixel.
 
@@ -69,6 +70,8 @@ pub struct Drawing {
     pub marks: ImageId,
     /// Tones of the picture, (L alpha, alpha): light ones show no grain.
     pub tones: ImageId,
+    /// Colours of a paper, and the depth of its grain ([`paper_relief`](super::paper_relief)).
+    pub paper: Option<ImageId>,
 }
 
 /// Share of the paper that chalk covers, and the part of their lightness that its colours keep in lines above it.
@@ -94,9 +97,12 @@ pub fn pass(plan: &mut PlanBuilder, drawing: &Drawing, sheet: &Sheet) -> ImageId
         cut: f32::from(sheet.cut),
         smooth_from: SMOOTH_FROM,
         inverse_fade: INVERSE_FADE,
+        given: drawing.paper.is_some().into(),
         origin: sheet.origin,
+        padding: Default::default(),
     };
-    let inputs = [drawing.lines, drawing.color, drawing.strokes, drawing.marks, drawing.tones];
+    let paper = drawing.paper.unwrap_or(drawing.color);
+    let inputs = [drawing.lines, drawing.color, drawing.strokes, drawing.marks, drawing.tones, paper];
     plan.pass(&KERNEL, &inputs, &params, Class::Colour, Support::Pixels(0))
 }
 
@@ -108,7 +114,7 @@ fn run(pass: &CpuPass<'_>, band: &mut Band<'_>) {
 
 #[inline(always)]
 fn sheet<S: Simd>(simd: S, pass: &CpuPass<'_>, params: &Params, band: &mut Band<'_>) {
-    let [lines, source, strokes, marks, tones] = pass.inputs else { return };
+    let [lines, source, strokes, marks, tones, given] = pass.inputs else { return };
     let (zero, one) = (f32x8::splat(simd, 0.0), f32x8::splat(simd, 1.0));
     for_blocks::<4>(
         band,
@@ -117,12 +123,18 @@ fn sheet<S: Simd>(simd: S, pass: &CpuPass<'_>, params: &Params, band: &mut Band<
             let columns: f32x8<S> = block.columns(simd).to_float();
             let x = (columns + 0.5 + params.origin[0]) * params.inverse_scale;
             let y = f32x8::splat(simd, (block.y as f32 + 0.5 + params.origin[1]) * params.inverse_scale);
-            let (gx, gy) = (x * params.grain_frequency, y * params.grain_frequency);
-            let tooth = even(
-                noise(simd, gx, gy, 11) * 0.45
-                    + noise(simd, gx * 2.13, gy * 2.13, 1013) * 0.25
-                    + noise(simd, gx * 0.31, gy * 0.31, 2027) * 0.3,
-            );
+            let (paper, tooth) = if params.given != 0 {
+                let [r, g, b, depth] = block.read(simd, given);
+                ([r, g, b], depth)
+            } else {
+                let (gx, gy) = (x * params.grain_frequency, y * params.grain_frequency);
+                let tooth = even(
+                    noise(simd, gx, gy, 11) * 0.45
+                        + noise(simd, gx * 2.13, gy * 2.13, 1013) * 0.25
+                        + noise(simd, gx * 0.31, gy * 0.31, 2027) * 0.3,
+                );
+                ([(tooth - 0.5) * params.texture_amount + 1.0; 3], tooth)
+            };
             let [r, g, b, a] = block.read(simd, source);
             let alpha = a.within(zero, one);
             let [stroke, ..]: [f32x8<S>; 4] = block.read(simd, strokes);
@@ -145,7 +157,6 @@ fn sheet<S: Simd>(simd: S, pass: &CpuPass<'_>, params: &Params, band: &mut Band<
             // Chalk: the picture's own colours, a little lighter, where the paper catches them.
             let chalk = catches(zero + params.ground, height, grain) * params.colour * alpha;
             let covered = one - (one - ink) * (one - chalk);
-            let paper = (tooth - 0.5) * params.texture_amount + 1.0;
             let mut laid = [r, g, b];
             for (channel, value) in laid.iter_mut().enumerate() {
                 let own = value.within(zero, one);
@@ -155,7 +166,7 @@ fn sheet<S: Simd>(simd: S, pass: &CpuPass<'_>, params: &Params, band: &mut Band<
                 *value = if params.bare != 0 {
                     mix(own_chalk, line, ink / covered.at_least(LEAST_COVERAGE))
                 } else {
-                    mix(mix(paper * params.paper[channel], own_chalk, chalk), line, ink)
+                    mix(mix(paper[channel] * params.paper[channel], own_chalk, chalk), line, ink)
                 };
             }
             let [r, g, b] = laid;

@@ -80,6 +80,8 @@ const FULL_HATCHES: f32 = 0.7;
 /// Units of L above the relief from which on tone is lifted out, and the share of it per further unit.
 const LIFT_FROM: f32 = 2.0;
 const LIFT_SLOPE: f32 = 0.12;
+/// Share of the paper that a given tone covers at least beyond the one before.
+const LEAST_STEP: f32 = 0.01;
 
 /// Images that tones are drawn after and with.
 #[derive(Clone, Copy, Debug)]
@@ -92,13 +94,28 @@ pub struct Inputs {
     pub strokes: ImageId,
     /// The same across them, shorter by [`CROSSING`].
     pub crossing: ImageId,
-    /// Noise along [`HATCHING`], where hatches are not to stay on the screen.
-    pub hatching: Option<[ImageId; 2]>,
+    /// Hatches that are not the pass' own.
+    pub hatching: Hatching,
+}
+
+/// Hatches, and who draws them.
+#[derive(Clone, Copy, Debug)]
+pub enum Hatching {
+    /// Straight ones that stay on the screen.
+    Own,
+    /// Noise along [`HATCHING`].
+    Noise([ImageId; 2]),
+    /// Ink of up to four tones ([`hatching_tones`](super::hatching_tones)), and the same smoothed; they say all tones.
+    Tones([ImageId; 2]),
 }
 
 /// Adds the pass: the share of the paper that marks cover.
 pub fn pass(plan: &mut PlanBuilder, inputs: &Inputs, tones: &Tones) -> ImageId {
-    let [first, second] = inputs.hatching.unwrap_or([inputs.strokes; 2]);
+    let [first, second] = match inputs.hatching {
+        Hatching::Own => [inputs.strokes; 2],
+        Hatching::Noise(images) | Hatching::Tones(images) => images,
+    };
+    let is_noise = matches!(inputs.hatching, Hatching::Noise(_));
     let params = Params {
         origin: tones.origin,
         inverse_scale: 1.0 / tones.scale,
@@ -115,12 +132,12 @@ pub fn pass(plan: &mut PlanBuilder, inputs: &Inputs, tones: &Tones) -> ImageId {
         stroke_width: tones.stroke[0].max(0.1),
         inverse_length: 1.0 / tones.stroke[1].max(0.1),
         softness: SOFTNESS,
-        given_gain: if inputs.hatching.is_some() { 1.0 / tones.given_deviation.max(1e-3) } else { 0.0 },
+        given_gain: if is_noise { 1.0 / tones.given_deviation.max(1e-3) } else { 0.0 },
         edge: edge(tones.scale),
         open: 1.0 - tones.most,
         bend: tones.bend,
         lift: tones.lift,
-        padding: Default::default(),
+        drawn_tones: matches!(inputs.hatching, Hatching::Tones(_)).into(),
     };
     let images = [inputs.tones, inputs.tensor, inputs.strokes, inputs.crossing, first, second];
     plan.pass(&KERNEL, &images, &params, Class::Field, Support::Pixels(0))
@@ -150,7 +167,12 @@ fn run(pass: &CpuPass<'_>, band: &mut Band<'_>) {
         let marked = grained * (1.0 - params.rubbed);
         let mut density = d;
         if marked.simd_gt(0.0).any_true() {
-            density = d + marked * (drawn(simd, pass, &params, &block, [d, ground]) - d);
+            let drawn = if params.drawn_tones != 0 {
+                given_tones(block.read(simd, &pass.inputs[4]), block.read(simd, &pass.inputs[5]), d)
+            } else {
+                drawn(simd, pass, &params, &block, [d, ground])
+            };
+            density = d + marked * (drawn - d);
         }
         write([density], target);
     }));
@@ -237,6 +259,27 @@ fn drawn<S: Simd>(
     }
     one - bare
 }
+
+/// Hatching that covers the share `d` of the paper, by tones that cover `tones` of a pixel and `around` of what is around it.
+/// Between two tones the darker one fades in; beyond the last all is solid.
+#[inline(always)]
+fn given_tones<S: Simd>(tones: [f32x8<S>; 4], around: [f32x8<S>; 4], d: f32x8<S>) -> f32x8<S> {
+    let one = f32x8::splat(d.simd, 1.0);
+    let (mut covered, mut mean) = (one * 0.0, one * 0.0);
+    for i in 0..5 {
+        let (mut tone, mut level) = (one, one);
+        if i < 4 {
+            (tone, level) = (tones[i], around[i]);
+        }
+        let step = level - mean;
+        let is_darker = step.simd_gt(LEAST_STEP);
+        let share = ((d - mean) / step.at_least(LEAST_STEP)).within(0.0, 1.0);
+        covered = is_darker.select(covered + (tone - covered) * share, covered);
+        mean = is_darker.select(level, mean);
+    }
+    covered
+}
+
 /// Share of a pixel that a band covers, `r` from whose middle it lies and whose half width is `s`, in pixels of the
 /// full-size picture.
 #[inline(always)]
@@ -341,7 +384,7 @@ mod tests {
         open: 0.0,
         bend: 0.0,
         lift: 0.0,
-        padding: [0; 1],
+        drawn_tones: 0,
     };
 
     /// The mean of hatches of density `d` over a large field.

@@ -2,7 +2,7 @@
 //! grain of the paper and where water has pushed it to a rim (Bousseau et al. 2006). Wet places bleed; dry ones leave gaps
 //! beside dark shapes and bare peaks of the grain (Montesdeoca et al. 2017). Paint of density 1 + d lets C / (1 + d (1 - C))
 //! through, which has the slope of C^(1 + d) at white paper and stays positive. Clouds and grain belong to the
-//! full-size picture, so that tiles and proxies show the same paper; clouds may be given, too.
+//! full-size picture, so that tiles and proxies show the same paper; clouds and paper may be given, too.
 //!
 //! Cost: 16 hashes and about 250 multiply-adds.
 
@@ -57,6 +57,9 @@ pub struct Wash {
 /// Clouds that stay on the screen, in two layers: cells per pixel of the full-size picture, share and seed.
 pub const CLOUDS: [(f32, f32, u32); 2] = [(0.009, 0.62, 11), (0.025, 0.38, 503)];
 
+/// Depth of a given grain against that of the paper's own, whose pits and peaks are as deep.
+const EVEN: f32 = 0.65;
+
 /// The picture that is painted: itself, smoothed by the width of the dark borders, and smoothed as far as it bleeds.
 #[derive(Clone, Copy, Debug)]
 pub struct Drawn {
@@ -66,10 +69,14 @@ pub struct Drawn {
     pub blurred: ImageId,
     /// The same, smoothed as far as paint bleeds.
     pub wide: ImageId,
+    /// Grey ones of mean 0.5 where clouds are not to be [`CLOUDS`].
+    pub clouds: Option<ImageId>,
+    /// Colours of a paper, and the depth of its grain ([`paper_relief`](super::paper_relief)).
+    pub paper: Option<ImageId>,
 }
 
-/// Paints `drawn`; `clouds` are grey and of mean 0.5 where they are not to be [`CLOUDS`].
-pub fn pass(plan: &mut PlanBuilder, drawn: &Drawn, clouds: Option<ImageId>, wash: &Wash) -> ImageId {
+/// Paints `drawn`.
+pub fn pass(plan: &mut PlanBuilder, drawn: &Drawn, wash: &Wash) -> ImageId {
     let params = Params {
         inverse_scale: 1.0 / wash.scale,
         pigment: wash.pigment,
@@ -78,14 +85,17 @@ pub fn pass(plan: &mut PlanBuilder, drawn: &Drawn, clouds: Option<ImageId>, wash
         grain: wash.grain,
         grain_frequency: 1.0 / wash.grain_size.max(0.5),
         origin: wash.origin,
-        given: clouds.is_some().into(),
+        given: drawn.clouds.is_some().into(),
+        papered: drawn.paper.is_some().into(),
         white: wash.white,
         bleeding: wash.bleeding,
         gaps: wash.gaps,
         dry: wash.dry,
         backruns: wash.backruns,
+        padding: Default::default(),
     };
-    let inputs = [drawn.color, drawn.blurred, drawn.wide, clouds.unwrap_or(drawn.color)];
+    let [clouds, paper] = [drawn.clouds, drawn.paper].map(|given| given.unwrap_or(drawn.color));
+    let inputs = [drawn.color, drawn.blurred, drawn.wide, clouds, paper];
     plan.pass(&KERNEL, &inputs, &params, Class::Colour, Support::Pixels(0))
 }
 
@@ -111,13 +121,20 @@ fn washed<S: Simd>(simd: S, pass: &CpuPass<'_>, params: &Params, band: &mut Band
                 let [(f, a, s), (g, b, t)] = CLOUDS;
                 noise(simd, x * f, y * f, s) * a + noise(simd, x * g, y * g, t) * b
             };
-            let (gx, gy) = (x * params.grain_frequency, y * params.grain_frequency);
-            let grain = noise(simd, gx, gy, 1013) * 0.6 + noise(simd, gx * 2.3, gy * 2.3, 2027) * 0.4;
+            let (paper, grain) = if params.papered != 0 {
+                let [r, g, b, depth] = block.read(simd, &pass.inputs[4]);
+                ([r, g, b], (depth - 0.5) * EVEN + 0.5)
+            } else {
+                let (gx, gy) = (x * params.grain_frequency, y * params.grain_frequency);
+                let grain = noise(simd, gx, gy, 1013) * 0.6 + noise(simd, gx * 2.3, gy * 2.3, 2027) * 0.4;
+                ([f32x8::splat(simd, 1.0); 3], grain)
+            };
             let [color, blurred, wide] = [0, 1, 2].map(
                 #[inline(always)]
                 |i| -> [f32x8<S>; 4] { block.read(simd, &pass.inputs[i]) },
             );
-            write(painted(params, [cloud, grain], color, luma(&blurred), &wide), target);
+            let [r, g, b, a] = painted(params, [cloud, grain], color, luma(&blurred), &wide);
+            write([r * paper[0], g * paper[1], b * paper[2], a], target);
         },
     );
 }

@@ -3,7 +3,7 @@
 use crate::declare::ports;
 use crate::declare::spec::{NodeSpec, Param, STEADINESS, Scope, WINDOW};
 use crate::declare::value::Value;
-use crate::kernels::colour::blueprint_paper::{self, Sheet};
+use crate::kernels::colour::blueprint_paper::{self, Drawing, Sheet};
 use crate::kernels::colour::composite_lines::{self, Params as Composite};
 use crate::kernels::colour::{lightness, rgb_to_lab};
 use crate::stages::abstraction::{self, Abstraction};
@@ -12,6 +12,7 @@ use crate::stages::lines::{SHOW, Show};
 use crate::stages::steady::{Agreement, COLOUR_AGREEMENT, steadied};
 use crate::stages::{
     ADVANCED, LOOK, difference_of_gaussians as dog, flow_dog, flow_map, line_context, line_wobble, lines,
+    paper,
 };
 use isophote_engine::ImageId;
 
@@ -30,6 +31,7 @@ pub static NODE: NodeSpec = NodeSpec {
         flow_dog::DEPTH,
         flow_dog::OBJECT_ID,
         line_wobble::REST_POSITION,
+        ports::PAPER,
     ],
     output: ports::color_output("The blueprint."),
     own_params: &[
@@ -122,5 +124,6 @@ fn build(scope: &mut Scope<'_>) -> ImageId {
         fill: scope.float("fill"),
         cover: scope.bool("cover"),
     };
-    blueprint_paper::pass(scope.plan, lightness, edges, &sheet)
+    let drawing = Drawing { lightness, edges, paper: paper::given(scope) };
+    blueprint_paper::pass(scope.plan, &drawing, &sheet)
 }

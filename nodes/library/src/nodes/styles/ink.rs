@@ -9,8 +9,8 @@ use crate::declare::value::Value;
 use crate::kernels::colour::composite_lines::{self, Params as Composite};
 use crate::kernels::colour::ink_sheet::{self, Drawing, Sheet};
 use crate::kernels::colour::light_on_dark::{self, Params as LightOnDark};
-use crate::kernels::colour::tone_marks::{self, CROSSING, HATCHING, Inputs, Tones};
-use crate::kernels::colour::{lab_to_rgb, lightness, rgb_to_lab, tone_relief};
+use crate::kernels::colour::tone_marks::{self, CROSSING, HATCHING, Hatching, Inputs, Tones};
+use crate::kernels::colour::{hatching_tones, lab_to_rgb, lightness, rgb_to_lab, tone_relief};
 use crate::kernels::lines::flow_dog_two_dimensional::Stepping;
 use crate::kernels::shared::edge_threshold::{Threshold, Xdog};
 use crate::kernels::shared::stream::{Integrator, STRETCH};
@@ -31,7 +31,7 @@ use crate::stages::structure_tensor::of_color_and_guides;
 use crate::stages::tensor_options::TensorOptions;
 use crate::stages::{
     ADVANCED, LOOK, difference_of_gaussians as dog, flow_map, line_context, line_integral_convolution as lic,
-    line_on_dark, lines, marks, tone,
+    line_on_dark, lines, marks, paper, tone,
 };
 use isophote_engine::{Class, ImageId, math};
 
@@ -47,7 +47,7 @@ pub static NODE: NodeSpec = NodeSpec {
           them. What is light and empty stays bare paper. \
           Normals, depth and object ids, where given, draw lines of their own.",
     section: "4.3-4.5",
-    inputs: &[ports::COLOR, flow_dog::NORMAL, flow_dog::DEPTH, flow_dog::OBJECT_ID, ports::REST_POSITION],
+    inputs: &[ports::COLOR, flow_dog::NORMAL, flow_dog::DEPTH, flow_dog::OBJECT_ID, ports::REST_POSITION, ports::PAPER, ports::HATCHING],
     output: ports::color_output("The drawing."),
     own_params: &[
         Param::choice("style", "Medium", Style::Ink.selected())
@@ -172,6 +172,10 @@ const OPEN: f32 = 0.72;
 /// hatches bend, pixels of the full-size picture.
 const WIDER: f32 = 5.0;
 const RELIEF: f32 = 12.0;
+
+/// Standard deviation of the window in which given hatching covers what its tone is, pixels of the full-size picture: some of
+/// its strokes.
+const DRAWN: f32 = 16.0;
 
 /// Factor by which guides count more than where lightness is inhibited: here it counts in full, and light grounds are
 /// far from ink.
@@ -320,19 +324,35 @@ fn toned(scope: &mut Scope<'_>, drawing: &Preset, [lab, form]: [ImageId; 2]) -> 
     if drawing.rubbed >= 1.0 {
         // Nothing is hatched, and what is rubbed in everywhere is not lifted out.
         let tones = tone_relief::pass(scope.plan, lab, lab);
-        let inputs = Inputs { tones, tensor: form, strokes: along, crossing: along, hatching: None };
+        let inputs = Inputs { tones, tensor: form, strokes: along, crossing: along, hatching: Hatching::Own };
         return tone_marks::pass(scope.plan, &inputs, &rules);
     }
-    let wider = gentle(scope, form, WIDER * scale);
-    let across = tensor_across::pass(scope.plan, wider);
-    let [width, length] = drawing.stroke;
-    let (crossing, _) = strokes(scope, across, [width, length * CROSSING], STRETCH);
     let smeared = dragged(scope, lab, form, drawing.smear * scale);
     let relief = gaussian_blur::pass_colour(scope.plan, lab, RELIEF * scale);
     let tones = tone_relief::pass(scope.plan, smeared, relief);
-    let hatching = marks::hatching(scope, HATCHING, drawing.spacing, scope.renewed(301));
+    let hatching = hatching(scope, drawing);
+    let crossing = if matches!(hatching, Hatching::Tones(_)) { along } else { crossing(scope, drawing, form) };
     let inputs = Inputs { tones, tensor: form, strokes: along, crossing, hatching };
     tone_marks::pass(scope.plan, &inputs, &rules)
+}
+
+/// Strokes across the form.
+fn crossing(scope: &mut Scope<'_>, drawing: &Preset, form: ImageId) -> ImageId {
+    let wider = gentle(scope, form, WIDER * scope.scale());
+    let across = tensor_across::pass(scope.plan, wider);
+    let [width, length] = drawing.stroke;
+    strokes(scope, across, [width, length * CROSSING], STRETCH).0
+}
+
+/// Hatches of a drawing: those that are given, else those that move with things, else its own.
+fn hatching(scope: &mut Scope<'_>, drawing: &Preset) -> Hatching {
+    if let Some(given) = scope.input(ports::HATCHING.id) {
+        let tones = hatching_tones::pass(scope.plan, given);
+        let around = gaussian_blur::pass(scope.plan, tones, DRAWN * scope.scale(), Class::Field);
+        return Hatching::Tones([tones, around]);
+    }
+    let noise = marks::hatching(scope, HATCHING, drawing.spacing, scope.renewed(301));
+    noise.map_or(Hatching::Own, Hatching::Noise)
 }
 
 /// Rules by which tones become marks, with strokes of a standard deviation.
@@ -382,7 +402,8 @@ fn found(scope: &mut Scope<'_>, drawing: &Preset, flow: &FlowDog) -> [ImageId; 3
 fn steady(scope: &mut Scope<'_>, drawing: &Preset, flow: &FlowDog) -> [ImageId; 5] {
     let by = Agreement::lab(COLOUR_AGREEMENT);
     let wide = drawing.wide * scope.scale();
-    if scope.input(ports::REST_POSITION.id).is_some() && scope.int(HOLD.id) == 0 {
+    let is_given = scope.input(ports::HATCHING.id).is_some();
+    if scope.input(ports::REST_POSITION.id).is_some() && scope.int(HOLD.id) == 0 && !is_given {
         let [smooth, tensor, edges, marks] = steadied(scope, by, |scope| {
             let [smooth, tensor, edges] = found(scope, drawing, flow);
             let form = gentle(scope, tensor, wide);
@@ -417,5 +438,7 @@ fn build(scope: &mut Scope<'_>) -> ImageId {
     // Where all grain is the paper's, none of it is read.
     let strokes = if drawing.follow > 0.0 { strokes(scope, form, drawing.stroke, 1.0).0 } else { tinted };
     let sheet = sheet(scope, &drawing);
-    ink_sheet::pass(scope.plan, &Drawing { lines, color: tinted, strokes, marks, tones: toned }, &sheet)
+    let paper = paper::given(scope);
+    let drawing = Drawing { lines, color: tinted, strokes, marks, tones: toned, paper };
+    ink_sheet::pass(scope.plan, &drawing, &sheet)
 }

@@ -13,8 +13,8 @@ use crate::stages::control::Control;
 use crate::stages::steady::{Agreement, COLOUR_AGREEMENT, steadied};
 use crate::stages::tensor_options::TensorOptions;
 use crate::stages::{
-    ADVANCED, LOOK, abstraction, line_integral_convolution as lic, marks, morphology, quantize_luminance,
-    tone,
+    ADVANCED, LOOK, abstraction, line_integral_convolution as lic, marks, morphology, paper,
+    quantize_luminance, tone,
 };
 use isophote_engine::ImageId;
 
@@ -30,7 +30,7 @@ pub static NODE: NodeSpec = NodeSpec {
           backruns (Bousseau et al. 2006); wet places bleed, and dry ones leave gaps and bare grain (Montesdeoca et \
           al. 2017). The darkest wash keeps some paper, and the lights are paper.",
     section: "1.2, 5.1",
-    inputs: &[ports::COLOR, ports::REST_POSITION],
+    inputs: &[ports::COLOR, ports::REST_POSITION, ports::PAPER],
     output: ports::color_output("The watercolour."),
     own_params: &[
         Param::float("mark_size", "Mark size", 2.5, [0.1, 10.0])
@@ -161,7 +161,8 @@ fn build(scope: &mut Scope<'_>) -> ImageId {
     // Of two Gaussians, one after the other, the squares of the widths add up.
     let further = (bleeding * bleeding - edge * edge).max(0.0).sqrt();
     let wide = gaussian_blur::pass_colour(scope.plan, blurred, further);
-    let drawn = Drawn { color, blurred, wide };
+    let (clouds, paper) = (marks::clouds(scope, CLOUDS), paper::given(scope));
+    let drawn = Drawn { color, blurred, wide, clouds, paper };
     let wash = Wash {
         scale,
         pigment: scope.float("pigment") * DARKEST,
@@ -176,8 +177,7 @@ fn build(scope: &mut Scope<'_>) -> ImageId {
         dry: scope.float("dry_brush"),
         backruns: scope.float("backruns") * MOST_BACKRUNS,
     };
-    let clouds = marks::clouds(scope, CLOUDS);
-    let painted = watercolor_wash::pass(scope.plan, &drawn, clouds, &wash);
+    let painted = watercolor_wash::pass(scope.plan, &drawn, &wash);
     Control::of(scope).diluted(scope.plan, painted)
 }
 

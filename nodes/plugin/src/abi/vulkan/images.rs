@@ -111,7 +111,7 @@ impl Given {
         let (wanted, lowest) = match input.kind() {
             ImageKind::Color => (3, Samples::Unsigned),
             ImageKind::Normal => (4, Samples::Signed),
-            ImageKind::Control | ImageKind::Flow => (4, Samples::Unsigned),
+            ImageKind::Control | ImageKind::Hatching | ImageKind::Flow => (4, Samples::Unsigned),
             ImageKind::Position => (4, Samples::Float),
             ImageKind::Motion => (2, Samples::Float),
             ImageKind::Depth | ImageKind::ObjectId => (1, Samples::Float),

@@ -1,0 +1,58 @@
+//! Paper and hatching of a run, laid over its pictures.
+//!
+//! They lie on the display window from its corner, as large as their pixels on 1080 lines, so that frames of any size show the
+//! same sheet.
+
+use std::sync::{Mutex, PoisonError};
+
+use isophote_pictures::exr::Picture;
+use isophote_pictures::material::{Material, REFERENCE, tiled};
+use isophote_pictures::meaning::{Alpha, Meaning};
+use isophote_pictures::pixels::Pixels;
+use isophote_pictures::space::Space;
+
+/// A material that lies on all pictures of a run.
+#[derive(Debug)]
+pub struct Laid {
+    material: Material,
+    /// Space that somebody names for the pictures.
+    space: Option<Space>,
+    /// The tile of the pictures before, with its scale and the meaning of its numbers.
+    tile: Mutex<Option<([f64; 2], Meaning, Pixels)>>,
+}
+
+impl Laid {
+    /// A material on pictures whose numbers mean what `space` names, or what their files say.
+    pub fn new(material: Material, space: Option<Space>) -> Self {
+        Self { material, space, tile: Mutex::default() }
+    }
+
+    /// Lays it over a picture.
+    pub fn lay(&self, picture: &mut Picture) {
+        let (id, pixels) = (self.material.kind().guide().id(), self.over(picture));
+        picture.guides.retain(|(name, _)| *name != id);
+        picture.guides.push((id, pixels));
+    }
+
+    /// The material over all pixels of a picture, in its colours.
+    fn over(&self, picture: &Picture) -> Pixels {
+        let window = picture.window();
+        let display = picture.meaning.display.unwrap_or(window);
+        let scale = display.height as f64 / REFERENCE;
+        let scale = [scale / f64::from(picture.meaning.pixel_aspect), scale];
+        let meaning = picture.meaning.clone().named(self.space);
+        let is_premultiplied = meaning.is_premultiplied();
+        let alpha = if is_premultiplied { Alpha::Premultiplied } else { Alpha::Straight };
+        let meaning = Meaning { alpha, data: None, display: None, ..meaning };
+        let corner = [i64::from(window.x) - i64::from(display.x), i64::from(window.y) - i64::from(display.y)];
+        let size = (window.width as u32, window.height as u32);
+        let mut kept = self.tile.lock().unwrap_or_else(PoisonError::into_inner);
+        if let Some((.., tile)) = kept.as_ref().filter(|(of, mean, _)| (of, mean) == (&scale, &meaning)) {
+            return tiled(tile, size, corner);
+        }
+        let tile = self.material.scaled(scale, &meaning);
+        let over = tiled(&tile, size, corner);
+        *kept = Some((scale, meaning, tile));
+        over
+    }
+}
