@@ -14,6 +14,7 @@ mod draft;
 mod film;
 mod look_files;
 mod looks;
+mod materials;
 mod memory;
 mod preferences;
 mod quirks;
@@ -113,6 +114,7 @@ const OF_EVERY_EFFECT: &[OfAnEffect] = named! {
     describe::describing_is_the_same_every_time_and_stands_refused_properties,
     looks::looks_of_a_style_come_first_in_its_page,
     looks::choosing_a_look_sets_the_controls_in_one_step,
+    materials::materials_of_any_size_are_tiled,
     memory::an_8k_frame_fits_into_4_gib,
     quirks::rows_may_run_downwards_be_padded_and_begin_anywhere,
     quirks::hosts_that_lack_what_can_be_lacked_get_their_pictures,

@@ -267,6 +267,26 @@ fn sorted(labels: &[String]) -> Vec<&String> {
     sorted
 }
 
+/// Clips of the effect for looks in the general context.
+const CLIPS: [&str; 16] = [
+    "Source",
+    "Output",
+    "Mask",
+    "Normal",
+    "Depth",
+    "Motion",
+    "MotionForward",
+    "RestPosition",
+    "ObjectId",
+    "Flow",
+    "Albedo",
+    "Diffuse",
+    "Specular",
+    "Control",
+    "Paper",
+    "Hatching",
+];
+
 pub fn the_effect_for_looks_shows_all_that_ships(binary: &Binary) {
     let host = Host::new(Behaviour::default());
     let layout = Layout::default();
@@ -294,28 +314,7 @@ pub fn the_effect_for_looks_shows_all_that_ships(binary: &Binary) {
         assert_eq!(with_param(&shown, "reload", |kind, _| kind == kOfxParamTypePushButton), Some(true));
         assert_eq!(with_param(&shown, "times_read", |_, set| set.int(kOfxParamPropSecret)), Some(Some(1)));
     }
-    let clips = described.in_context(CONTEXTS[1]).clip_names();
-    assert_eq!(
-        clips,
-        [
-            "Source",
-            "Output",
-            "Mask",
-            "Normal",
-            "Depth",
-            "Motion",
-            "MotionForward",
-            "RestPosition",
-            "ObjectId",
-            "Flow",
-            "Albedo",
-            "Diffuse",
-            "Specular",
-            "Control",
-            "Paper",
-            "Hatching"
-        ]
-    );
+    assert_eq!(described.in_context(CONTEXTS[1]).clip_names(), CLIPS);
     let instance = in_host(&host, binary, LOOK_EFFECT, CONTEXTS[0]);
     let shown = described.in_context(CONTEXTS[0]);
     let options =

@@ -238,22 +238,6 @@ fn everywhere(color: [f32; 4]) -> Vec<u8> {
     color.map(f32::to_ne_bytes).concat().repeat((WIDTH * HEIGHT) as usize)
 }
 
-/// Columns and rows of a tile.
-const TILE: [i32; 2] = [13, 7];
-
-/// A tile with a dark corner, and the picture that it fills when it is laid from the lower left corner on.
-fn tile(dark: f32) -> (Vec<u8>, Vec<u8>) {
-    let pixel = |x: i32, y: i32| {
-        let value = if x < 6 && y < 3 { dark } else { 1.0 };
-        [value, value, 1.0, 1.0].map(f32::to_ne_bytes).concat()
-    };
-    let places = |width: i32, height: i32| (0..height).flat_map(move |y| (0..width).map(move |x| (x, y)));
-    let small = places(TILE[0], TILE[1]).flat_map(|(x, y)| pixel(x, y)).collect();
-    let lowest = HEIGHT - TILE[1];
-    let laid = |(x, y): (i32, i32)| pixel(x.rem_euclid(TILE[0]), (y - lowest).rem_euclid(TILE[1]));
-    (small, places(WIDTH, HEIGHT).flat_map(laid).collect())
-}
-
 /// Clips of colours of surfaces and their light: half of the picture's, and a third.
 fn layers_of(color: &[u8], layout: &Layout) -> [(&'static str, Vec<u8>); 3] {
     [("Albedo", 0.9), ("Diffuse", 0.5), ("Specular", 0.3)].map(|(clip, share)| {
@@ -289,13 +273,6 @@ pub fn object_numbers_and_painted_flow_enter_in_the_general_context(binary: &Bin
         instance.connect(clip, Picture::packed_in(layout, WIDTH, HEIGHT, pixels));
         graph.connect_input(input, first, input.id()).unwrap();
         inputs.push((input.id(), pixels, layout));
-    }
-    let materials = [("Paper", GraphInput::Paper, 0.9), ("Hatching", GraphInput::Hatching, 0.0)];
-    let materials = materials.map(|(clip, input, dark)| (clip, input, tile(dark)));
-    for (clip, input, (small, whole)) in materials.iter().filter(|(clip, ..)| has(clip)) {
-        instance.connect(clip, Picture::packed_in(layout, TILE[0], TILE[1], small));
-        graph.connect_input(*input, first, input.id()).unwrap();
-        inputs.push((input.id(), whole, layout));
     }
     let layers = layers_of(&color, &layout);
     let has_layers = has("Albedo");

@@ -3,7 +3,7 @@
 
 use std::f64::consts::TAU;
 
-use super::{SIDE, Shipped};
+use super::shipped::{SIDE, Shipped};
 use crate::random::Random;
 
 /// The hatchings.

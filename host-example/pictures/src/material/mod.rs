@@ -3,10 +3,14 @@
 
 mod hatchings;
 mod papers;
+mod shipped;
 mod surface;
 
 use std::path::Path;
 
+pub use self::shipped::Shipped;
+
+use self::shipped::SIDE;
 use crate::convert::Conversion;
 use crate::exr::{Guide, Selection};
 use crate::meaning::Meaning;
@@ -15,9 +19,6 @@ use crate::read;
 use crate::resize::resized;
 use isophote_files::error::{Error, Result};
 
-/// Pixels across and down of a material that ships.
-pub(crate) const SIDE: usize = 512;
-
 /// Height of pictures over which materials lie as large as they are, pixels.
 pub const REFERENCE: f64 = 1080.0;
 
@@ -25,23 +26,13 @@ pub const REFERENCE: f64 = 1080.0;
 /// would be needed.
 const LARGE: u32 = 2048;
 
-/// MaterialKind of material.
+/// Kind of material.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum MaterialKind {
     /// Paper: colours, and a grain of what is lighter and darker.
     Paper,
     /// Hatching: up to four tones, a channel each, 1 where they leave paper.
     Hatching,
-}
-
-/// A material that ships.
-#[derive(Clone, Copy, Debug)]
-pub struct Shipped {
-    /// Name by which it is chosen.
-    pub name: &'static str,
-    /// What it is, for people.
-    pub doc: &'static str,
-    made: fn() -> Vec<u8>,
 }
 
 /// A material: a tile whose right border meets its left one, and its lower border the upper one.
@@ -79,7 +70,7 @@ impl MaterialKind {
     /// [`Error::Input`] for files that cannot be read, and for hatching without marks.
     pub fn open(self, name: &Path) -> Result<Material> {
         match self.named(name) {
-            Some(shipped) => Ok(shipped.material(self)),
+            Some(shipped) => Ok(Material::of(self, shipped)),
             None => self.read(name),
         }
     }
@@ -120,18 +111,16 @@ impl MaterialKind {
     }
 }
 
-impl Shipped {
-    /// The material itself.
-    pub fn material(&self, kind: MaterialKind) -> Material {
+impl Material {
+    /// One that ships.
+    pub fn of(kind: MaterialKind, shipped: &Shipped) -> Self {
         let (side, channels) = (SIDE as u32, if kind == MaterialKind::Paper { 3 } else { 4 });
-        let made = Pixels::new(side, side, channels, Samples::U8((self.made)()));
+        let made = Pixels::new(side, side, channels, Samples::U8((shipped.made)()));
         // As many samples as the side says.
         let pixels = made.unwrap_or_else(|| Pixels::zeroed(side, side, channels, Precision::U8));
-        Material { kind, pixels, meaning: Meaning::display() }
+        Self { kind, pixels, meaning: Meaning::display() }
     }
-}
 
-impl Material {
     /// The kind that it is.
     pub fn kind(&self) -> MaterialKind {
         self.kind
@@ -257,7 +246,7 @@ mod tests {
     #[test]
     fn tones_of_hatchings_that_ship_cover_what_they_should_and_hold_the_lighter_ones() {
         for shipped in MaterialKind::Hatching.shipped() {
-            let pixels = shipped.material(MaterialKind::Hatching).pixels;
+            let pixels = Material::of(MaterialKind::Hatching, shipped).pixels;
             for (tone, share) in tones(&pixels).into_iter().zip([0.14, 0.31, 0.52, 0.76]) {
                 assert!((1.0 - tone - share).abs() < 0.015, "{}: {tone} for {share}", shipped.name);
             }
@@ -274,7 +263,7 @@ mod tests {
     fn borders_of_what_ships_meet_at_any_size() {
         for kind in MaterialKind::ALL {
             for shipped in kind.shipped() {
-                let material = shipped.material(kind);
+                let material = Material::of(kind, shipped);
                 // Scaled, one of a kind stands for all.
                 let is_first = shipped.name == kind.shipped()[0].name;
                 for size in [1.0, 1.3333, 0.37].into_iter().take(if is_first { 3 } else { 1 }) {

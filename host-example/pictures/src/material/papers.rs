@@ -2,8 +2,8 @@
 
 use std::f64::consts::TAU;
 
+use super::shipped::{SIDE, Shipped};
 use super::surface::{cellular, lit, noise};
-use super::{SIDE, Shipped};
 use crate::random::Random;
 
 /// The papers.

@@ -1,6 +1,6 @@
 //! Surfaces of tiles: noise whose period is the tile's side, and heights in the light of a low sun.
 
-use super::SIDE;
+use super::shipped::SIDE;
 
 /// Smooth noise in cells of about `cell` pixels, of which whole numbers fit the tile, 0..=1.
 pub(super) fn noise(cell: f64, seed: u32) -> impl Fn(f64, f64) -> f64 {

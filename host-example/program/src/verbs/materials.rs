@@ -8,7 +8,7 @@ use clap::{Args, ValueHint};
 use super::shared::{ForceArgs, QuietArgs};
 use isophote_files::error::Result;
 use isophote_files::{files, output};
-use isophote_pictures::material::{MaterialKind, Shipped};
+use isophote_pictures::material::{Material, MaterialKind, Shipped};
 use isophote_pictures::read::Source;
 use isophote_pictures::write::{self, Format, Options};
 
@@ -62,7 +62,7 @@ fn write_all(args: &MaterialsArgs, folder: &Path) -> Result<()> {
         files::check_writable(&path(kind, shipped), existing)?;
     }
     for (kind, shipped) in all() {
-        let material = shipped.material(kind);
+        let material = Material::of(kind, shipped);
         let (pixels, meaning) = (material.pixels().clone(), material.meaning());
         let source = Source::alone(pixels.clone(), meaning.clone());
         let format = (Format::Png, Options::default());

@@ -127,13 +127,7 @@ fn sheet<S: Simd>(simd: S, pass: &CpuPass<'_>, params: &Params, band: &mut Band<
                 let [r, g, b, depth] = block.read(simd, given);
                 ([r, g, b], depth)
             } else {
-                let (gx, gy) = (x * params.grain_frequency, y * params.grain_frequency);
-                let tooth = even(
-                    noise(simd, gx, gy, 11) * 0.45
-                        + noise(simd, gx * 2.13, gy * 2.13, 1013) * 0.25
-                        + noise(simd, gx * 0.31, gy * 0.31, 2027) * 0.3,
-                );
-                ([(tooth - 0.5) * params.texture_amount + 1.0; 3], tooth)
+                own_paper(simd, [x * params.grain_frequency, y * params.grain_frequency], params)
             };
             let [r, g, b, a] = block.read(simd, source);
             let alpha = a.within(zero, one);
@@ -174,6 +168,17 @@ fn sheet<S: Simd>(simd: S, pass: &CpuPass<'_>, params: &Params, band: &mut Band<
             write([r, g, b, if params.bare != 0 { covered } else { sheet }], target);
         },
     );
+}
+
+/// The sheet's own paper: its light, and the depth of its grain, at a place in cells of it.
+#[inline(always)]
+fn own_paper<S: Simd>(simd: S, [x, y]: [f32x8<S>; 2], params: &Params) -> ([f32x8<S>; 3], f32x8<S>) {
+    let tooth = even(
+        noise(simd, x, y, 11) * 0.45
+            + noise(simd, x * 2.13, y * 2.13, 1013) * 0.25
+            + noise(simd, x * 0.31, y * 0.31, 2027) * 0.3,
+    );
+    ([(tooth - 0.5) * params.texture_amount + 1.0; 3], tooth)
 }
 
 /// Noise whose values fill 0..=1.
