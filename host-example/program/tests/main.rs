@@ -43,6 +43,7 @@ mod view_files;
 mod view_frames;
 mod view_life;
 mod view_looks;
+mod view_materials;
 mod view_panel;
 mod view_previews;
 mod view_screens;
