@@ -41,7 +41,8 @@ def tiled(image: Any, name: str, size: tuple[int, ...]) -> Array:
     if name not in MATERIALS or array.shape[:2] == size or 0 in array.shape:
         return array
     rows, columns = (np.arange(length) % own for length, own in zip(size, array.shape[:2]))
-    return array[rows[:, np.newaxis], columns]
+    laid: Array = array[rows[:, np.newaxis], columns]
+    return laid
 
 
 def _format(dtype: np.dtype[Any], what: str) -> np.dtype[Any]:

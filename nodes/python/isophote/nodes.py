@@ -12,7 +12,7 @@ from typing import Any
 
 from ._catalogue import Node, Param, catalogue
 from ._inputs import Array
-from .style import GUIDES, apply
+from .style import GUIDES, Style, apply
 
 __all__ = list(catalogue())
 
@@ -32,8 +32,15 @@ def __dir__() -> list[str]:
 
 
 def _function(node: Node) -> Callable[..., Array]:
+    # A parameter may have the name of a guide that the node does not read.
+    namesakes = {param.id for param in node.params} & set(GUIDES)
+
     def function(image: Any, /, **arguments: Any) -> Array:
-        return apply(node.id, image, **arguments)
+        if not namesakes & set(arguments):
+            return apply(node.id, image, **arguments)
+        own = {param.id for param in node.params} | {"precision"}
+        style = Style(node.id, **{name: value for name, value in arguments.items() if name in own})
+        return apply(style, image, **{name: value for name, value in arguments.items() if name not in own})
 
     function.__name__ = function.__qualname__ = node.id
     function.__module__ = __name__

@@ -18,6 +18,7 @@ def blueprint(
     depth: Any = None,
     object_id: Any = None,
     rest_position: Any = None,
+    paper: Any = None,
     mask: Any = None,
     flow: Any = None,
     motion: Any = None,
@@ -78,6 +79,8 @@ def blueprint(
         object_id: Object numbers; borders between objects draw lines.
         rest_position: Points of the undeformed objects, in any unit and 32 bits a channel: the
             wobble of lines moves with things. It is read where `wobble` is above 0.
+        paper: A sheet of paper in the place of the style's own: its colours, and its grain, which
+            is deep where it is darker than what is around it. It stays on the screen.
         mask: How much of the result is used, 0..=1, times `mix`; all of it when open.
         flow: A flow map (see `flow_map`) that bends the orientation which the node follows, if it
             follows any.
@@ -693,6 +696,7 @@ def watercolor(
     /,
     *,
     rest_position: Any = None,
+    paper: Any = None,
     mask: Any = None,
     flow: Any = None,
     motion: Any = None,
@@ -748,6 +752,8 @@ def watercolor(
         image: The picture.
         rest_position: Points of the undeformed objects, in any unit and 32 bits a channel: marks
             move with things, and keep their size on screen.
+        paper: A sheet of paper in the place of the style's own: its colours, and its grain, which
+            is deep where it is darker than what is around it. It stays on the screen.
         mask: How much of the result is used, 0..=1, times `mix`; all of it when open.
         flow: A flow map (see `flow_map`) that bends the orientation which the node follows, if it
             follows any.
@@ -837,6 +843,8 @@ def ink(
     depth: Any = None,
     object_id: Any = None,
     rest_position: Any = None,
+    paper: Any = None,
+    hatching: Any = None,
     mask: Any = None,
     flow: Any = None,
     motion: Any = None,
@@ -908,6 +916,11 @@ def ink(
         object_id: Object numbers; borders between objects draw lines.
         rest_position: Points of the undeformed objects, in any unit and 32 bits a channel: marks
             move with things, and keep their size on screen.
+        paper: A sheet of paper in the place of the style's own: its colours, and its grain, which
+            is deep where it is darker than what is around it. It stays on the screen.
+        hatching: Hatching in the place of the style's own, in up to four tones: the lightest in
+            red, then green, blue and alpha; 1 is paper, 0 is ink. A channel that is no darker than
+            the one before is no tone. It stays on the screen.
         mask: How much of the result is used, 0..=1, times `mix`; all of it when open.
         flow: A flow map (see `flow_map`) that bends the orientation which the node follows, if it
             follows any.

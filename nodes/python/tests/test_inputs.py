@@ -215,7 +215,7 @@ def test_materials_of_any_size_are_tiled(small):
     tiled = isophote.apply("watercolor", small, paper=paper)
     assert np.array_equal(tiled, isophote.apply("watercolor", small, paper=whole))
     assert not np.array_equal(tiled, isophote.apply("watercolor", small))
-    with pytest.raises(isophote.Error):
+    with pytest.raises(isophote.errors.IsophoteError):
         isophote.apply("watercolor", small, control=paper)
 
 

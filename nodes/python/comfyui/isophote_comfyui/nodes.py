@@ -110,7 +110,7 @@ def _of_node(node: isophote.Node) -> type[_Stylizes]:
             return _inputs({param.id: widget(param) for param in node.params}, tuple(port.id for port in node.inputs))
 
         def stylize(self, image: Any, **values: Any) -> tuple[Any]:
-            guides = {name: values.pop(name, None) for name in _GUIDES}
+            guides = {port.id: values.pop(port.id, None) for port in node.inputs if port.id in _GUIDES}
             return (stylized(node.id, changed(node.params, values), image, guides),)
 
     OfNode.__name__ = OfNode.__qualname__ = node.id
