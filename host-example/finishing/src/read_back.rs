@@ -22,6 +22,8 @@ pub struct ReadBack {
     processor: Processor,
     /// The last frame that was drawn at the end, and those before that it depends on.
     frames: VecDeque<Drawn>,
+    /// Paper and hatching that all frames lie on.
+    materials: Vec<(&'static str, Pixels)>,
 }
 
 /// A frame in main memory.
@@ -39,7 +41,13 @@ impl ReadBack {
     /// As [`Processor::new`].
     pub fn new(library: &Library, style: Style) -> Result<Self> {
         let processor = Processor::new(library, style)?;
-        Ok(Self { library: library.clone(), processor, frames: VecDeque::new() })
+        Ok(Self { library: library.clone(), processor, frames: VecDeque::new(), materials: Vec::new() })
+    }
+
+    /// The same on materials of the frames' size.
+    #[must_use]
+    pub fn with_materials(self, materials: Vec<(&'static str, Pixels)>) -> Self {
+        Self { materials, ..self }
     }
 
     /// Frames before its own that a frame depends on.
@@ -105,7 +113,8 @@ impl ReadBack {
         let request = isophote_loader::abi::IsophoteRequest { frame: own.number, ..usual };
         let image = |name: &str, number: i64| {
             let frame = self.frames.iter().find(|frame| frame.number == number)?;
-            frame.images.iter().find(|(known, _)| *known == name).map(|(_, pixels)| pixels.image())
+            let mut images = frame.images.iter().chain(&self.materials);
+            images.find(|(known, _)| *known == name).map(|(_, pixels)| pixels.image())
         };
         let mut control = Control { progress: Some(progress), ..Control::default() };
         let pixels = self.processor.process(&request, &image, &mut control)?.ok_or_else(nothing)?;

@@ -3,6 +3,7 @@
 use std::f32::consts::TAU;
 
 use crate::apply::backend::Backend;
+use crate::apply::materials;
 use crate::read_back::ReadBack;
 use crate::stylize::Stylizer;
 use crate::stylize::style::Style;
@@ -12,6 +13,8 @@ use isophote_files::error::Result;
 use isophote_loader::Library;
 use isophote_pictures::exr::MadeMatte;
 use isophote_pictures::floats::Picture;
+use isophote_pictures::material::Material;
+use isophote_pictures::pixels::Pixels;
 use isophote_render::background::Background;
 use isophote_render::gpu::Gpu;
 use isophote_render::lighting::Lighting;
@@ -21,6 +24,7 @@ use isophote_render::targets::{Target, Targets};
 use isophote_scene::Scene;
 use isophote_scene::camera::{Direction, Framing, Orbit, View, Viewpoint};
 use isophote_scene::pose::Pose;
+use wgpu::util::DeviceExt;
 
 /// Samples of a pixel that a Cryptomatte is made of, a power of 2.
 const SAMPLES: u32 = 16;
@@ -60,6 +64,8 @@ pub struct Options {
     pub layers: bool,
     /// Backend that the style runs on; the renderer's device may be a driver that computes on the CPU.
     pub backend: Backend,
+    /// Paper and hatching of the style.
+    pub materials: Vec<Material>,
 }
 
 /// A scene on a graphics device of its own.
@@ -131,11 +137,16 @@ impl Shot {
         let finish = match style {
             None => Finish::Plain,
             Some((library, style)) if options.backend.is_cpu(gpu.is_software()) => {
-                Finish::Cpu(Box::new(ReadBack::new(library, style)?))
+                let materials = materials::on_frame(&options.materials, options.size);
+                Finish::Cpu(Box::new(ReadBack::new(library, style)?.with_materials(materials)))
             }
             Some((library, style)) => {
                 let kernels = Kernels::new(gpu.device.clone(), gpu.queue.clone());
-                Finish::Device(Box::new(Stylizer::new(&kernels, library, style, options.size)?))
+                let materials = materials::on_frame(&options.materials, options.size);
+                let materials =
+                    materials.iter().map(|(name, pixels)| (*name, uploaded(&gpu, pixels))).collect();
+                let stylizer = Stylizer::on_materials(&kernels, library, style, options.size, materials)?;
+                Finish::Device(Box::new(stylizer))
             }
         };
         if options.rest_positions || finish.wants_rest_positions()? {
@@ -321,4 +332,25 @@ fn viewpoint(options: &Options, scene: &Scene) -> Viewpoint {
         return Viewpoint { node: None, orbit: Orbit::turntable(scene, aspect, options.framing) };
     }
     Viewpoint { node: options.camera, orbit: Orbit::framing(scene, aspect, options.framing) }
+}
+
+/// A picture of RGBA as a texture.
+fn uploaded(gpu: &Gpu, pixels: &Pixels) -> wgpu::TextureView {
+    let size = wgpu::Extent3d { width: pixels.width(), height: pixels.height(), depth_or_array_layers: 1 };
+    let texture = gpu.device.create_texture_with_data(
+        &gpu.queue,
+        &wgpu::TextureDescriptor {
+            label: Some("material"),
+            size,
+            mip_level_count: 1,
+            sample_count: 1,
+            dimension: wgpu::TextureDimension::D2,
+            format: wgpu::TextureFormat::Rgba32Float,
+            usage: wgpu::TextureUsages::TEXTURE_BINDING,
+            view_formats: &[],
+        },
+        wgpu::util::TextureDataOrder::LayerMajor,
+        bytemuck::cast_slice(&pixels.to_f32()),
+    );
+    texture.create_view(&wgpu::TextureViewDescriptor::default())
 }

@@ -45,7 +45,7 @@ pub struct Cli {
 #[derive(Debug, Subcommand)]
 enum Command {
     /// Renders a glTF or OBJ scene to PNG or EXR frames.
-    Render(render::RenderArgs),
+    Render(Box<render::RenderArgs>),
     /// Gives a picture, a sequence of frames or a video a style.
     Apply(Box<apply::ApplyArgs>),
     /// Opens a picture, a sequence, a video or a scene in a window with all styles and their controls.

@@ -113,6 +113,36 @@ fn what_ships_is_taken_by_name_and_written_as_files() {
 }
 
 #[test]
+fn rendered_frames_lie_on_materials_on_the_cpu_and_on_a_device() {
+    let folder = folder();
+    support::cube(folder.path());
+    let rendered = |out: &str, options: &[&str]| {
+        let mut command = isophote();
+        command.current_dir(folder.path()).args(["render", "cube.gltf", out, "--size", "160x120", "--style"]);
+        succeeds(command.args(options));
+        read(&folder.path().join(out))
+    };
+    for (style, material) in [("ink", ["--hatching", "pen"]), ("watercolor", ["--paper", "kraft"])] {
+        let on = |backend: &str| {
+            rendered(
+                &format!("{style}_{backend}.png"),
+                &[style, "--backend", backend, material[0], material[1]],
+            )
+        };
+        let plain = rendered(&format!("{style}.png"), &[style, "--backend", "cpu"]);
+        let distance = |a: &[u8], b: &[u8]| {
+            a.iter().zip(b).map(|(a, b)| f64::from(a.abs_diff(*b))).sum::<f64>() / a.len() as f64
+        };
+        let (cpu, device) = (on("cpu"), on("gpu"));
+        assert!(distance(&cpu, &device) < 0.5, "{style}: {}", distance(&cpu, &device));
+        assert!(distance(&cpu, &plain) > 3.0, "{style}: {}", distance(&cpu, &plain));
+    }
+    let mut refused = isophote();
+    let run = ["render", "cube.gltf", "none.png", "--style", "cartoon", "--paper", "kraft"];
+    fails(refused.current_dir(folder.path()).args(run), 2, &["--paper", "no paper of its own"]);
+}
+
+#[test]
 fn materials_that_cannot_be_used_say_why() {
     let folder = folder();
     let at = |name: &str| folder.path().join(name);

@@ -11,6 +11,16 @@ use isophote_pictures::meaning::{Alpha, Meaning};
 use isophote_pictures::pixels::Pixels;
 use isophote_pictures::space::Space;
 
+/// Materials over a frame of a renderer, whose colours are linear light of Rec.709, by the names of guides.
+pub fn on_frame(materials: &[Material], size: (u32, u32)) -> Vec<(&'static str, Pixels)> {
+    let scale = f64::from(size.1) / REFERENCE;
+    let over = |material: &Material| {
+        let tile = material.scaled([scale; 2], &Meaning::light());
+        (material.kind().guide().id(), tiled(&tile, size, [0; 2]))
+    };
+    materials.iter().map(over).collect()
+}
+
 /// A material that lies on all pictures of a run.
 #[derive(Debug)]
 pub struct Laid {

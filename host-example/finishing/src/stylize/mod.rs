@@ -32,6 +32,8 @@ pub struct Stylizer {
     style: Style,
     frames: FrameRunner,
     edited: bool,
+    /// Paper and hatching beside what the renderer has.
+    materials: Vec<(&'static str, wgpu::TextureView)>,
 }
 
 impl Stylizer {
@@ -56,7 +58,24 @@ impl Stylizer {
         request: IsophoteRequest,
     ) -> Result<Self> {
         let frames = FrameRunner::new(kernels, library, style.named(), request)?;
-        Ok(Self { style, frames, edited: false })
+        Ok(Self { style, frames, edited: false, materials: Vec::new() })
+    }
+
+    /// As [`Stylizer::new`], on materials of the frames' size.
+    ///
+    /// # Errors
+    /// As [`Stylizer::new`].
+    pub fn on_materials(
+        kernels: &Arc<Kernels>,
+        library: &Library,
+        style: Style,
+        size: (u32, u32),
+        materials: Vec<(&'static str, wgpu::TextureView)>,
+    ) -> Result<Self> {
+        let usual = frame_request(library, &style, size)?;
+        let bits = library.guide_bits(materials.iter().map(|(name, _)| *name)).map_err(refused)?;
+        let request = IsophoteRequest { guides: usual.guides | bits, ..usual };
+        Ok(Self { materials, ..Self::with_request(kernels, library, style, request)? })
     }
 
     /// Frames before its own that a frame depends on.
@@ -195,7 +214,9 @@ impl Stylizer {
     }
 
     fn bind_with(&mut self, color: &Target, targets: &Targets) -> Result<()> {
-        self.frames.bind(&guides::inputs(color, targets))
+        let mut inputs = guides::inputs(color, targets).to_vec();
+        inputs.extend(self.materials.iter().map(|(name, view)| (*name, view)));
+        self.frames.bind(&inputs)
     }
 
     /// Records passes of the style on a frame, [all](isophote_example::plan_runner::ALL) or some; says whether the last is

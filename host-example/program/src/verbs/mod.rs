@@ -7,6 +7,7 @@ pub mod colours;
 pub mod documents;
 pub mod farm;
 pub mod info;
+mod material_args;
 pub mod materials;
 pub mod nodes;
 mod painted;

@@ -7,7 +7,8 @@ use clap::{Args, ValueHint};
 use isophote_finishing::apply::filter::MaskedStyle;
 use isophote_finishing::apply::painted::{PAINTED, Painted};
 use isophote_pictures::exr::Guide;
-use isophote_pictures::material::MaterialKind;
+
+use super::material_args::MaterialArgs;
 
 /// Maps that artists paint, and their materials.
 #[derive(Clone, Debug, Default, Args)]
@@ -21,14 +22,8 @@ pub struct PaintedArgs {
     /// and alpha of 1 everywhere is none.
     #[arg(long, value_name = "FILE", value_hint = ValueHint::FilePath)]
     pub control: Option<PathBuf>,
-    /// Paper to draw or paint on: a picture, tiled over the frame, or one that ships, such as cold_press (see `isophote materials`).
-    /// It is as large as its pixels on 1080 lines; what is darker than around it is deep.
-    #[arg(long, value_name = "FILE|NAME", value_hint = ValueHint::FilePath)]
-    pub paper: Option<PathBuf>,
-    /// Hatching to draw tones with: a picture, tiled over the frame, or one that ships, such as pen (see `isophote materials`). Up
-    /// to four tones, the lightest in red, then green, blue and alpha; white is paper.
-    #[arg(long, value_name = "FILE|NAME", value_hint = ValueHint::FilePath)]
-    pub hatching: Option<PathBuf>,
+    #[command(flatten)]
+    pub materials: MaterialArgs,
 }
 
 impl PaintedArgs {
@@ -41,20 +36,11 @@ impl PaintedArgs {
         PAINTED.iter().filter_map(|painted| Some((painted, path(painted)?))).collect()
     }
 
-    /// Names and files of the materials that there are.
-    pub fn materials(&self) -> Vec<(MaterialKind, &Path)> {
-        let named = |kind| match kind {
-            MaterialKind::Paper => self.paper.as_deref(),
-            MaterialKind::Hatching => self.hatching.as_deref(),
-        };
-        MaterialKind::ALL.into_iter().filter_map(|kind| Some((kind, named(kind)?))).collect()
-    }
-
     /// The maps and materials that there are, that of rules for things included.
     pub fn guides_of(&self, looks: &[MaskedStyle]) -> Vec<Guide> {
         let mut guides: Vec<Guide> = self.paths().into_iter().map(|(painted, _)| painted.guide).collect();
         let has_rules = looks.iter().any(|look| !look.style.objects.is_empty());
-        guides.extend(self.materials().into_iter().map(|(kind, _)| kind.guide()));
+        guides.extend(self.materials.named().into_iter().map(|(kind, _)| kind.guide()));
         if has_rules && !guides.contains(&Guide::Control) {
             guides.push(Guide::Control);
         }

@@ -60,11 +60,8 @@ impl ApplyArgs {
             MaskSource::File(path) => Some(path.as_path()),
             MaskSource::Layer(_) | MaskSource::Mattes(_) | MaskSource::Ids(_) => None,
         });
-        let materials = self.painted.materials();
-        // Those that ship are no files.
         let material = |wanted: MaterialKind| {
-            let found = materials.iter().find(|(kind, name)| *kind == wanted && !wanted.ships(name));
-            found.map(|(_, path)| *path)
+            self.painted.materials.files().find(|(kind, _)| *kind == wanted).map(|(_, path)| path)
         };
         let others = [
             (

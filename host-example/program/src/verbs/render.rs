@@ -5,6 +5,7 @@ use std::path::{Path, PathBuf};
 
 use clap::Args;
 
+use super::material_args::MaterialArgs;
 use super::shared::{
     ForceArgs, LengthArgs, PaletteArgs, PrecisionArgs, QuietArgs, SceneArgs, is_folder, parse_size,
 };
@@ -94,6 +95,8 @@ pub struct RenderArgs {
     #[command(flatten)]
     palette: PaletteArgs,
     #[command(flatten)]
+    materials: MaterialArgs,
+    #[command(flatten)]
     lengths: LengthArgs,
     /// Processor that the style is computed on; the scene itself is drawn by the graphics driver.
     #[arg(long, value_enum, default_value_t)]
@@ -133,7 +136,8 @@ pub fn run(args: &RenderArgs) -> Result<()> {
     }
     let scene = args.scene.load()?;
     args.check_scene(&scene)?;
-    let options = args.options(&scene)?;
+    let materials = args.materials.open(&style.iter().map(|(_, style)| style).collect::<Vec<_>>())?;
+    let options = Options { materials, ..args.options(&scene)? };
     let mut shot = Shot::new(scene, style, options)?;
     files::sweep(&args.out);
     let stop = Stop::on_signals();
@@ -236,7 +240,8 @@ impl RenderArgs {
         let read = || {
             let named = [Some(self.scene.scene.clone()), self.scene.reading.texture.clone()];
             let more = [self.staging.surroundings(), Some(self.style.clone()), self.palette.palette.clone()];
-            Ok(Inputs::of(named.into_iter().chain(more).flatten()))
+            let materials = self.materials.files().map(|(_, file)| file.to_owned());
+            Ok(Inputs::of(named.into_iter().chain(more).flatten().chain(materials)))
         };
         self.consent().check(&made, is_sequence, read)
     }
@@ -324,7 +329,8 @@ impl RenderArgs {
         let steadiness = self.steadiness.map(|s| format!("--steadiness {s}"));
         let palette = self.palette.palette.as_ref().map(|file| format!("--palette {}", file.display()));
         let setting = self.set.first().map(|setting| format!("--set {setting}"));
-        let setting = setting.or(palette).or(steadiness);
+        let material = self.materials.named().first().map(|(kind, _)| format!("--{}", kind.guide().id()));
+        let setting = setting.or(palette).or(material).or(steadiness);
         if let (true, Some(setting)) = (!self.is_stylized(), setting) {
             return Err(Error::input(
                 setting,
@@ -365,6 +371,7 @@ impl RenderArgs {
             // They are light of the scene.
             layers: is_exr && !self.tone_mapped && !self.no_light,
             backend: self.backend,
+            materials: Vec::new(),
         })
     }
 }

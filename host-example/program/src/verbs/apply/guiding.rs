@@ -1,5 +1,6 @@
 //! Guides, masks and motion of a run of `isophote apply`: which a style can use, and which were found.
 
+use super::super::material_args::must_follow;
 use super::ApplyArgs;
 use isophote_files::error::{Error, Result};
 use isophote_files::frames::Pattern;
@@ -14,24 +15,6 @@ use isophote_finishing::stylize::preset;
 use isophote_loader::Library;
 use isophote_pictures::exr::{Guide, MaskSource, Selection};
 use isophote_pictures::read::Opened;
-
-/// Makes sure that one of the looks takes a guide.
-///
-/// # Errors
-/// [`Error::Input`] with this problem where none does.
-fn must_follow(looks: &[MaskedStyle], guide: Guide, problem: &str) -> Result<()> {
-    let id = guide.id();
-    for look in looks {
-        if look.style.takes(id)? {
-            return Ok(());
-        }
-    }
-    Err(Error::input(
-        format!("--{id}"),
-        problem,
-        format!("choose another style, or connect @{id} in its graph"),
-    ))
-}
 
 impl ApplyArgs {
     /// Guides that are looked for.
@@ -76,16 +59,13 @@ impl ApplyArgs {
     /// # Errors
     /// As [`Masks::new`]; [`Error::Input`] for a map that no style would follow.
     pub(super) fn maps(&self, choices: &[MaskChoice], looks: &[MaskedStyle]) -> Result<Masks> {
-        let (paths, materials) = (self.painted.paths(), self.painted.materials());
+        let (paths, styles) =
+            (self.painted.paths(), looks.iter().map(|look| &look.style).collect::<Vec<_>>());
         for (painted, _) in &paths {
-            must_follow(looks, painted.guide, &format!("the style follows no {}", painted.name))?;
+            must_follow(&styles, painted.guide, &format!("the style follows no {}", painted.name))?;
         }
-        let mut laid = Vec::new();
-        for (kind, name) in materials {
-            let guide = kind.guide();
-            must_follow(looks, guide, &format!("the style has no {} of its own to replace", guide.id()))?;
-            laid.push(Laid::new(kind.open(name)?, self.space));
-        }
+        let laid = |material| Laid::new(material, self.space);
+        let laid = self.painted.materials.open(&styles)?.into_iter().map(laid).collect();
         let rules = looks.iter().flat_map(|look| &look.style.objects).map(|rule| rule.control);
         let masks = Masks::new(choices, self.mask_from.as_deref(), self.on_unknown)?;
         Ok(masks.with_maps(&paths)?.with_materials(laid).with_rules(rules.collect()))
