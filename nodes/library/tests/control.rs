@@ -9,12 +9,7 @@ const SIZE: [i32; 2] = [192, 96];
 const NEUTRAL: [f32; 4] = [0.5; 4];
 
 fn picture(value: impl Fn(i32, i32) -> [f32; 4]) -> Image {
-    let mut image = Image::new(SIZE[0] as u32, SIZE[1] as u32, 4).unwrap();
-    for (at, pixel) in image.data_mut().chunks_exact_mut(4).enumerate() {
-        let at = at as i32;
-        pixel.copy_from_slice(&value(at % SIZE[0], at / SIZE[0]));
-    }
-    image
+    result::picture(SIZE, value)
 }
 
 /// Bars from top to bottom, sharp ones and faint ones, the same in both halves of the picture.

@@ -7,12 +7,7 @@ use isophote::engine::Image;
 const SIZE: [i32; 2] = [160, 120];
 
 fn picture(value: impl Fn(i32, i32) -> [f32; 4]) -> Image {
-    let mut image = Image::new(SIZE[0] as u32, SIZE[1] as u32, 4).unwrap();
-    for (at, pixel) in image.data_mut().chunks_exact_mut(4).enumerate() {
-        let at = at as i32;
-        pixel.copy_from_slice(&value(at % SIZE[0], at / SIZE[0]));
-    }
-    image
+    result::picture(SIZE, value)
 }
 
 fn grey(value: f32) -> Image {
@@ -39,7 +34,7 @@ fn lines(x: i32, every: i32, wide: i32) -> f32 {
 fn hatching_covers_what_the_tone_asks_for_however_it_is_drawn() {
     // A twelfth, a quarter, a half and three quarters; a grey file that is one tone; tones that are out of order.
     let tones = picture(|x, _| [lines(x, 12, 1), lines(x, 12, 3), lines(x, 12, 6), lines(x, 12, 9)]);
-    let one = picture(|x, _| [lines(x, 5, 2); 4].map(|v| if x < 0 { 0.0 } else { v }));
+    let one = picture(|x, _| [lines(x, 5, 2); 4]);
     let odd = picture(|x, y| [lines(x, 6, 3), lines(y, 6, 1), lines(x + y, 8, 5), 1.0]);
     for level in [0.15, 0.3, 0.42, 0.55] {
         let color = grey(level);

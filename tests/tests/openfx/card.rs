@@ -1,7 +1,6 @@
 //! Effects on a graphics card, by a device of the library's own.
 
 use super::reference::*;
-use isophote::ColourSpace;
 use isophote_abi::openfx::*;
 use isophote_abi::{ISOPHOTE_PRECISION_EXACT, ISOPHOTE_PRECISION_HALF};
 use isophote_tests::device;
@@ -38,14 +37,7 @@ pub fn every_effect_equals_the_c_table_on_a_device(binary: &Binary, effect: Expe
     let (graph, layout) = (effect.graph(false), Layout::default());
     let instance = instance(&host, effect.plugin(binary));
     let source = source(layout, false);
-    let through = Through {
-        graph: &graph,
-        size: SIZE,
-        scale: 1.0,
-        space: ColourSpace::Srgb,
-        premultiplied: true,
-        reference_height: 0,
-    };
+    let through = Through::of(&graph, SIZE);
     for (option, precision) in [(0, ISOPHOTE_PRECISION_EXACT), (1, ISOPHOTE_PRECISION_HALF)] {
         instance.set("precision", option);
         let got = instance.render(layout, SIZE).packed();

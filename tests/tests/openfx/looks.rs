@@ -58,14 +58,7 @@ pub fn wanted(graph: &Graph, layout: Layout) -> Vec<u8> {
 
 /// The same for lengths that are meant at 1080 lines, as `apply` has them, of a picture that is a proxy of 1080.
 fn wanted_at_1080(graph: &Graph, picture: &Picture) -> Vec<u8> {
-    let through = Through {
-        graph,
-        size: LARGE,
-        scale: 1.0,
-        space: ColourSpace::Srgb,
-        premultiplied: true,
-        reference_height: 1080,
-    };
+    let through = Through { reference_height: 1080, ..Through::of(graph, LARGE) };
     through.c(&[("color", &picture.packed(), picture.layout)], picture.layout)
 }
 

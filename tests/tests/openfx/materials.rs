@@ -49,14 +49,7 @@ pub fn materials_of_any_size_are_tiled(binary: &Binary, effect: Expected) {
         let (small, whole) = tile(dark);
         instance.connect(clip, Picture::packed_in(layout, TILE[0], TILE[1], &small));
         let got = instance.render(layout, SIZE).packed();
-        let reference = Through {
-            graph: &graph,
-            size: SIZE,
-            scale: 1.0,
-            space: ColourSpace::Srgb,
-            premultiplied: true,
-            reference_height: 0,
-        };
+        let reference = Through::of(&graph, SIZE);
         let inputs = [("color", color.as_slice(), layout), (input.id(), &whole, layout)];
         assert!(got == reference.c(&inputs, layout), "{} {clip}", effect.node.id);
         assert!(

@@ -113,6 +113,14 @@ pub struct Through<'a> {
     pub reference_height: u32,
 }
 
+impl<'a> Through<'a> {
+    /// Full-size sRGB, multiplied by alpha, whose lengths are pixels.
+    pub fn of(graph: &'a Graph, size: [i32; 2]) -> Self {
+        let (scale, space, reference_height) = (1.0, ColourSpace::Srgb, 0);
+        Self { graph, size, scale, space, premultiplied: true, reference_height }
+    }
+}
+
 /// A device of the C table's that computes, and how precisely.
 #[derive(Clone, Copy, Default)]
 pub struct On {

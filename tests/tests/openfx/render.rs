@@ -21,12 +21,9 @@ const COMPONENTS: [&CStr; 3] = [kOfxImageComponentRGBA, kOfxImageComponentRGB, k
 /// Result of the C table for a picture.
 pub fn through(graph: &isophote::Graph, source: &Picture, layout: Layout, space: ColourSpace) -> Vec<u8> {
     let through = Through {
-        graph,
-        size: SIZE,
-        scale: 1.0,
         space,
         premultiplied: layout.alpha != Some(kOfxImageUnPreMultiplied),
-        reference_height: 0,
+        ..Through::of(graph, SIZE)
     };
     through.c(&[("color", &source.packed(), layout)], layout)
 }
@@ -211,15 +208,7 @@ pub fn guides_enter_in_the_general_context(binary: &Binary, effect: Expected) {
     if let Ok(tensor) = graph.find("t") {
         graph.set_text(tensor, "guide_weight", "1").unwrap();
     }
-    let wanted = Through {
-        graph: &graph,
-        size: SIZE,
-        scale: 1.0,
-        space: ColourSpace::Srgb,
-        premultiplied: true,
-        reference_height: 0,
-    }
-    .c(
+    let wanted = Through::of(&graph, SIZE).c(
         &[
             ("color", &source.packed(), layout),
             ("normal", &normals, layout),
@@ -283,15 +272,7 @@ pub fn object_numbers_and_painted_flow_enter_in_the_general_context(binary: &Bin
         inputs.push((input.id(), layer, layout));
     }
     let got = instance.render(layout, SIZE).packed();
-    let wanted = Through {
-        graph: &graph,
-        size: SIZE,
-        scale: 1.0,
-        space: ColourSpace::Srgb,
-        premultiplied: true,
-        reference_height: 0,
-    }
-    .c(&inputs, layout);
+    let wanted = Through::of(&graph, SIZE).c(&inputs, layout);
     assert!(got == wanted, "{}", effect.plugin(binary).identifier());
     assert!(
         !(has_layers || has("Control") || has("Paper"))

@@ -8,6 +8,15 @@ use isophote::{ColourSpace, Graph, Planned, Request};
 /// Images by the names of inputs, all of one size.
 pub type Inputs<'a> = &'a [(&'static str, &'a Image)];
 
+/// A picture of RGBA from the places of its pixels.
+pub fn picture([width, height]: [i32; 2], value: impl Fn(i32, i32) -> [f32; 4]) -> Image {
+    let mut image = Image::new(width as u32, height as u32, 4).unwrap();
+    for (at, pixel) in (0..).zip(image.data_mut().chunks_exact_mut(4)) {
+        pixel.copy_from_slice(&value(at % width, at / width));
+    }
+    image
+}
+
 /// The result of a node with these settings, in full size; inputs that it does not read are left out.
 pub fn of(node: &str, settings: &[(&str, &str)], space: ColourSpace, inputs: Inputs<'_>) -> Image {
     let (width, height) = (inputs[0].1.width(), inputs[0].1.height());
