@@ -47,7 +47,15 @@ pub static NODE: NodeSpec = NodeSpec {
           them. What is light and empty stays bare paper. \
           Normals, depth and object ids, where given, draw lines of their own.",
     section: "4.3-4.5",
-    inputs: &[ports::COLOR, flow_dog::NORMAL, flow_dog::DEPTH, flow_dog::OBJECT_ID, ports::REST_POSITION, ports::PAPER, ports::HATCHING],
+    inputs: &[
+        ports::COLOR,
+        flow_dog::NORMAL,
+        flow_dog::DEPTH,
+        flow_dog::OBJECT_ID,
+        ports::REST_POSITION,
+        ports::PAPER,
+        ports::HATCHING,
+    ],
     output: ports::color_output("The drawing."),
     own_params: &[
         Param::choice("style", "Medium", Style::Ink.selected())
@@ -331,7 +339,8 @@ fn toned(scope: &mut Scope<'_>, drawing: &Preset, [lab, form]: [ImageId; 2]) -> 
     let relief = gaussian_blur::pass_colour(scope.plan, lab, RELIEF * scale);
     let tones = tone_relief::pass(scope.plan, smeared, relief);
     let hatching = hatching(scope, drawing);
-    let crossing = if matches!(hatching, Hatching::Tones(_)) { along } else { crossing(scope, drawing, form) };
+    let crossing =
+        if matches!(hatching, Hatching::Tones(_)) { along } else { crossing(scope, drawing, form) };
     let inputs = Inputs { tones, tensor: form, strokes: along, crossing, hatching };
     tone_marks::pass(scope.plan, &inputs, &rules)
 }
