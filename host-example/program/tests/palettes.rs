@@ -55,13 +55,20 @@ fn results_have_exactly_the_colours_of_the_file() {
         { "name": "soft", "node": "gaussian", "inputs": { "color": "@color" } },
         { "name": "flat", "node": "palette", "inputs": { "color": "soft" } } ] }"#;
     fs::write(folder.join("graph.json"), graph).unwrap();
+    // Its node's name is taken.
+    let soft = r#"{ "format": "isophote-graph", "version": 1, "output": "palette", "nodes": [
+        { "name": "palette", "node": "gaussian", "inputs": { "color": "@color" } } ] }"#;
+    fs::write(folder.join("soft.json"), soft).unwrap();
     fs::write(folder.join("layers.json"), r#"[{ "style": "cartoon" }, { "style": "palette" }]"#).unwrap();
-    let cases: [&[&str]; 5] = [
+    let cases: [&[&str]; 8] = [
         &["palette", "in.png", "out.png", "--palette", "three.gpl"],
         &["palette", "in.png", "out.png", "--palette", "three.hex", "--set", "dither=bayer"],
         &["palette", "in.png", "out.png", "--palette", "three.png"],
         &["graph.json", "in.png", "out.png", "--palette", "three.gpl"],
         &["--layered", "layers.json", "in.png", "out.png", "--palette", "three.gpl"],
+        &["cartoon", "in.png", "out.png", "--palette", "three.gpl", "--set", "line_width=3"],
+        &["ink", "in.png", "out.png", "--palette", "three.gpl", "--set", "palette.dither=bayer"],
+        &["soft.json", "in.png", "out.png", "--palette", "three.gpl"],
     ];
     for case in cases {
         let (_, warnings) = succeeds(&mut program(folder, &[&["apply"], case].concat()));
@@ -71,6 +78,22 @@ fn results_have_exactly_the_colours_of_the_file() {
     let by_hand = ["--set", "color_1=#000000", "--set", "count=2"];
     succeeds(&mut program(folder, &[&["apply"], cases[0], &by_hand].concat()));
     assert_eq!(colours(folder, "out.png"), BTreeSet::from([[0; 3], THREE[1]]));
+}
+
+#[test]
+fn what_a_mask_leaves_out_keeps_its_colours() {
+    let folder = folder();
+    let folder = folder.path();
+    let run = ["apply", "cartoon", "in.png", "out.png", "--palette", "three.gpl", "--mask", "mask.png"];
+    let mut command = program(folder, &run);
+    let mask = image::GrayImage::from_fn(64, 48, |x, _| image::Luma([if x < 32 { 255 } else { 0 }]));
+    mask.save(folder.join("mask.png")).unwrap();
+    succeeds(&mut command);
+    let [before, after] = ["in.png", "out.png"].map(|name| image::open(folder.join(name)).unwrap().to_rgb8());
+    for (x, y, pixel) in after.enumerate_pixels() {
+        let is_kept = pixel == before.get_pixel(x, y);
+        assert!(if x < 32 { THREE.contains(&pixel.0) } else { is_kept }, "{x} {y}: {pixel:?}");
+    }
 }
 
 #[test]
@@ -161,8 +184,8 @@ fn what_cannot_be_is_refused_with_advice() {
     fs::write(folder.join("words.txt"), "red and blue").unwrap();
     let cases: [(&[&str], &[&str]); 8] = [
         (
-            &["apply", "cartoon", "in.png", "out.png", "--palette", "three.gpl"],
-            &["--palette: the style cartoon draws with no palette", "choose the style palette"],
+            &["apply", "flow_dog", "in.png", "out.png", "--palette", "three.gpl"],
+            &["--palette: the style flow_dog draws with no palette", "choose the style palette"],
         ),
         (&["apply", "palette", "in.png", "out.png", "--palette", "handheld"], &["--set palette=handheld"]),
         (&["apply", "palette", "in.png", "out.png", "--palette", "none.gpl"], &["none.gpl: cannot be read"]),

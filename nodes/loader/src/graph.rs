@@ -111,6 +111,16 @@ impl Graph {
         self.check(status)
     }
 
+    /// Makes the output of a node that of the graph.
+    ///
+    /// # Errors
+    /// [`Error`](crate::Error) when there is no such node.
+    pub fn set_output(&mut self, node: u32) -> Result<()> {
+        // SAFETY: the handle is this object's.
+        let status = unsafe { (self.api.graph_set_output)(self.handle, node) };
+        self.check(status)
+    }
+
     /// Its number.
     pub const fn handle(&self) -> GraphHandle {
         GraphHandle(self.handle)

@@ -2,10 +2,12 @@
 
 use std::path::Path;
 
+use serde_json::Value;
+
 use super::style::{Setting, Style};
 use isophote_files::error::{AtPlace, Error, Result};
-use isophote_loader::Library;
-use isophote_loader::catalogue::{Choice, Node, Param, ParamKind};
+use isophote_loader::catalogue::{Choice, Kind, Node, Param, ParamKind};
+use isophote_loader::{Graph, Library};
 use isophote_pictures::palette::{self, Palette, Wanted, hex};
 
 /// Id of the node, and of its choice of a palette.
@@ -54,8 +56,8 @@ fn ships(node: &Node, path: &Path) -> bool {
 }
 
 impl Style {
-    /// Makes the style of `name` as [`Style::load`] does, with the colours of a palette where there is one. Settings come
-    /// after them.
+    /// Makes the style of `name` as [`Style::load`] does, with the colours of a palette where there is one: a style that has
+    /// no node for it gets one at its end. Settings come after them.
     ///
     /// # Errors
     /// As [`Style::load`] and [`Style::colour_by`].
@@ -66,10 +68,18 @@ impl Style {
         settings: &[Setting],
     ) -> Result<Self> {
         let Some(palette) = palette else { return Self::load(library, name, settings) };
-        let style = Self::load(library, name, &[])?;
+        let mut style = Self::load(library, name, &[])?;
+        style.end_in_palette()?;
         style.colour_by(palette)?;
         settings.iter().try_for_each(|setting| style.set(setting))?;
         Ok(style)
+    }
+
+    /// Draws its result by a node `palette` of its own, where it has none and yields colours.
+    fn end_in_palette(&mut self) -> Result<()> {
+        let is_masked = self.takes("mask")?;
+        let Self { graph, name, kind, .. } = self;
+        end_in_palette(graph, *kind, is_masked).map_err(|e| e.at(name, FIX))
     }
 
     /// Gives its nodes `palette` the colours of a palette.
@@ -110,4 +120,29 @@ impl Style {
         }
         Ok(settings)
     }
+}
+
+/// Draws the result of a graph by a node `palette`, where it has none and yields colours.
+fn end_in_palette(graph: &mut Graph, kind: Kind, is_masked: bool) -> isophote_loader::Result<()> {
+    let (mut names, mut has_node) = (Vec::new(), false);
+    for node in 0..graph.count() {
+        names.push(graph.name(node)?);
+        has_node |= graph.spec(node)?.id == NODE;
+    }
+    if kind != Kind::Color || has_node {
+        return Ok(());
+    }
+    let json: Value = serde_json::from_str(&graph.to_json()?).unwrap_or_default();
+    let output = names.iter().position(|name| json["output"] == name.as_str()).unwrap_or_default();
+    let mut own = NODE.to_owned();
+    while names.contains(&own) {
+        own.push('_');
+    }
+    let node = graph.add(&own, NODE)?;
+    graph.connect(output as u32, node, "color")?;
+    // What a mask leaves out keeps its own colours.
+    if is_masked {
+        graph.connect_input("mask", node)?;
+    }
+    graph.set_output(node)
 }

@@ -80,8 +80,9 @@ pub struct PrecisionArgs {
 /// Colours that a style draws with.
 #[derive(Args, Clone, Debug)]
 pub struct PaletteArgs {
-    /// A file whose colours the style palette draws with: a palette (.gpl of GIMP, .hex, .ase, .aco, .pal or .json), or a
-    /// picture, such as a strip of colours or a photograph. What --set says of them comes after.
+    /// A file whose colours the result has and no others: a palette (.gpl of GIMP, .hex, .ase, .aco, .pal or .json), or a
+    /// picture, such as a strip of colours or a photograph. A style without the node palette gets one at its end; --set
+    /// palette.dither=bayer and the like say how it draws.
     #[arg(long, value_name = "FILE", value_hint = ValueHint::FilePath)]
     pub palette: Option<PathBuf>,
     /// Number of colours that are taken from the palette or found in the picture [default: all of a palette, 8 of a photograph].
