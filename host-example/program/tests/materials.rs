@@ -45,8 +45,11 @@ fn a_file_of_any_size_is_tiled_as_large_as_on_1080_lines() {
     let pixels =
         |channels, bytes| Pixels::new(SIZE.0, SIZE.1, channels, Samples::U8(bytes)).expect("as many");
     let color = pixels(3, input.into_raw());
-    let tile =
-        MaterialKind::Paper.open(&at("paper.png")).expect("a picture").scaled([0.05; 2], &Meaning::display());
+    let tile = MaterialKind::Paper.open(&at("paper.png")).expect("a picture").scaled(
+        [0.05; 2],
+        &Meaning::display(),
+        [i64::MAX; 2],
+    );
     assert_eq!((tile.width(), tile.height()), (11, 7));
     let paper = material::tiled(&tile, SIZE, [0; 2]);
     let inputs = [Input { name: "color", pixels: &color }, Input { name: "paper", pixels: &paper }];

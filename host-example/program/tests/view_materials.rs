@@ -69,7 +69,8 @@ fn materials_are_chosen_and_lie_on_the_picture() {
     let shipped =
         MaterialKind::Hatching.shipped().iter().find(|shipped| shipped.name == "pen").expect("it ships");
     let scale = f64::from(SIZE.1) / 1080.0;
-    let tile = Material::of(MaterialKind::Hatching, shipped).scaled([scale; 2], &Meaning::display());
+    let tile =
+        Material::of(MaterialKind::Hatching, shipped).scaled([scale; 2], &Meaning::display(), [i64::MAX; 2]);
     assert_eq!((hatching.channels, &hatching.data), (4, &tiled(&tile, SIZE, [0; 2]).to_f32()));
     assert_eq!(frame.guide(Guide::Paper).map(|paper| paper.data.len()), Some(16 * 11 * 4));
     harness.state_mut().take_over(Outcome::Opened(Opened::Again(Box::new(playback))));

@@ -15,10 +15,22 @@ use isophote_pictures::space::Space;
 pub fn on_frame(materials: &[Material], size: (u32, u32)) -> Vec<(&'static str, Pixels)> {
     let scale = f64::from(size.1) / REFERENCE;
     let over = |material: &Material| {
-        let tile = material.scaled([scale; 2], &Meaning::light());
+        let most = [size.0, size.1].map(i64::from);
+        let tile = material.scaled([scale; 2], &Meaning::light(), most);
         (material.kind().guide().id(), tiled(&tile, size, [0; 2]))
     };
     materials.iter().map(over).collect()
+}
+
+/// Tile of the pictures before.
+#[derive(Debug)]
+struct Tile {
+    scale: [f64; 2],
+    /// Meaning of its numbers.
+    meaning: Meaning,
+    /// Columns and rows from its corner on that are there, at least.
+    most: [i64; 2],
+    pixels: Pixels,
 }
 
 /// A material that lies on all pictures of a run.
@@ -27,8 +39,7 @@ pub struct Laid {
     material: Material,
     /// Space that somebody names for the pictures.
     space: Option<Space>,
-    /// The tile of the pictures before, with its scale and the meaning of its numbers.
-    tile: Mutex<Option<([f64; 2], Meaning, Pixels)>>,
+    tile: Mutex<Option<Tile>>,
 }
 
 impl Laid {
@@ -56,13 +67,17 @@ impl Laid {
         let meaning = Meaning { alpha, data: None, display: None, ..meaning };
         let corner = [i64::from(window.x) - i64::from(display.x), i64::from(window.y) - i64::from(display.y)];
         let size = (window.width as u32, window.height as u32);
+        // What lies left of the corner or above it, or frames that move, need all of the tile.
+        let ends = [corner[0] + window.width as i64, corner[1] + window.height as i64];
+        let most = if corner == [0; 2] { ends } else { [i64::MAX; 2] };
         let mut kept = self.tile.lock().unwrap_or_else(PoisonError::into_inner);
-        if let Some((.., tile)) = kept.as_ref().filter(|(of, mean, _)| (of, mean) == (&scale, &meaning)) {
-            return tiled(tile, size, corner);
+        let is_same = |of: &Tile| (of.scale, &of.meaning, of.most) == (scale, &meaning, most);
+        if let Some(tile) = kept.as_ref().filter(|tile| is_same(tile)) {
+            return tiled(&tile.pixels, size, corner);
         }
-        let tile = self.material.scaled(scale, &meaning);
-        let over = tiled(&tile, size, corner);
-        *kept = Some((scale, meaning, tile));
+        let pixels = self.material.scaled(scale, &meaning, most);
+        let over = tiled(&pixels, size, corner);
+        *kept = Some(Tile { scale, meaning, most, pixels });
         over
     }
 }

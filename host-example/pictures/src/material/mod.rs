@@ -136,12 +136,19 @@ impl Material {
         &self.meaning
     }
 
-    /// The material in the colours of a picture, RGBA, at another size: `scale` pixels across and down for one of its own.
-    pub fn scaled(&self, scale: [f64; 2], meaning: &Meaning) -> Pixels {
-        let side = |length: u32, scale: f64| (f64::from(length) * scale).round().clamp(1.0, 16384.0) as u32;
-        let size = (side(self.pixels.width(), scale[0]), side(self.pixels.height(), scale[1]));
-        let is_premultiplied = self.meaning.is_premultiplied();
-        let tile = with_alpha(repeated_around(&self.pixels, size, is_premultiplied));
+    /// The material in the colours of a picture, RGBA, at another size: `scale` pixels across and down for one of its own. Of a
+    /// tile that reaches farther than `most`, what lies there is left out.
+    pub fn scaled(&self, scale: [f64; 2], meaning: &Meaning, most: [i64; 2]) -> Pixels {
+        let own = [self.pixels.width(), self.pixels.height()];
+        let side = |length: u32, axis: usize| (f64::from(length) * scale[axis]).round().max(1.0) as u32;
+        let kept = |axis: usize| {
+            // Some more is read at the end.
+            let seen = ((most[axis] as f64 / scale[axis]).ceil() + 8.0).min(f64::from(own[axis])) as u32;
+            seen.next_multiple_of(whole(own[axis], side(own[axis], axis))).min(own[axis])
+        };
+        let part = [kept(0), kept(1)];
+        let size = [side(part[0], 0), side(part[1], 1)];
+        let tile = with_alpha(scaled_part(&self.pixels, part, size, self.meaning.is_premultiplied()));
         match Conversion::between(&self.meaning, meaning) {
             Some(change) if self.kind == MaterialKind::Paper => change.apply(&tile).0,
             _ => tile,
@@ -160,26 +167,26 @@ impl Material {
     }
 }
 
-/// A tile at another size, whose borders still meet.
-fn repeated_around(tile: &Pixels, size: (u32, u32), is_premultiplied: bool) -> Pixels {
-    let own = (tile.width(), tile.height());
-    if size == own {
-        return tile.clone();
+/// Part of a tile, from its corner on, at another size. All of it has borders that still meet.
+fn scaled_part(tile: &Pixels, part: [u32; 2], size: [u32; 2], is_premultiplied: bool) -> Pixels {
+    if size == part {
+        return tiled(tile, size.into(), [0; 2]);
     }
-    // With so much of its neighbours around it that filters read nothing else: as many pixels as become whole ones.
-    let around = |own: u32, size: u32| {
-        let (read, whole) = (4 * own.div_ceil(size) + 4, own / common_divisor(own, size));
-        if own > LARGE { read } else { read.next_multiple_of(whole) }
+    // With so much of its neighbours around it that filters read nothing else.
+    let around = |axis: usize| {
+        let (own, size) = (part[axis], size[axis]);
+        let more = (4 * own.div_ceil(size) + 4).next_multiple_of(whole(own, size));
+        (more, (f64::from(more) * f64::from(size) / f64::from(own)).round() as u32)
     };
-    let (x, y) = (around(own.0, size.0), around(own.1, size.1));
-    let wide = tiled(tile, (own.0 + 2 * x, own.1 + 2 * y), [-i64::from(x), -i64::from(y)]);
-    let grown = |own: u32, more: u32, size: u32| {
-        let more = (f64::from(more) * f64::from(size) / f64::from(own)).round();
-        (size + 2 * more as u32, more as i64)
-    };
-    let ((width, left), (height, top)) = (grown(own.0, x, size.0), grown(own.1, y, size.1));
-    let scaled = resized(&wide, (width, height), is_premultiplied);
-    tiled(&scaled, size, [left, top])
+    let ((x, left), (y, top)) = (around(0), around(1));
+    let wide = tiled(tile, (part[0] + 2 * x, part[1] + 2 * y), [-i64::from(x), -i64::from(y)]);
+    let scaled = resized(&wide, (size[0] + 2 * left, size[1] + 2 * top), is_premultiplied);
+    tiled(&scaled, size.into(), [left.into(), top.into()])
+}
+
+/// Number of pixels of a side that become a whole number of them when it is made as long as `size`; of long sides a pixel.
+fn whole(own: u32, size: u32) -> u32 {
+    if own > LARGE { 1 } else { own / common_divisor(own, size) }
 }
 
 fn common_divisor(a: u32, b: u32) -> u32 {
@@ -267,7 +274,7 @@ mod tests {
                 // Scaled, one of a kind stands for all.
                 let is_first = shipped.name == kind.shipped()[0].name;
                 for size in [1.0, 1.3333, 0.37].into_iter().take(if is_first { 3 } else { 1 }) {
-                    let tile = material.scaled([size; 2], &Meaning::display());
+                    let tile = material.scaled([size; 2], &Meaning::display(), [i64::MAX; 2]);
                     let (width, height) = (tile.width(), tile.height());
                     let wide = tiled(&tile, (width + 2, height + 2), [-1, -1]);
                     let (values, channels) = (wide.to_f32(), wide.channels() as usize);
@@ -294,10 +301,21 @@ mod tests {
         let pixels = Pixels::new(1, 1, 3, Samples::U8(vec![188, 188, 188])).unwrap();
         let paper =
             Material { kind: MaterialKind::Paper, pixels: pixels.clone(), meaning: Meaning::display() };
-        let light = paper.scaled([1.0; 2], &Meaning::light()).to_f32();
+        let light = paper.scaled([1.0; 2], &Meaning::light(), [1; 2]).to_f32();
         assert!((light[0] - 0.503).abs() < 0.002, "{light:?}");
         let tones = Material { kind: MaterialKind::Hatching, ..paper };
-        assert_eq!(tones.scaled([1.0; 2], &Meaning::light()), with_alpha(pixels));
+        assert_eq!(tones.scaled([1.0; 2], &Meaning::light(), [1; 2]), with_alpha(pixels));
         assert!(!tones.has_marks());
+    }
+
+    #[test]
+    fn of_large_tiles_only_what_is_seen_is_scaled() {
+        let material = Material::of(MaterialKind::Paper, &MaterialKind::Paper.shipped()[0]);
+        for scale in [2.0, 0.73] {
+            let scaled = |most| material.scaled([scale; 2], &Meaning::display(), most);
+            let (part, whole) = (scaled([90, 61]), scaled([i64::MAX; 2]));
+            assert!(part.width() < 200 && part.height() < 200 && whole.width() > 300);
+            assert_eq!(tiled(&part, (90, 61), [0; 2]), tiled(&whole, (90, 61), [0; 2]), "{scale}");
+        }
     }
 }
