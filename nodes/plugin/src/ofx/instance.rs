@@ -132,11 +132,12 @@ pub fn regions_of_interest(
         let prepared = Prepared::new(&known, space, &frame, true, quality).map_err(|_| kOfxStatFailed)?;
         for (input, window) in read_for(&prepared, frame.size(), region) {
             let clip = clip_of(&settings, host, instance, input);
-            // A tile is wanted whole.
+            let window = window.union(&region);
+            // A tile is wanted whole, where it does not reach over all that is read: those of generators have no end.
             let is_tiled = Beyond::of_guide(input) == Beyond::Tiled;
             let tile = clip.filter(|_| is_tiled).and_then(|name| Clip::of(host, instance, name));
             let tile = tile.and_then(|clip| frame.around(&clip.defined(moment.time)?));
-            let window = window.union(&region).union(&tile.unwrap_or_default());
+            let window = window.union(&tile.filter(|tile| !tile.contains(&window)).unwrap_or_default());
             clip.into_iter().for_each(|clip| interest.add(clip, window));
         }
     }
