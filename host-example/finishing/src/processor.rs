@@ -17,6 +17,8 @@ pub struct Processor {
     library: Library,
     style: Style,
     guides: Vec<Guide>,
+    /// True where it takes a mask.
+    takes_mask: bool,
     /// State that is kept of frames of one size, where they depend on each other.
     sequence: Option<((u32, u32), Sequence)>,
 }
@@ -38,7 +40,8 @@ impl Processor {
     /// [`isophote_files::error::Error::Failure`] when the library fails.
     pub fn new(library: &Library, style: Style) -> Result<Self> {
         let guides = style.usable_guides(library)?;
-        Ok(Self { library: library.clone(), style, guides, sequence: None })
+        let takes_mask = style.takes("mask")?;
+        Ok(Self { library: library.clone(), style, guides, takes_mask, sequence: None })
     }
 
     /// The style.
@@ -109,7 +112,8 @@ impl Processor {
     ) -> isophote_loader::Result<()> {
         let (library, style) = (&self.library, &mut self.style);
         let reference_height = style.lengths.reference_height();
-        let names = self.guides.iter().map(|guide| guide.id());
+        let mask = self.takes_mask.then_some("mask");
+        let names = self.guides.iter().map(|guide| guide.id()).chain(mask);
         let own = |name| image(name, request.frame).map(|image| (name, Lent(image)));
         let guides: Vec<(&str, Lent<'_>)> = names.filter_map(own).collect();
         let bits = library.guide_bits(guides.iter().map(|(name, _)| *name))?;

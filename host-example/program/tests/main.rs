@@ -35,6 +35,7 @@ mod video;
 mod video_faults;
 mod view;
 mod view_access;
+mod view_brush;
 mod view_chain;
 mod view_controls;
 mod view_device;

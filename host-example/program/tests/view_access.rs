@@ -29,7 +29,7 @@ const START: [&str; 8] = [
     "link 'photo.png'",
 ];
 /// Controls while a picture is edited.
-const EDITING: [&str; 27] = [
+const EDITING: [&str; 28] = [
     "button 'File'",
     "button 'Undo'",
     "button 'Redo'",
@@ -51,6 +51,7 @@ const EDITING: [&str; 27] = [
     "slider 'Blur'",
     "spin button 'Blur'",
     "toggle button 'Output'",
+    "toggle button 'Brush'",
     "toggle button 'Materials'",
     "toggle button 'Histogram'",
     "slider 'Width of the panel'",

@@ -45,7 +45,7 @@ impl PictureSource {
             let view = checked(&gpu.device, || Ok(texture(gpu, name, size, channels)))?;
             source.textures.push((name, view));
         }
-        source.upload(gpu);
+        source.upload(gpu, None);
         Ok(source)
     }
 
@@ -61,14 +61,45 @@ impl PictureSource {
         if new != self.request || names(frame) != names(&self.frame) {
             return false;
         }
-        self.frame = Arc::clone(frame);
-        self.upload(gpu);
+        let before = std::mem::replace(&mut self.frame, Arc::clone(frame));
+        self.upload(gpu, Some(&before));
         true
     }
 
-    fn upload(&self, gpu: &Gpu) {
-        for ((_, view), (.., data)) in self.textures.iter().zip(inputs(&self.frame)) {
-            write(gpu, view, data);
+    /// The same picture with other maps painted over it, beside this one, of which it has what is the same; nothing where it is
+    /// another picture.
+    ///
+    /// # Errors
+    /// As [`PictureSource::new`].
+    pub fn repainted(&self, gpu: &Gpu, frame: &Arc<Frame>, scale: f32) -> Option<Result<Self>> {
+        if !Arc::ptr_eq(&self.frame.color, &frame.color) {
+            return None;
+        }
+        let request = frame.request_of_all(scale, self.request);
+        let own = |name: &str| self.textures.iter().find(|(known, _)| *known == name);
+        let mut source = Self { frame: Arc::clone(frame), request, textures: Vec::new() };
+        for (name, channels, _) in inputs(frame) {
+            let size = (frame.width, frame.height);
+            let view = match own(name) {
+                Some((_, view)) => Ok(view.clone()),
+                None => checked(&gpu.device, || Ok(texture(gpu, name, size, channels))),
+            };
+            match view {
+                Ok(view) => source.textures.push((name, view)),
+                Err(error) => return Some(Err(error)),
+            }
+        }
+        source.upload(gpu, Some(&self.frame));
+        Some(Ok(source))
+    }
+
+    /// Puts the numbers of the frame on the device, but for those that its textures have from the frame before.
+    fn upload(&self, gpu: &Gpu, before: Option<&Frame>) {
+        for ((_, view), (name, _, data)) in self.textures.iter().zip(inputs(&self.frame)) {
+            let mut known = before.into_iter().flat_map(inputs);
+            if !known.any(|(of, _, numbers)| of == name && std::ptr::eq(numbers, data)) {
+                write(gpu, view, data);
+            }
         }
     }
 
@@ -121,7 +152,8 @@ pub fn numbers(space: IsophoteSpace) -> Numbers {
 /// Inputs that a frame has: names, numbers a pixel, and these.
 fn inputs(frame: &Frame) -> impl Iterator<Item = (&'static str, u32, &[f32])> {
     let guides = frame.guides.iter().map(|image| (image.guide.id(), image.channels, image.data.as_slice()));
-    [("color", 4, frame.color.as_flattened())].into_iter().chain(guides)
+    let mask = frame.mask.iter().map(|mask| ("mask", 1, mask.as_slice()));
+    [("color", 4, frame.color.as_flattened())].into_iter().chain(guides).chain(mask)
 }
 
 /// Writes all numbers of a texture.

@@ -88,14 +88,15 @@ impl Copied {
         let pixels = color.len().max(1);
         let guides = self.guides.iter().map(|(guide, buffer)| {
             let data = buffer.numbers()?;
-            Ok(GuideImage { guide: *guide, channels: (data.len() / pixels) as u32, data })
+            Ok(Arc::new(GuideImage { guide: *guide, channels: (data.len() / pixels) as u32, data }))
         });
         Ok(Frame {
             number: None,
             width: self.size.0,
             height: self.size.1,
             guides: guides.collect::<Result<_>>()?,
-            color,
+            mask: None,
+            color: Arc::new(color),
             request: PictureRequest {
                 space: Space::Linear,
                 is_premultiplied: true,

@@ -156,6 +156,13 @@ impl Sources {
             self.number += 1;
             return false;
         }
+        // What was painted anew is the same picture.
+        if let Some(LookInput::Picture(source)) = &self.present
+            && let Some(Ok(source)) = source.repainted(&self.gpu, frame, scale)
+        {
+            (self.present, self.spare) = (Some(LookInput::Picture(source)), None);
+            return true;
+        }
         // Frames that follow one another take each other's place.
         if frame.number.is_some()
             && let Some(LookInput::Picture(source)) = &mut self.present

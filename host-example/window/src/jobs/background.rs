@@ -123,7 +123,7 @@ impl Background {
             Dialog::Surroundings => self.opener.ask(OpenJob::Surroundings(path)),
             Dialog::Palette => self.opener.ask(OpenJob::Palette(library, path)),
             // The session asks for them.
-            Dialog::Material(_) => {}
+            Dialog::Material(_) | Dialog::OpenMap(_) | Dialog::SaveMap(_) => {}
             Dialog::LookFolder | Dialog::Save | Dialog::Export | Dialog::Several | Dialog::SeveralTo => {}
         }
     }
@@ -149,6 +149,15 @@ impl Background {
                 Request::Open(path) => files.push(path),
                 Request::ChooseLayer(layer, view) => self.open_layer(session, layer, view),
                 Request::ChooseMaterial(kind, name) => self.open_on(session, kind, name),
+                Request::OpenMap(kind, path) => {
+                    let size = session.nominal_size();
+                    self.opener.ask(OpenJob::Map(kind, path, size));
+                }
+                Request::SaveMap(kind, path) => {
+                    let maps = session.open.playback().and_then(|playback| playback.maps().cloned());
+                    let job = maps.map(|maps| OpenJob::SaveMap(kind, path, maps));
+                    job.into_iter().for_each(|job| self.opener.ask(job));
+                }
                 Request::OpenDemo => self.opener.ask(OpenJob::Demo),
                 Request::OpenSample(index) => {
                     if let Some(sample) = SAMPLES.get(index) {

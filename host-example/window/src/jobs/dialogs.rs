@@ -7,6 +7,7 @@ use std::sync::mpsc::{Receiver, Sender, channel};
 use std::sync::{Arc, Once};
 
 use super::worker::Wake;
+use crate::state::command;
 use crate::state::outcome::Dialog;
 use crate::state::saving::Saving;
 use crate::state::session::Session;
@@ -76,12 +77,17 @@ fn proposed(dialog: Dialog, session: &Session) -> (Option<PathBuf>, String) {
             let results = session.dialogs.batch.as_ref().map(|batch| PathBuf::from(batch.folder.trim()));
             results.as_deref().and_then(Path::parent).map(Path::to_owned)
         }
-        Dialog::File | Dialog::Surroundings | Dialog::Palette | Dialog::Material(_) | Dialog::Several => {
-            session.settings.folder.clone()
-        }
+        Dialog::File
+        | Dialog::Surroundings
+        | Dialog::Palette
+        | Dialog::Material(_)
+        | Dialog::OpenMap(_)
+        | Dialog::Several => session.settings.folder.clone(),
+        Dialog::SaveMap(kind) => command::map_file(session, kind).parent().map(Path::to_owned),
     };
     let file = match (dialog, planned) {
         (Dialog::Export, Some(planned)) => planned,
+        (Dialog::SaveMap(kind), _) => command::map_file(session, kind),
         _ => saved.unwrap_or_default(),
     };
     (folder, file.file_name().unwrap_or_default().to_string_lossy().into_owned())
@@ -142,6 +148,12 @@ impl Asked {
             Dialog::Palette => shown.set_title("Colours of a palette or a picture").pick_file(),
             Dialog::Material(MaterialKind::Paper) => shown.set_title("A picture of paper").pick_file(),
             Dialog::Material(MaterialKind::Hatching) => shown.set_title("A picture of hatching").pick_file(),
+            Dialog::OpenMap(kind) => shown.set_title(format!("Open a {}", kind.name())).pick_file(),
+            Dialog::SaveMap(kind) => {
+                let shown = shown.set_title(format!("Save the {}", kind.name())).set_file_name(&self.name);
+                let path = shown.add_filter("PNG", &["png"]).save_file()?;
+                Some(if path.extension().is_some() { path } else { path.with_extension("png") })
+            }
             Dialog::Surroundings => shown
                 .set_title("Surroundings")
                 .add_filter("Pictures of the surroundings", &["hdr", "exr"])

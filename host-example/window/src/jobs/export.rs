@@ -15,7 +15,10 @@ use std::time::Duration;
 
 use serde_json::Value;
 
-use crate::state::document::kind::Kind;
+use super::maps;
+use crate::state::document::kind::Kind as DocumentKind;
+use crate::state::painted::channel::Kind;
+use crate::state::painted::maps::Maps;
 use crate::state::progress::{Progress, State};
 use isophote_files::error::{Error, Result};
 use isophote_files::files;
@@ -30,7 +33,7 @@ const GRACE: Duration = Duration::from_secs(2);
 #[derive(Clone, Debug)]
 pub struct ExportJob {
     /// Kind of the input: scenes are rendered, the others filtered.
-    pub kind: Kind,
+    pub kind: DocumentKind,
     /// The document's path.
     pub input: PathBuf,
     /// More pictures, each by itself, whose results go to a folder as that of the input does.
@@ -45,6 +48,8 @@ pub struct ExportJob {
     pub turntable: bool,
     /// Frames per second of scenes and of sequences that become videos.
     pub rate: f64,
+    /// Maps that are painted over the document.
+    pub maps: Option<Arc<Maps>>,
     /// More options of the verb.
     pub arguments: Vec<OsString>,
     /// The program instead of this one.
@@ -53,7 +58,7 @@ pub struct ExportJob {
 
 impl ExportJob {
     /// The whole of a document into a file, at full resolution and 24 frames a second.
-    pub fn new(kind: Kind, input: &Path, output: &Path, preset: Option<String>) -> Self {
+    pub fn new(kind: DocumentKind, input: &Path, output: &Path, preset: Option<String>) -> Self {
         Self {
             kind,
             input: input.to_owned(),
@@ -63,6 +68,7 @@ impl ExportJob {
             frames: None,
             turntable: false,
             rate: 24.0,
+            maps: None,
             arguments: Vec::new(),
             program: None,
         }
@@ -95,7 +101,7 @@ impl ExportJob {
         };
         let mut command = Command::new(program);
         match self.kind {
-            Kind::Scene => {
+            DocumentKind::Scene => {
                 command.arg("render").arg("--fps").arg(self.rate.to_string());
                 if self.preset.is_some() {
                     command.arg("--style").arg(&preset);
@@ -107,12 +113,19 @@ impl ExportJob {
             _ => {
                 command.arg("apply").arg("--preset").arg(&preset);
                 // Whoever chose the document itself was asked; of a video the sound is read to the end.
-                if self.kind != Kind::Video {
+                if self.kind != DocumentKind::Video {
                     command.arg("--in-place");
                 }
-                if self.kind == Kind::Sequence && video::becomes_video(&self.output) {
+                if self.kind == DocumentKind::Sequence && video::becomes_video(&self.output) {
                     command.arg("--fps").arg(self.rate.to_string());
                 }
+            }
+        }
+        if let Some(maps) = &self.maps {
+            for kind in Kind::ALL.into_iter().filter(|kind| maps.has(*kind)) {
+                let file = folder.join(format!("{}.png", kind.option()));
+                maps::write(kind, maps, &file)?;
+                command.arg(format!("--{}", kind.option())).arg(file);
             }
         }
         if let Some(frames) = &self.frames {
@@ -150,7 +163,7 @@ impl Export {
     /// [`Error::Input`] for jobs without a look that need one, [`Error::Failure`] when the system gives no thread; what else
     /// is wrong is told by [`Export::poll`].
     pub fn start(job: ExportJob) -> Result<Self> {
-        if job.preset.is_none() && job.kind != Kind::Scene {
+        if job.preset.is_none() && job.kind != DocumentKind::Scene {
             return Err(Error::input("the export", "has no look", "choose a style first"));
         }
         let shared = Arc::new(Shared::default());

@@ -68,6 +68,7 @@ fn job(session: &Session, plan: &Plan, file: &Path) -> Result<ExportJob> {
     let mut job = ExportJob::new(plan.kind, file, Path::new(&plan.path), preset_of(session)?);
     let is_turntable = plan.what == What::Turntable;
     (job.frames, job.turntable, job.rate) = (plan.frames(), is_turntable, plan.rate);
+    job.maps = session.open.playback().and_then(|playback| playback.maps().cloned());
     let mut words: Vec<String> = match session.open.playback() {
         Some(playback) => command::selection(playback),
         None => {

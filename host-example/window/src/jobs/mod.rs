@@ -9,6 +9,7 @@ mod folder;
 mod idle;
 pub mod listing;
 mod look_work;
+pub mod maps;
 mod opening;
 pub mod preview;
 mod reader;

@@ -4,10 +4,13 @@ use std::path::{Path, PathBuf};
 use std::sync::Arc;
 
 use super::document::{Document, Options};
+use super::maps;
 use crate::state::demo;
-use crate::state::document::kind::Kind;
+use crate::state::document::kind::Kind as DocumentKind;
 use crate::state::look::EditedLook;
 use crate::state::outcome::Opened;
+use crate::state::painted::channel::Kind;
+use crate::state::painted::maps::Maps;
 use crate::state::samples::Sample;
 use isophote_files::error::Result;
 use isophote_files::frames;
@@ -36,6 +39,10 @@ pub enum OpenJob {
     Surroundings(PathBuf),
     /// Colours for the look.
     Palette(Library, PathBuf),
+    /// A painted map for pictures of a size.
+    Map(Kind, PathBuf, (u32, u32)),
+    /// A painted map, to be saved.
+    SaveMap(Kind, PathBuf, Arc<Maps>),
 }
 
 /// Something that was opened, with the document whose frames are to be read while it is shown.
@@ -67,6 +74,14 @@ pub fn open(job: OpenJob) -> Result<WithFrames> {
             Opened::Surroundings(Surround::Environment(environment), path)
         }
         OpenJob::Palette(library, path) => Opened::Palette(palette::read(&library, &path, None)?),
+        OpenJob::Map(kind, path, size) => {
+            let maps = maps::read(kind, &path, size)?;
+            Opened::Map(kind, path, maps)
+        }
+        OpenJob::SaveMap(kind, path, maps) => {
+            maps::write(kind, &maps, &path)?;
+            Opened::SavedMap(kind, path, maps)
+        }
     };
     Ok((opened, None))
 }
@@ -127,7 +142,7 @@ fn file(library: &Library, path: PathBuf) -> Result<WithFrames> {
     }
     let document = Document::open(&path, &Options::default())?;
     match document.kind() {
-        Kind::Scene => Ok((Opened::Scene(Box::new(Scene::load(&path, None)?), Some(path)), None)),
+        DocumentKind::Scene => Ok((Opened::Scene(Box::new(Scene::load(&path, None)?), Some(path)), None)),
         _ => pictures(document),
     }
 }

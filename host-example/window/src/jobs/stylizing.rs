@@ -153,6 +153,7 @@ fn image<'f>(frame: &'f Frame, name: &str) -> Option<Image<'f>> {
     let size = (frame.width, frame.height);
     let (channels, numbers) = match name {
         "color" => (4, frame.color.as_flattened()),
+        "mask" => (1, frame.mask.as_ref()?.as_slice()),
         _ => {
             let guide = Guide::ALL.into_iter().find(|guide| guide.id() == name)?;
             frame.guide(guide).map(|image| (image.channels, image.data.as_slice()))?

@@ -2,6 +2,7 @@
 
 use std::path::PathBuf;
 
+use super::painted::channel::Kind;
 use super::playback::Playback;
 use super::quoting::{quoted, quoted_path};
 use super::scenery::Scenery;
@@ -22,7 +23,7 @@ pub fn line(session: &Session) -> String {
         Some(playback) => {
             words.extend(["apply".to_owned(), style, input]);
             words.push(quoted_path(&output(playback)));
-            words.extend(selection(playback).iter().map(|word| quoted(word)));
+            words.extend(selection(playback).iter().chain(&painted(session)).map(|word| quoted(word)));
         }
         None => {
             words.extend(["render".to_owned(), input, "picture.png".to_owned()]);
@@ -45,7 +46,14 @@ pub fn line(session: &Session) -> String {
 
 /// The command line as it is put on the clipboard, of which the window tells.
 pub fn copied(session: &mut Session) -> String {
-    session.notes.say("Copied the command line of this picture");
+    let unsaved: Vec<Kind> = kinds(session).filter(|kind| saved(session, *kind).is_none()).collect();
+    session.notes.say(match unsaved[..] {
+        [] => "Copied the command line of this picture".to_owned(),
+        [kind, ..] => {
+            let file = map_file(session, kind);
+            format!("Copied the command line of this picture. Save the {} as {}", kind.name(), file.display())
+        }
+    });
     let line = line(session);
     // It has camera and light.
     if let Some(scenery) = session.open.scenery_mut() {
@@ -89,6 +97,36 @@ pub fn selection(playback: &Playback) -> Vec<String> {
         words.extend([format!("--{}", kind.guide().id()), name.to_string_lossy().into_owned()]);
     }
     words
+}
+
+/// Options of `apply` for what is painted, by the files that hold it or are to hold it.
+fn painted(session: &Session) -> Vec<String> {
+    let option =
+        |kind: Kind| [format!("--{}", kind.option()), map_file(session, kind).to_string_lossy().into_owned()];
+    kinds(session).flat_map(option).collect()
+}
+
+/// Maps of which something is painted.
+fn kinds(session: &Session) -> impl Iterator<Item = Kind> {
+    let maps = session.open.playback().and_then(|playback| playback.maps());
+    Kind::ALL.into_iter().filter(move |kind| maps.is_some_and(|maps| maps.has(*kind)))
+}
+
+/// The file that holds a map as it is painted now.
+fn saved(session: &Session, kind: Kind) -> Option<&PathBuf> {
+    session.painting.file(kind, session.open.playback()?.maps()?)
+}
+
+/// The file that holds a map, or one beside the input that would.
+pub fn map_file(session: &Session, kind: Kind) -> PathBuf {
+    let input = session.open.playback().map_or_else(PathBuf::new, |playback| playback.path().to_owned());
+    let beside = || {
+        let stem = input.file_stem().unwrap_or_default().to_string_lossy();
+        // The place of a sequence's numbers is none of the map, which lies over all frames.
+        let stem = stem.split_once('.').map_or(&*stem, |(name, _)| name);
+        input.with_file_name(format!("{stem}-{}.png", kind.option()))
+    };
+    saved(session, kind).cloned().unwrap_or_else(beside)
 }
 
 /// Options of `render` for the time of an animated scene.

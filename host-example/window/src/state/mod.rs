@@ -20,6 +20,7 @@ pub mod looks;
 pub mod notes;
 pub mod open;
 pub mod outcome;
+pub mod painted;
 pub mod plan;
 pub mod playback;
 pub mod preview;

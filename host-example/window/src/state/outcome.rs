@@ -10,6 +10,8 @@ use super::browser::listing::Listing;
 use super::document::Frames;
 use super::document::frame::Frame;
 use super::look::EditedLook;
+use super::painted::channel::Kind;
+use super::painted::maps::Maps;
 use super::playback::Playback;
 use super::preview::order::Done;
 use super::progress::Progress;
@@ -66,6 +68,10 @@ pub enum Opened {
     Surroundings(Background, PathBuf),
     /// Colours for the look.
     Palette(Palette),
+    /// A painted map of a file.
+    Map(Kind, PathBuf, Arc<Maps>),
+    /// A painted map was saved in a file.
+    SavedMap(Kind, PathBuf, Arc<Maps>),
 }
 
 /// Purpose of a dialog of the system.
@@ -85,6 +91,10 @@ pub enum Dialog {
     Palette,
     /// Take paper or hatching of a file.
     Material(MaterialKind),
+    /// Open a painted map.
+    OpenMap(Kind),
+    /// Save one.
+    SaveMap(Kind),
     /// Name the output of an export.
     Export,
     /// Choose pictures to use the look on.

@@ -4,8 +4,9 @@ use std::path::Path;
 use std::sync::Arc;
 use std::time::Instant;
 
-use super::document::frame::Frame;
+use super::document::frame::{Frame, GuideImage};
 use super::document::{Frames, Info, reduce};
+use super::painted::maps::Maps;
 use isophote_files::error::Result;
 
 /// Pixels of the small copy of a picture, which is shown while something moves where the processor draws.
@@ -23,11 +24,36 @@ pub struct Playback {
     info: Arc<Info>,
     frames: Option<Frames>,
     number: i64,
-    frame: Option<Arc<Frame>>,
-    small: Option<Arc<Frame>>,
+    frame: Option<Shown>,
+    small: Option<Shown>,
+    /// What is painted over the pictures.
+    maps: Option<Arc<Maps>>,
+    /// That, as the frame of the last size has it.
+    laid: Option<Laid>,
     /// Size of the picture in the file.
     size: (u32, u32),
     ticked: Instant,
+}
+
+/// A frame as it was read, and with what is painted over it.
+#[derive(Debug)]
+struct Shown {
+    read: Arc<Frame>,
+    painted: Arc<Frame>,
+}
+
+/// Maps in the size of frames.
+#[derive(Clone, Debug)]
+struct Laid {
+    size: (u32, u32),
+    control: Option<Arc<GuideImage>>,
+    mask: Option<Arc<Vec<f32>>>,
+}
+
+impl Shown {
+    fn plain(read: Arc<Frame>) -> Self {
+        Self { painted: Arc::clone(&read), read }
+    }
 }
 
 impl Playback {
@@ -45,8 +71,10 @@ impl Playback {
             info: Arc::clone(info),
             frames,
             number,
-            frame: Some(frame),
-            small,
+            frame: Some(Shown::plain(frame)),
+            small: small.map(Shown::plain),
+            maps: None,
+            laid: None,
             size,
             ticked: Instant::now(),
         }
@@ -59,8 +87,44 @@ impl Playback {
 
     /// The frame that is shown, or a small copy of it where there is one, and its size over that of the file's.
     pub fn frame(&self, small: bool) -> Option<(&Arc<Frame>, f32)> {
-        let frame = self.small.as_ref().filter(|_| small).or(self.frame.as_ref())?;
-        Some((frame, frame.width as f32 / self.size.0 as f32))
+        let Shown { painted, .. } = self.small.as_ref().filter(|_| small).or(self.frame.as_ref())?;
+        Some((painted, painted.width as f32 / self.size.0 as f32))
+    }
+
+    /// The frame that is shown as it was read, without what is painted over it.
+    pub fn read(&self) -> Option<&Arc<Frame>> {
+        self.frame.as_ref().map(|shown| &shown.read)
+    }
+
+    /// Maps that are painted over the pictures.
+    pub fn maps(&self) -> Option<&Arc<Maps>> {
+        self.maps.as_ref()
+    }
+
+    /// Paints these over the pictures from now on.
+    pub fn paint(&mut self, maps: Option<Arc<Maps>>) {
+        (self.maps, self.laid) = (maps, None);
+        let (small, frame) = (self.small.take(), self.frame.take());
+        self.small = small.map(|shown| self.lay(shown.read));
+        // After it, so that what has the frame's size is kept for the next one.
+        self.frame = frame.map(|shown| self.lay(shown.read));
+    }
+
+    /// A frame with what is painted over it.
+    fn lay(&mut self, read: Arc<Frame>) -> Shown {
+        let Some(maps) = &self.maps else { return Shown::plain(read) };
+        let size = (read.width, read.height);
+        let known = self.laid.take().filter(|laid| laid.size == size);
+        let laid = known.unwrap_or_else(|| Laid {
+            size,
+            control: maps.control(size).map(Arc::new),
+            mask: maps.mask(size).map(Arc::new),
+        });
+        let Laid { control, mask, .. } = self.laid.insert(laid).clone();
+        match (control, mask) {
+            (None, None) => Shown::plain(read),
+            (control, mask) => Shown { painted: Arc::new(read.painted(control, mask)), read },
+        }
     }
 
     /// Pixels across and down.
@@ -81,7 +145,7 @@ impl Playback {
     /// True where the frame that is wanted is not yet shown.
     pub fn is_waiting(&self) -> bool {
         self.frames().is_some()
-            && self.frame.as_ref().and_then(|frame| frame.number).is_some_and(|shown| shown != self.number)
+            && self.read().and_then(|frame| frame.number).is_some_and(|shown| shown != self.number)
     }
 
     /// Starts or stops time.
@@ -127,9 +191,11 @@ impl Playback {
         let too_large = frame.width.max(frame.height).div_ceil(MOST);
         if too_large <= 1 {
             self.size = (frame.width, frame.height);
-            self.frame = Some(frame);
+            if self.read().is_none_or(|read| !Arc::ptr_eq(read, &frame)) {
+                self.frame = Some(self.lay(frame));
+            }
         } else if self.is_waiting() {
-            self.frame = Some(Arc::new(reduced(&frame, too_large)));
+            self.frame = Some(self.lay(Arc::new(reduced(&frame, too_large))));
         }
         Ok(())
     }

@@ -5,6 +5,7 @@ mod browsing;
 mod leaving;
 mod looks;
 mod outcomes;
+mod painting;
 mod steps;
 
 use std::path::PathBuf;
@@ -22,6 +23,8 @@ use super::look::EditedLook;
 use super::looks::Looks;
 use super::notes::Notes;
 use super::open::Open;
+use super::painted::Painting;
+use super::painted::maps::Maps;
 use super::plan::Plan;
 use super::playback::Playback;
 use super::preview::Previews;
@@ -48,6 +51,8 @@ pub struct State {
     current: usize,
     looks: Vec<Arc<EditedLook>>,
     lighting: Option<Lighting>,
+    /// What is painted over the pictures that are open.
+    maps: Option<Arc<Maps>>,
     /// Changes of files that were made.
     files: usize,
 }
@@ -87,6 +92,8 @@ pub struct Session {
     pub wheeled: Option<Instant>,
     /// Histograms of what is shown.
     pub histograms: Option<Histograms>,
+    /// The brush, and what it paints.
+    pub painting: Painting,
     /// The browser of looks, and those that are compared.
     pub browser: Browser,
     /// Small pictures in the looks.
@@ -124,6 +131,7 @@ impl Session {
             viewport: Viewport::default(),
             probed: None,
             wheeled: None,
+            painting: Painting::default(),
             browser: Browser::new(settings.favourites.clone()),
             previews: Previews::default(),
             takes_drops: true,
@@ -229,7 +237,9 @@ impl Session {
     }
 
     fn begin(&mut self, open: Open) {
+        self.keep_maps();
         self.open = open;
+        self.restore_maps();
         self.notes.leave_behind();
         self.beside.open(self.open.file(), self.open.kind() == Kind::Picture);
         self.histograms = None;
@@ -241,7 +251,7 @@ impl Session {
         self.viewport.fit();
         self.viewport.overlay = Overlay::None;
         self.record.begin();
-        self.forget_lighting();
+        self.forget_open();
     }
 
     /// Title of the window: what is open, and the look once it is seen on it; frames are counted there where a report is wanted.

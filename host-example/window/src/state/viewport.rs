@@ -167,6 +167,13 @@ impl Viewport {
         inside.then(|| ((within[0] * size.0 as f32) as u32, (within[1] * size.1 as f32) as u32))
     }
 
+    /// A place of the window in pixels of a picture of a size, which may lie beside it.
+    pub fn on_picture(&self, size: (u32, u32), [x, y]: [f32; 2]) -> [f32; 2] {
+        let place = self.places(size)[usize::from(x >= self.split())];
+        let scale = self.scale(size);
+        [(x - place.x) / scale, (y - place.y) / scale]
+    }
+
     /// Zooms by a factor about a place of the window.
     pub fn zoom_about(&mut self, size: (u32, u32), [x, y]: [f32; 2], factor: f32) {
         let before = self.scale(size);
@@ -223,6 +230,7 @@ mod tests {
         assert_eq!(viewport.pixel(size, [10.0, 70.0]), Some((0, 0)));
         assert_eq!(viewport.pixel(size, [409.0, 269.0]), Some((199, 99)));
         assert_eq!(viewport.pixel(size, [10.0, 69.0]), None);
+        assert_eq!(viewport.on_picture(size, [110.0, 60.0]), [50.0, -5.0]);
         let cursor = [110.5, 120.5];
         let before = viewport.pixel(size, cursor);
         viewport.zoom_about(size, cursor, 4.0);

@@ -3,6 +3,7 @@
 use std::path::PathBuf;
 
 use super::outcome::Dialog;
+use super::painted::channel::Kind;
 use super::running::Running;
 use isophote_pictures::exr::Layer;
 use isophote_pictures::material::MaterialKind;
@@ -22,6 +23,10 @@ pub enum Request {
     ChooseLayer(Layer, Option<String>),
     /// Lay the picture on this paper, or draw it with this hatching, by its name or file; on the look's own without.
     ChooseMaterial(MaterialKind, Option<PathBuf>),
+    /// Read a painted map from this file.
+    OpenMap(Kind, PathBuf),
+    /// Write a painted map to this file.
+    SaveMap(Kind, PathBuf),
     /// Read which looks there are.
     ListLooks,
     /// Make what is planned.

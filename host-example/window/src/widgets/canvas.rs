@@ -4,7 +4,7 @@ use egui::{
     Align2, Color32, CursorIcon, FontId, Id, PointerButton, Pos2, Rect, Sense, Stroke, Ui, pos2, vec2,
 };
 
-use super::{keyboard, theme};
+use super::{brush, keyboard, theme};
 use crate::state::session::{Session, Which};
 use crate::state::viewport::Compare;
 
@@ -23,11 +23,15 @@ pub fn show(ui: &mut Ui, rect: Rect, session: &mut Session) {
     let response = ui.interact(rect, Id::unique("canvas"), Sense::CLICK | Sense::DRAG);
     response.widget_info(|| egui::WidgetInfo::labeled(egui::Role::Image, true, described(session)));
     let pointer = response.hover_pos().or_else(|| response.interact_pointer_pos());
-    drag(ui, &response, session);
+    brush::paint(ui, &response, session);
+    if !(session.is_painting() && response.dragged_by(PointerButton::Primary)) {
+        drag(ui, &response, session);
+    }
     if response.hovered() {
         scroll(ui, pointer, session);
     }
     session.viewport.pointer = pointer.filter(|_| response.hovered()).map(|at| pixels(ui, at));
+    brush::draw(ui, rect, pointer, session);
     if session.viewport.compare == Compare::Wipe && !session.viewport.peek {
         wipe(ui, rect, session);
     }

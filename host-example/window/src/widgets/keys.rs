@@ -7,7 +7,7 @@ use crate::state::session::Session;
 use crate::state::viewport::Compare;
 
 /// Keys and what they do, for the help of the program and of the window.
-pub const KEYS: [(&str, &str); 40] = [
+pub const KEYS: [(&str, &str); 42] = [
     ("drag", "turns the scene; moves a picture"),
     ("Shift+drag", "pans, as other buttons do"),
     ("wheel", "zooms"),
@@ -38,6 +38,8 @@ pub const KEYS: [(&str, &str); 40] = [
     ("Page Up, Page Down", "open the file before and the next of the folder; the look stays"),
     ("f", "frames the scene"),
     ("c", "looks through the file's camera"),
+    ("b", "paints with the brush, and no more; Alt erases, other buttons move the picture"),
+    ("[, ]", "make the brush smaller and larger"),
     ("p", "hides and shows the panel"),
     ("h", "hides and shows the histogram"),
     ("Ctrl+Z, Ctrl+Y", "takes the last step back, and takes it again"),
@@ -91,6 +93,11 @@ pub fn press(session: &mut Session, key: &Key) {
         Key::Named(NamedKey::PageDown) => session.open_beside(1),
         Key::Character("z") => session.viewport.toggle_actual(),
         Key::Character("0") => session.viewport.fit(),
+        Key::Character("b") if session.open.playback().is_some() => {
+            session.painting.is_on = !session.painting.is_on;
+        }
+        Key::Character("[") => session.painting.brush.grow(-1.0),
+        Key::Character("]") => session.painting.brush.grow(1.0),
         Key::Character("p") => session.settings.panel_hidden = !session.settings.panel_hidden,
         Key::Character("h") => session.settings.shows_histogram = !session.settings.shows_histogram,
         Key::Character("r") => session.reset_all(),

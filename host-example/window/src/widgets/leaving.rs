@@ -71,11 +71,17 @@ fn reasons(ui: &mut Ui, session: &Session) {
     let names = unsaved.iter().take(MOST).map(|index| format!("“{}”", session.looks.list()[*index].name));
     let names = names.collect::<Vec<_>>().join(", ");
     match unsaved.len() {
-        0 if percent.is_none() && !session.has_changed_scene() => drop(say("Nothing would be lost.".into())),
+        0 if percent.is_none() && !session.has_changed_scene() && session.unsaved_maps().is_empty() => {
+            drop(say("Nothing would be lost.".into()))
+        }
         0 => {}
         1 => drop(say(format!("The look {names} is not saved."))),
         count if count <= MOST => drop(say(format!("{count} looks are not saved: {names}."))),
         count => drop(say(format!("{count} looks are not saved: {names} and {} more.", count - MOST))),
+    }
+    for (name, kind) in session.unsaved_maps() {
+        let text = format!("The {} that was painted over {name} is not saved.", kind.name());
+        ui.add(egui::Label::new(text).wrap());
     }
     if session.has_changed_scene() {
         let text = "The camera or the light of the scene was changed. Only its command line keeps them.";
@@ -91,7 +97,9 @@ fn choices(ui: &mut Ui, session: &Session) -> Option<Choice> {
     let unsaved = session.looks.unsaved().len();
     let is_exporting = session.work.exported.is_some();
     let is_changed = session.has_changed_scene();
-    let close = match (unsaved > 0 || is_changed && !is_exporting, is_exporting) {
+    let is_painted = !session.unsaved_maps().is_empty();
+    let is_lost = unsaved > 0 || (is_changed || is_painted) && !is_exporting;
+    let close = match (is_lost, is_exporting) {
         (true, _) => "Discard and close",
         (false, true) => "End the export and close",
         (false, false) => "Close",
@@ -108,12 +116,14 @@ fn choices(ui: &mut Ui, session: &Session) -> Option<Choice> {
         _ if is_changed => {
             &[(Choice::Copy, "Copy the command line"), (Choice::Close, close), (Choice::Cancel, "Cancel")]
         }
+        // What loses nothing is first.
+        _ if is_painted => &[(Choice::Cancel, "Cancel"), (Choice::Close, close)],
         _ => &[(Choice::Close, close), (Choice::Cancel, "Cancel")],
     };
     let mut choice = None;
     let mut buttons = Vec::new();
     for (index, (means, text)) in offered.iter().enumerate() {
-        let loses = *means == Choice::Close && (unsaved > 0 || is_exporting || is_changed);
+        let loses = *means == Choice::Close && (unsaved > 0 || is_exporting || is_changed || is_painted);
         let text = RichText::new(*text);
         let button = Button::new(if loses { text.color(theme::BAD) } else { text });
         let button = ui.add(if index == 0 { button.fill(theme::CHOSEN) } else { button });

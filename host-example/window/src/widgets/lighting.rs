@@ -3,7 +3,7 @@
 use egui::{Button, RichText, Ui};
 
 use super::number::Number;
-use super::scale::Scale;
+use super::scale::{self, Scale};
 use super::{keyboard, theme};
 use crate::state::outcome::Dialog;
 use crate::state::session::Session;
@@ -33,8 +33,8 @@ pub fn show(ui: &mut Ui, session: &mut Session) {
             decimals: 1,
             unit: "°",
         };
-        if let Some(given) = row(ui, session, label, doc, number) {
-            degrees[index] = given;
+        if let Some(given) = scale::row(ui, (label, doc), &whole(number), &mut session.wheeled) {
+            degrees[index] = given as f32;
             let [azimuth, elevation] = degrees.map(f32::to_radians);
             session.relight(label, |light| light.sun = Some(Direction { azimuth, elevation }));
         }
@@ -43,8 +43,8 @@ pub fn show(ui: &mut Ui, session: &mut Session) {
     let number =
         Number { value: f64::from(exposure), range: [-4.0, 4.0], speed: 0.02, decimals: 2, unit: "" };
     let doc = "Brightness of the scene in stops, before looks are put on it.";
-    if let Some(exposure) = row(ui, session, "Exposure", doc, number) {
-        session.relight("exposure", |light| light.exposure = exposure);
+    if let Some(exposure) = scale::row(ui, ("Exposure", doc), &whole(number), &mut session.wheeled) {
+        session.relight("exposure", |light| light.exposure = exposure as f32);
     }
     background(ui, session);
     let changed = session.open.scenery().is_some_and(|scenery| scenery.lighting != Default::default());
@@ -55,17 +55,9 @@ pub fn show(ui: &mut Ui, session: &mut Session) {
     }
 }
 
-/// A labelled slider over the range of a number; the number that it was given.
-fn row(ui: &mut Ui, session: &mut Session, label: &str, doc: &str, number: Number<'_>) -> Option<f32> {
-    let scale = Scale { ends: number.range, number };
-    let given = ui.horizontal(|ui| {
-        ui.add_space(12.0);
-        let (rect, _) = ui.allocate_exact_size(egui::vec2(114.0, 22.0), egui::Sense::hover());
-        let label = egui::Label::new(label).selectable(false).halign(egui::Align::LEFT);
-        let label = ui.put(rect, label).on_hover_text(doc);
-        scale.show(ui, &label, &mut session.wheeled)
-    });
-    given.inner.map(|given| given as f32)
+/// A slider over all of a number's range.
+fn whole(number: Number<'_>) -> Scale<'_> {
+    Scale { ends: number.range, number }
 }
 
 fn camera(ui: &mut Ui, session: &mut Session) {

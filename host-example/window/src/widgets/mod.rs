@@ -4,6 +4,7 @@
 mod act;
 mod batch;
 mod browser;
+mod brush;
 mod canvas;
 mod card;
 mod chain;

@@ -4,7 +4,7 @@ use std::sync::Arc;
 
 use egui::{CollapsingHeader, RichText, ScrollArea, Ui};
 
-use super::{chain, control, hint, histogram, keyboard, layers, lighting, materials, order, theme};
+use super::{brush, chain, control, hint, histogram, keyboard, layers, lighting, materials, order, theme};
 use crate::state::look::Parameter;
 use crate::state::outcome::Dialog;
 use crate::state::resetting::Goal;
@@ -42,6 +42,11 @@ pub fn show(ui: &mut Ui, session: &mut Session) {
         if layers::has_any(session) {
             CollapsingHeader::new("Layers and guides").default_open(true).show_unindented(ui, |ui| {
                 layers::show(ui, session);
+            });
+        }
+        if brush::has_any(session) {
+            CollapsingHeader::new("Brush").default_open(false).show_unindented(ui, |ui| {
+                brush::show(ui, session);
             });
         }
         if materials::has_any(session) {

@@ -12,8 +12,31 @@ use super::wheel::Turned;
 const FIELD: f32 = 62.0;
 /// Height of both.
 const HEIGHT: f32 = 20.0;
+/// Room of a label beside it.
+const LABEL: egui::Vec2 = vec2(114.0, 22.0);
 /// The shortest slider.
 const SHORTEST: f32 = 40.0;
+
+/// Shows a label, and beside it a slider; returns the number that was given.
+pub fn row(
+    ui: &mut Ui,
+    (label, hint): (&str, &str),
+    scale: &Scale<'_>,
+    wheeled: &mut Option<Instant>,
+) -> Option<f64> {
+    let given = ui.horizontal(|ui| {
+        ui.add_space(12.0);
+        ui.spacing_mut().item_spacing.x = 4.0;
+        let layout = egui::Layout::left_to_right(egui::Align::Center);
+        let label = ui.allocate_ui_with_layout(LABEL, layout, |ui| {
+            ui.set_min_size(LABEL);
+            ui.add(egui::Label::new(label).selectable(false)).on_hover_text(hint)
+        });
+        let label = label.inner;
+        scale.show(ui, &label, wheeled)
+    });
+    given.inner
+}
 
 /// A number between the ends of a slider, or beyond them as far as its range goes.
 pub struct Scale<'n> {

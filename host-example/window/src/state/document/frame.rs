@@ -1,9 +1,11 @@
 //! A picture in main memory as the library takes it, with everything that `apply` would hand over beside it.
 
+use std::sync::Arc;
+
 use isophote_files::error::{Error, Result};
 use isophote_files::limits;
 use isophote_finishing::apply::picture_request::PictureRequest;
-use isophote_loader::abi::{ISOPHOTE_ALPHA_EMISSIVE, IsophoteRequest};
+use isophote_loader::abi::{ISOPHOTE_ALPHA_EMISSIVE, ISOPHOTE_GUIDE_MASK, IsophoteRequest};
 use isophote_pictures::exr::Guide;
 use isophote_pictures::pixels::{Pixels, Precision};
 use isophote_pictures::read::Source;
@@ -24,13 +26,15 @@ pub struct Frame {
     pub height: u32,
     /// Red, green, blue and alpha, rows from the top. Colour is multiplied by alpha where the picture is scene-referred, and
     /// is apart from it where it is display-referred: multiplied and divided again it would not be the same.
-    pub color: Vec<[f32; 4]>,
+    pub color: Arc<Vec<[f32; 4]>>,
     /// Properties of the picture that the request names.
     pub request: PictureRequest,
     /// True where colour has light where alpha is 0 or little, which is filtered by itself.
     pub has_light: bool,
-    /// Guides that the file holds beside colour.
-    pub guides: Vec<GuideImage>,
+    /// Guides that the file holds beside colour, or that were painted over it.
+    pub guides: Vec<Arc<GuideImage>>,
+    /// The share of looks in each pixel, where that was painted.
+    pub mask: Option<Arc<Vec<f32>>>,
     /// True where the file has these colours in 8 bits.
     pub is_bytes: bool,
     /// Samples of the colour that were NaN or infinite and were replaced.
@@ -72,7 +76,7 @@ impl Frame {
                 Some(there) => there.apply(&pixels).0,
                 None => pixels,
             };
-            Some(GuideImage { guide, channels: pixels.channels(), data: pixels.to_f32() })
+            Some(Arc::new(GuideImage { guide, channels: pixels.channels(), data: pixels.to_f32() }))
         });
         Ok(Self {
             number,
@@ -81,9 +85,10 @@ impl Frame {
             has_light: picture.meaning.is_premultiplied() && color.iter().any(is_beyond_coverage),
             request: PictureRequest::of(picture, working.space, number),
             guides: named.collect(),
+            mask: None,
             is_bytes: changed.is_none() && picture.pixels.precision() == Precision::U8,
             replaced: replaced + bad,
-            color,
+            color: Arc::new(color),
         })
     }
 
@@ -101,7 +106,8 @@ impl Frame {
 
     /// Request of looks on a picture of so much of the size, with all of its guides, whichever frame it is.
     pub fn request_of_all(&self, scale: f32, usual: IsophoteRequest) -> IsophoteRequest {
-        let guides = self.guides.iter().fold(0, |all, image| all | image.guide.bit());
+        let mask = if self.mask.is_some() { ISOPHOTE_GUIDE_MASK } else { 0 };
+        let guides = self.guides.iter().fold(mask, |all, image| all | image.guide.bit());
         let Self { width, height, .. } = *self;
         let scale = scale * self.request.scale;
         IsophoteRequest { width, height, scale, guides, frame: 0, ..self.request(usual) }
@@ -109,13 +115,24 @@ impl Frame {
 
     /// A guide, where the file has it.
     pub fn guide(&self, guide: Guide) -> Option<&GuideImage> {
-        self.guides.iter().find(|image| image.guide == guide)
+        self.guides.iter().find(|image| image.guide == guide).map(|image| &**image)
+    }
+
+    /// The same pixels with maps that were painted over them: a control map in the place of the file's own, and a mask.
+    pub fn painted(&self, control: Option<Arc<GuideImage>>, mask: Option<Arc<Vec<f32>>>) -> Self {
+        let mut guides = self.guides.clone();
+        if let Some(control) = control {
+            guides.retain(|image| image.guide != control.guide);
+            guides.push(control);
+        }
+        Self { color: Arc::clone(&self.color), guides, mask, ..*self }
     }
 
     /// Bytes that it takes.
     pub fn bytes(&self) -> u64 {
         let guides: usize = self.guides.iter().map(|image| image.data.len() * size_of::<f32>()).sum();
-        (self.color.len() * size_of::<[f32; 4]>() + guides) as u64
+        let mask = self.mask.as_ref().map_or(0, |mask| mask.len() * size_of::<f32>());
+        (self.color.len() * size_of::<[f32; 4]>() + guides + mask) as u64
     }
 }
 
@@ -162,10 +179,10 @@ mod tests {
             Meaning::light(),
             Pixels::new(2, 1, 1, Samples::F32(vec![f32::NAN, f32::NEG_INFINITY])).unwrap(),
         );
-        assert_eq!(grey.color, [[0.0, 0.0, 0.0, 1.0], [-65504.0, -65504.0, -65504.0, 1.0]]);
+        assert_eq!(*grey.color, [[0.0, 0.0, 0.0, 1.0], [-65504.0, -65504.0, -65504.0, 1.0]]);
         let straight =
             frame(Meaning::display(), Pixels::new(1, 1, 4, Samples::U8(vec![255, 51, 0, 0])).unwrap());
-        assert_eq!(straight.color, [[1.0, 0.2, 0.0, 0.0]]);
+        assert_eq!(*straight.color, [[1.0, 0.2, 0.0, 0.0]]);
         assert!(!straight.is_premultiplied() && !straight.has_light, "apart from alpha it is no light");
         assert!(straight.is_bytes && !grey.is_bytes);
     }

@@ -1,6 +1,8 @@
 //! Frames made smaller: colours and hatching are averaged over the area that each pixel covers, other guides picked in its
 //! middle.
 
+use std::sync::Arc;
+
 use rayon::prelude::*;
 
 use super::frame::{Frame, GuideImage};
@@ -32,8 +34,9 @@ pub fn reduced(frame: &Frame, size: (u32, u32), [first, last]: Part) -> Frame {
     Frame {
         width: columns.len() as u32,
         height: rows.len() as u32,
-        color,
-        guides: frame.guides.iter().map(|image| picked(frame, image, &columns, &rows)).collect(),
+        color: Arc::new(color),
+        guides: frame.guides.iter().map(|image| Arc::new(picked(frame, image, &columns, &rows))).collect(),
+        mask: frame.mask.as_ref().map(|mask| Arc::new(cells(mask, frame.width, 1, &columns, &rows))),
         ..*frame
     }
 }
@@ -79,18 +82,23 @@ fn picked(frame: &Frame, image: &GuideImage, columns: &[Span], rows: &[Span]) ->
     if let (true, (colors, [])) = (is_averaged, image.data.as_chunks::<4>()) {
         let straight = image.guide.is_colour() && !frame.is_premultiplied();
         let colors = (colors, frame.width);
-        let cells = rows.iter().flat_map(|row| columns.iter().map(move |column| (column, row)));
-        let data = cells.flat_map(|(column, row)| average(colors, column, row, straight)).collect();
+        let all = rows.iter().flat_map(|row| columns.iter().map(move |column| (column, row)));
+        let data = all.flat_map(|(column, row)| average(colors, column, row, straight)).collect();
         return GuideImage { data, ..*image };
     }
-    let channels = image.channels as usize;
+    let data = cells(&image.data, frame.width, image.channels as usize, columns, rows);
+    GuideImage { data, ..*image }
+}
+
+/// Numbers in the middle of each pixel, so many a pixel, of rows of a width.
+fn cells(data: &[f32], width: u32, channels: usize, columns: &[Span], rows: &[Span]) -> Vec<f32> {
     let middle = |span: &Span| span.first + span.shares.len() / 2;
     let cells = rows.iter().flat_map(|row| columns.iter().map(move |column| (middle(column), middle(row))));
-    let data = cells.flat_map(|(x, y)| {
-        let at = (y * frame.width as usize + x) * channels;
-        image.data[at..][..channels].iter().copied()
+    let numbers = cells.flat_map(|(x, y)| {
+        let at = (y * width as usize + x) * channels;
+        data[at..][..channels].iter().copied()
     });
-    GuideImage { data: data.collect(), ..*image }
+    numbers.collect()
 }
 
 #[cfg(test)]
@@ -124,13 +132,13 @@ mod tests {
         let all = reduced(&frame, (3, 2), whole((3, 2)));
         let part = reduced(&frame, (3, 2), [[1, 1], [3, 2]]);
         assert_eq!((part.width, part.height), (2, 1));
-        assert_eq!(part.color, all.color[4..6]);
+        assert_eq!(**part.color, all.color[4..6]);
         assert_eq!(reduced(&frame, (6, 4), whole((6, 4))), frame);
     }
 
     #[test]
     fn what_is_not_covered_lends_no_colour() {
         let frame = frame(2, 1, vec![255, 0, 0, 0, 0, 255, 0, 255]);
-        assert_eq!(reduced(&frame, (1, 1), whole((1, 1))).color, [[0.0, 1.0, 0.0, 0.5]]);
+        assert_eq!(reduced(&frame, (1, 1), whole((1, 1))).color[..], [[0.0, 1.0, 0.0, 0.5]]);
     }
 }

@@ -8,8 +8,10 @@ impl Session {
     /// Closes the window, or asks before if something would be lost.
     pub fn leave(&mut self) {
         if self.dialogs.leaving != Leaving::Closes {
-            let loses_nothing =
-                self.looks.unsaved().is_empty() && self.work.exported.is_none() && !self.has_changed_scene();
+            let loses_nothing = self.looks.unsaved().is_empty()
+                && self.work.exported.is_none()
+                && !self.has_changed_scene()
+                && self.unsaved_maps().is_empty();
             self.dialogs.leaving = if loses_nothing { Leaving::Closes } else { Leaving::Asks };
         }
     }
@@ -85,8 +87,10 @@ impl Session {
             self.follow_saving();
         } else if self.browser.comparison.is_some() {
             self.end_comparison();
-        } else {
+        } else if self.browser.is_open {
             self.browser.is_open = false;
+        } else {
+            self.painting.is_on = false;
         }
     }
 }

@@ -93,6 +93,11 @@ impl Session {
             Opened::Pictures(playback) => self.show_playback(*playback),
             Opened::Look(look) => self.take(Arc::from(look)),
             Opened::Palette(palette) => self.colour_by(&palette),
+            Opened::Map(kind, path, maps) => self.take_map(kind, path, &maps),
+            Opened::SavedMap(kind, path, maps) => {
+                self.notes.say(format!("Saved the {} in {}", kind.name(), path.display()));
+                self.map_saved(kind, path, &maps);
+            }
             Opened::Surroundings(background, path) => {
                 self.relight("surroundings", |lighting| {
                     (lighting.background, lighting.surroundings) = (background, Some(path));
@@ -127,6 +132,8 @@ impl Session {
             Dialog::Material(kind) => {
                 self.work.ask(Request::ChooseMaterial(kind, Some(path.to_owned())));
             }
+            Dialog::OpenMap(kind) => self.work.ask(Request::OpenMap(kind, path.to_owned())),
+            Dialog::SaveMap(kind) => self.work.ask(Request::SaveMap(kind, path.to_owned())),
             Dialog::Look => self.settings.look_folder = path.parent().map(Path::to_owned),
             Dialog::LookFolder => {
                 self.settings.add_look_folder(path);

@@ -13,17 +13,19 @@ impl Session {
             current: self.looks.current(),
             looks: self.looks.list().to_vec(),
             lighting: self.open.scenery().map(|scenery| scenery.lighting.clone()),
+            maps: self.open.playback().and_then(|playback| playback.maps().cloned()),
             files: self.files.done(),
         }
     }
 
     fn restore(&mut self, state: State) {
-        let State { current, looks, lighting, files } = state;
+        let State { current, looks, lighting, maps, files } = state;
         self.turn(current, |own| own.restore(looks, current));
         if let (Some(scenery), Some(lighting)) = (self.open.scenery_mut(), lighting) {
             scenery.lighting = lighting;
             scenery.relight();
         }
+        self.lay(maps);
         let restored = self.files.go_to(files);
         self.browser.is_outdated |= !restored.is_empty();
         for file in restored {
@@ -55,11 +57,11 @@ impl Session {
         self.browser.is_outdated = true;
     }
 
-    /// Another scene is open, which has its own light: steps bring that of the one before back no more.
-    pub(super) fn forget_lighting(&mut self) {
+    /// Something else is open, which has its own light and maps: steps bring those of before back no more.
+    pub(super) fn forget_open(&mut self) {
         let mut now = self.state();
-        now.lighting = None;
-        self.edits.strip(&now, |state| state.lighting = None);
+        (now.lighting, now.maps) = (None, None);
+        self.edits.strip(&now, |state| (state.lighting, state.maps) = (None, None));
     }
 
     /// Changes the light.

@@ -1,0 +1,74 @@
+//! Files of painted maps, as `apply` reads them.
+
+use std::path::Path;
+use std::sync::Arc;
+
+use crate::state::painted::channel::Kind;
+use crate::state::painted::maps::Maps;
+use isophote_files::error::{Error, Result};
+use isophote_files::files::Existing;
+use isophote_finishing::apply::masks::{MaskChoice, Masks};
+use isophote_finishing::apply::painted::PAINTED;
+use isophote_pictures::exr::{Guide, MaskSource, OnUnknown};
+use isophote_pictures::meaning::Meaning;
+use isophote_pictures::pixels::{Pixels, Precision, Samples};
+use isophote_pictures::read::Source;
+use isophote_pictures::write::{self, Format, Options};
+
+/// Writes a map as a PNG file, which is replaced whole.
+///
+/// # Errors
+/// [`Error::Input`] for other files, and for places where none can be written.
+pub fn write(kind: Kind, maps: &Maps, path: &Path) -> Result<()> {
+    if Format::of(path)? != Format::Png {
+        return Err(Error::file(
+            path,
+            "is no PNG file, as which painted maps are saved",
+            "end its name in .png",
+        ));
+    }
+    let (width, height) = maps.size();
+    let channels = if kind == Kind::Control { 4 } else { 1 };
+    let pixels = Pixels::new(width, height, channels, Samples::U8(maps.bytes(kind, (width, height))));
+    let pixels =
+        pixels.ok_or_else(|| Error::failure("the map is not as large as it should be", "paint again"))?;
+    let (meaning, format) = (Meaning::display(), (Format::Png, Options::default()));
+    let source = Source::alone(pixels.clone(), meaning.clone());
+    write::write(path, Existing::Replace, format, vec![pixels], &meaning, &source, None)
+}
+
+/// Reads a map for pictures of a size.
+///
+/// # Errors
+/// As [`Masks::add`].
+pub fn read(kind: Kind, path: &Path, size: (u32, u32)) -> Result<Arc<Maps>> {
+    let masks = match kind {
+        Kind::Mask => {
+            let choice = MaskChoice { source: MaskSource::File(path.to_owned()), invert: false };
+            Masks::new(&[choice], None, OnUnknown::default())?
+        }
+        Kind::Control => {
+            let painted = PAINTED.iter().find(|painted| painted.guide == Guide::Control);
+            let paths: Vec<_> = painted.map(|painted| (painted, path)).into_iter().collect();
+            Masks::default().with_maps(&paths)?
+        }
+    };
+    let under = Pixels::zeroed(size.0, size.1, 1, Precision::U8);
+    let mut source = Source::alone(under, Meaning::display());
+    masks.add(&mut source, None)?;
+    let Some(picture) = source.pictures.pop() else { return Ok(Arc::new(Maps::new(size))) };
+    if let Some(refused) = picture.refused {
+        return Err(refused);
+    }
+    let guide =
+        picture.guides.iter().find(|(name, _)| *name == Guide::Control.id()).map(|(_, pixels)| pixels);
+    let numbers = match kind {
+        Kind::Control => guide,
+        Kind::Mask => picture.masks.first().and_then(Option::as_ref),
+    };
+    let mut maps = Maps::new(size);
+    if let Some(numbers) = numbers {
+        maps.take(kind, &numbers.to_f32());
+    }
+    Ok(Arc::new(maps))
+}

@@ -1,0 +1,120 @@
+//! Everything that is painted over a picture, as looks and files have it.
+
+use rayon::prelude::*;
+
+use super::channel::{Channel, Kind};
+use super::tiles::Tiles;
+use crate::state::document::frame::GuideImage;
+use isophote_pictures::exr::Guide;
+
+/// Everything that is painted over a picture.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct Maps {
+    layers: [Tiles; Channel::ALL.len()],
+}
+
+impl Maps {
+    /// Maps of a picture on which nothing is painted.
+    pub fn new(size: (u32, u32)) -> Self {
+        Self { layers: Channel::ALL.map(|channel| Tiles::new(size, channel.plain())) }
+    }
+
+    /// Pixels across and down.
+    pub fn size(&self) -> (u32, u32) {
+        self.layers[0].size()
+    }
+
+    /// What is painted of a channel.
+    pub fn layer(&self, channel: Channel) -> &Tiles {
+        &self.layers[channel as usize]
+    }
+
+    /// The same, to be painted.
+    pub fn layer_mut(&mut self, channel: Channel) -> &mut Tiles {
+        &mut self.layers[channel as usize]
+    }
+
+    /// True where something of a map is painted.
+    pub fn has(&self, kind: Kind) -> bool {
+        Channel::ALL.iter().any(|channel| channel.kind() == kind && !self.layer(*channel).is_plain())
+    }
+
+    /// Numbers of a map, 4 a pixel of a control map and 1 of a mask, for pictures of a size: those in the middle of each pixel.
+    pub fn bytes(&self, kind: Kind, (width, height): (u32, u32)) -> Vec<u8> {
+        let channels: Vec<&Tiles> =
+            Channel::ALL.iter().filter(|c| c.kind() == kind).map(|c| self.layer(*c)).collect();
+        let (across, down) = self.size();
+        let middle = |at: usize, own: u32, of: u32| {
+            ((2 * at as u64 + 1) * u64::from(own) / (2 * u64::from(of.max(1)))) as u32
+        };
+        let columns: Vec<u32> = (0..width as usize).map(|x| middle(x, across, width)).collect();
+        let row = width as usize * channels.len();
+        let mut bytes = vec![0; row * height as usize];
+        bytes.par_chunks_exact_mut(row.max(1)).enumerate().for_each(|(y, line)| {
+            let y = middle(y, down, height);
+            for (pixel, x) in line.chunks_exact_mut(channels.len()).zip(&columns) {
+                for (value, tiles) in pixel.iter_mut().zip(&channels) {
+                    *value = tiles.get(*x, y);
+                }
+            }
+        });
+        bytes
+    }
+
+    /// The control map as looks read it, for pictures of a size; nothing where none is painted.
+    pub fn control(&self, size: (u32, u32)) -> Option<GuideImage> {
+        let data = self.has(Kind::Control).then(|| shares(&self.bytes(Kind::Control, size)))?;
+        Some(GuideImage { guide: Guide::Control, channels: 4, data })
+    }
+
+    /// The mask as looks read it, likewise.
+    pub fn mask(&self, size: (u32, u32)) -> Option<Vec<f32>> {
+        self.has(Kind::Mask).then(|| shares(&self.bytes(Kind::Mask, size)))
+    }
+
+    /// Takes over a map of its own size from numbers of 0 to 1, as many a pixel as the map has.
+    pub fn take(&mut self, kind: Kind, numbers: &[f32]) {
+        let size = self.size();
+        let channels: Vec<Channel> = Channel::ALL.into_iter().filter(|c| c.kind() == kind).collect();
+        for (at, channel) in channels.iter().enumerate() {
+            let number = |x: u32, y: u32| {
+                let pixel = y as usize * size.0 as usize + x as usize;
+                numbers.get(pixel * channels.len() + at).copied().unwrap_or(f32::NAN)
+            };
+            let tiles = self.layer_mut(*channel);
+            tiles.change([0, 0, size.0, size.1], |x, y, _| channel.stored(number(x, y)));
+            tiles.tidy();
+        }
+    }
+}
+
+/// Bytes as shares, as files with 8 bits are read.
+fn shares(bytes: &[u8]) -> Vec<f32> {
+    bytes.par_iter().map(|byte| f32::from(*byte) / 255.0).collect()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::super::channel::MOST;
+    use super::*;
+
+    #[test]
+    fn maps_are_read_as_looks_read_files_and_come_back_from_them() {
+        let mut maps = Maps::new((4, 2));
+        assert!(maps.control((4, 2)).is_none() && maps.mask((4, 2)).is_none());
+        maps.layer_mut(Channel::LineWidth).change([1, 0, 2, 1], |_, _, _| MOST);
+        let control = maps.control((4, 2)).unwrap();
+        let plain = 127.0 / 255.0;
+        assert_eq!(control.data[..8], [plain, plain, plain, plain, plain, 254.0 / 255.0, plain, plain]);
+        assert!(maps.mask((4, 2)).is_none() && !maps.has(Kind::Mask));
+        // Half as large, from the middle of each pixel; twice as large.
+        assert_eq!(maps.bytes(Kind::Control, (2, 1))[1], 127);
+        assert_eq!(maps.bytes(Kind::Control, (8, 4))[4 * 3 + 1], MOST);
+        let mut read = Maps::new((4, 2));
+        read.take(Kind::Control, &control.data);
+        assert_eq!(read, maps);
+        read.take(Kind::Mask, &[1.0, 0.0, f32::NAN, 2.0, -1.0, 0.5, 1.0, 1.0]);
+        assert_eq!(read.bytes(Kind::Mask, (4, 2)), [255, 0, 255, 255, 0, 128, 255, 255]);
+        assert!(read.layer(Channel::Detail).is_plain());
+    }
+}
