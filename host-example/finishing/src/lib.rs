@@ -3,6 +3,7 @@
 //! | module | content |
 //! |---|---|
 //! | [`apply`] | pictures and sequences of pictures: tasks, memory, filters, masks, reports |
+//! | [`carry`] | painted maps, carried along motion from key frames to the others |
 //! | [`video`] | videos, frame by frame through ffmpeg |
 //! | [`sheet`] | contact sheets |
 //! | [`processor`] | styles on frames in main memory, computed on the CPU |
@@ -16,6 +17,7 @@
 #![forbid(unsafe_code)]
 
 pub mod apply;
+pub mod carry;
 pub mod naming;
 mod options;
 pub mod processor;

@@ -3,7 +3,7 @@
 use clap::{CommandFactory, Parser, Subcommand};
 
 use crate::verbs::{
-    apply, bench, colours, documents, farm, info, materials, nodes, preset, render, sheet, view,
+    apply, bench, carry, colours, documents, farm, info, materials, nodes, preset, render, sheet, view,
 };
 use isophote_files::error::Result;
 
@@ -48,6 +48,8 @@ enum Command {
     Render(Box<render::RenderArgs>),
     /// Gives a picture, a sequence of frames or a video a style.
     Apply(Box<apply::ApplyArgs>),
+    /// Carries painted maps along the motion of a shot, from key frames to all others.
+    Carry(carry::CarryArgs),
     /// Opens a picture, a sequence, a video or a scene in a window with all styles and their controls.
     View(view::ViewArgs),
     /// Puts pictures side by side on one contact sheet, with their names.
@@ -79,6 +81,7 @@ impl Cli {
         match &self.command {
             Command::Render(args) => render::run(args),
             Command::Apply(args) => apply::run(args),
+            Command::Carry(args) => carry::run(args),
             Command::View(args) => view::run(args),
             Command::Sheet(args) => sheet::run(args),
             Command::Colours(args) => colours::run(args),

@@ -3,6 +3,7 @@
 mod apply;
 mod assets;
 mod bad_input;
+mod carry;
 mod command_line;
 mod compose;
 mod cryptomatte;

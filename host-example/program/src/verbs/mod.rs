@@ -3,6 +3,7 @@
 
 pub mod apply;
 pub mod bench;
+pub mod carry;
 pub mod colours;
 pub mod documents;
 pub mod farm;

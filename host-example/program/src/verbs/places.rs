@@ -16,7 +16,7 @@ use isophote_pictures::exr::MaskSource;
 use isophote_pictures::material::MaterialKind;
 
 /// The word for motion that is estimated.
-const ESTIMATE: &str = "estimate";
+pub const ESTIMATE: &str = "estimate";
 
 /// Part that a file has in a run.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]

@@ -1,0 +1,277 @@
+//! Painted maps that are carried along the motion of a shot, from the frames that they were painted on to all others.
+//!
+//! Between two key frames the maps of both are seen, each the more the nearer it is; before the first and after the last there is
+//! one. Where neither is seen, nothing is painted.
+
+mod places;
+mod vectors;
+
+use std::io::{Read, Seek, SeekFrom, Write};
+use std::path::{Path, PathBuf};
+
+use self::places::{Field, Places};
+pub use self::vectors::Vectors;
+use isophote_files::error::{Error, Result};
+use isophote_files::files::Existing;
+use isophote_files::frames::Pattern;
+use isophote_pictures::exr::Selection;
+use isophote_pictures::meaning::Meaning;
+use isophote_pictures::pixels::{Pixels, Precision, Samples};
+use isophote_pictures::read::{self, Source};
+use isophote_pictures::write::{self, Format, Options};
+
+/// A map and the frame that it was painted on.
+#[derive(Debug)]
+pub struct Key {
+    /// Number of the frame.
+    pub frame: i64,
+    map: Pixels,
+}
+
+/// Frame that was carried to.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Carried {
+    /// Its number.
+    pub frame: i64,
+    /// Share of it on which nothing is painted, since no map is seen there.
+    pub unknown: f32,
+}
+
+impl Key {
+    /// Reads the map of a frame, as it is stored.
+    ///
+    /// # Errors
+    /// As [`read::read`].
+    pub fn read(path: &Path, frame: i64) -> Result<Self> {
+        let mut source = read::read(path, &Selection::default())?;
+        let picture = source.pictures.drain(..).next();
+        let pixels = picture.ok_or_else(|| Error::file(path, "is empty", "name another map"))?.pixels;
+        Ok(Self { frame, map: without_plain_alpha(pixels) })
+    }
+
+    fn size(&self) -> (u32, u32) {
+        (self.map.width(), self.map.height())
+    }
+
+    /// Number where nothing is painted: the half of a control map, which has colours, and 0 of a grey mask.
+    fn nothing(&self) -> f32 {
+        if self.map.channels() >= 3 { 0.5 } else { 0.0 }
+    }
+}
+
+/// The same pixels without alpha that is 1 everywhere, which is that of a file on which nobody painted it.
+fn without_plain_alpha(pixels: Pixels) -> Pixels {
+    let channels = pixels.channels() as usize;
+    let numbers = pixels.to_f32();
+    if channels != 4 || numbers.chunks_exact(4).any(|pixel| pixel[3] < 1.0) {
+        return pixels;
+    }
+    let three = numbers.chunks_exact(4).flat_map(|pixel| pixel[..3].iter().copied()).collect();
+    let (width, height, precision) = (pixels.width(), pixels.height(), pixels.precision());
+    Pixels::new(width, height, 3, Samples::F32(three)).map_or(pixels, |pixels| pixels.converted(precision))
+}
+
+/// Files that are read and written.
+pub struct Shot<'s> {
+    /// Numbers of its frames, in order.
+    pub frames: &'s [i64],
+    /// Maps of some of them, in order, at least one.
+    pub keys: &'s [Key],
+    /// Files of the maps of all.
+    pub out: &'s Pattern,
+    /// Treatment of those that are there.
+    pub existing: Existing,
+}
+
+impl Shot<'_> {
+    /// Carries the maps to all frames, and tells of each when it is written.
+    ///
+    /// # Errors
+    /// [`Error::Input`] for maps of other sizes and frames without vectors; as reading and writing.
+    pub fn carry(&self, vectors: &mut Vectors, told: &mut dyn FnMut(Carried) -> Result<()>) -> Result<()> {
+        for key in self.keys {
+            let (size, map) = (vectors.size(key.frame)?, key.size());
+            if size != map {
+                let problem = format!("has {}x{} pixels, and its map {}x{}", size.0, size.1, map.0, map.1);
+                return Err(Error::input(
+                    format!("frame {}", key.frame),
+                    problem,
+                    "paint maps of the frames' size",
+                ));
+            }
+        }
+        // Before anything is written.
+        if let (Some(key), [first, second, ..]) = (self.keys.first(), self.frames) {
+            let beside = if key.frame == *first { second } else { first };
+            let there = if key.frame == *first { *first } else { *second };
+            between(vectors, *beside, there)?;
+        }
+        let ends = self.keys.iter().map(Some).chain([None]);
+        let mut before: Option<&Key> = None;
+        for after in ends {
+            let from = before.map_or(i64::MIN, |key| key.frame + 1);
+            let to = after.map_or(i64::MAX, |key| key.frame - 1);
+            let between: Vec<i64> =
+                self.frames.iter().copied().filter(|frame| (from..=to).contains(frame)).collect();
+            self.span((before, after), &between, vectors, told)?;
+            if let Some(key) = after {
+                self.write(key.frame, key.map.to_f32(), key)?;
+                told(Carried { frame: key.frame, unknown: 0.0 })?;
+            }
+            before = after;
+        }
+        Ok(())
+    }
+
+    /// Carries maps to the frames between two key frames, or at an end.
+    fn span(
+        &self,
+        (before, after): (Option<&Key>, Option<&Key>),
+        frames: &[i64],
+        vectors: &mut Vectors,
+        told: &mut dyn FnMut(Carried) -> Result<()>,
+    ) -> Result<()> {
+        let Some(key) = before.or(after).filter(|_| !frames.is_empty()) else { return Ok(()) };
+        let backward: Vec<i64> = frames.iter().rev().copied().collect();
+        // From the key frame after, last frame first, to be read in the other order.
+        let mut later = match after {
+            Some(after) => Some(self.stored(after, &backward, vectors)?),
+            None => None,
+        };
+        let mut places = before.map(|before| (before, Walk::from(before)));
+        for (index, frame) in frames.iter().enumerate() {
+            let first = match &mut places {
+                Some((key, walk)) => Some(walk.to(*frame, vectors)?.seen(&key.map)),
+                None => None,
+            };
+            let last = match &mut later {
+                Some(stored) => Some(stored.read(frames.len() - 1 - index)?),
+                None => None,
+            };
+            // The nearer of both keys counts for more.
+            let share = match (before, after) {
+                (Some(before), Some(after)) => {
+                    (frame - before.frame) as f32 / (after.frame - before.frame) as f32
+                }
+                (None, _) => 1.0,
+                (_, None) => 0.0,
+            };
+            let mixed = mixed(first, last, share);
+            let unknown =
+                mixed.iter().filter(|value| value.is_nan()).count() as f32 / mixed.len().max(1) as f32;
+            let nothing = key.nothing();
+            let map = mixed.into_iter().map(|value| if value.is_nan() { nothing } else { value }).collect();
+            self.write(*frame, map, key)?;
+            told(Carried { frame: *frame, unknown })?;
+        }
+        Ok(())
+    }
+
+    /// A key frame's map as each of the frames sees it.
+    fn stored(&self, key: &Key, frames: &[i64], vectors: &mut Vectors) -> Result<Stored> {
+        let (width, height) = key.size();
+        let mut stored = Stored::new(width as usize * height as usize * key.map.channels() as usize)?;
+        let mut walk = Walk::from(key);
+        for frame in frames {
+            stored.add(&walk.to(*frame, vectors)?.seen(&key.map))?;
+        }
+        Ok(stored)
+    }
+
+    fn write(&self, frame: i64, numbers: Vec<f32>, key: &Key) -> Result<()> {
+        let path: PathBuf = self.out.file(frame);
+        let format = Format::of(&path)?;
+        let (width, height) = key.size();
+        let pixels = Pixels::new(width, height, key.map.channels(), Samples::F32(numbers));
+        let pixels =
+            pixels.ok_or_else(|| Error::failure("a map is not as large as it should be", "report it"))?;
+        let precision = if format == Format::Exr { Precision::F32 } else { key.map.precision() };
+        let pixels = pixels.converted(precision);
+        let meaning = Meaning::display();
+        let source = Source::alone(pixels.clone(), meaning.clone());
+        write::write(
+            &path,
+            self.existing,
+            (format, Options::default()),
+            vec![pixels],
+            &meaning,
+            &source,
+            None,
+        )
+    }
+}
+
+/// Way from a key frame on, frame by frame.
+struct Walk {
+    frame: i64,
+    places: Places,
+}
+
+impl Walk {
+    fn from(key: &Key) -> Self {
+        let (width, height) = key.size();
+        Self { frame: key.frame, places: Places::own(width, height) }
+    }
+
+    /// Goes on to the next frame.
+    fn to(&mut self, frame: i64, vectors: &mut Vectors) -> Result<&Places> {
+        let there = between(vectors, frame, self.frame)?;
+        let back = vectors.between(self.frame, frame)?;
+        let [things, before] = [vectors.things(frame)?, vectors.things(self.frame)?];
+        let back = back.as_ref().map(|back| Field::new(back, before.as_deref()));
+        self.places = self.places.carried(Field::new(&there, things.as_deref()), back);
+        self.frame = frame;
+        Ok(&self.places)
+    }
+}
+
+/// Vectors of a frame to one of its neighbours.
+fn between(vectors: &mut Vectors, frame: i64, there: i64) -> Result<Vec<f32>> {
+    vectors.between(frame, there)?.ok_or_else(|| {
+        let problem = format!("frame {frame} has no motion vectors that lead to frame {there}");
+        Error::input("the shot", problem, "name files of vectors by --motion, or give --motion estimate")
+    })
+}
+
+/// Two maps as one, by the share of the last; either where the other is not seen.
+fn mixed(first: Option<Vec<f32>>, last: Option<Vec<f32>>, share: f32) -> Vec<f32> {
+    match (first, last) {
+        (Some(first), Some(last)) => {
+            let mix = |(a, b): (f32, f32)| match (a.is_nan(), b.is_nan()) {
+                (true, _) => b,
+                (_, true) => a,
+                _ => a + (b - a) * share,
+            };
+            first.into_iter().zip(last).map(mix).collect()
+        }
+        (first, last) => first.or(last).unwrap_or_default(),
+    }
+}
+
+/// Maps in a file for the time being: those of a whole shot need not fit into memory.
+struct Stored {
+    file: std::fs::File,
+    numbers: usize,
+}
+
+impl Stored {
+    fn new(numbers: usize) -> Result<Self> {
+        Ok(Self { file: tempfile::tempfile().map_err(failed)?, numbers })
+    }
+
+    fn add(&mut self, map: &[f32]) -> Result<()> {
+        self.file.write_all(bytemuck::cast_slice(map)).map_err(failed)
+    }
+
+    fn read(&mut self, at: usize) -> Result<Vec<f32>> {
+        let mut map = vec![0.0_f32; self.numbers];
+        let bytes: &mut [u8] = bytemuck::cast_slice_mut(&mut map);
+        let start = (at * bytes.len()) as u64;
+        self.file.seek(SeekFrom::Start(start)).and_then(|_| self.file.read_exact(bytes)).map_err(failed)?;
+        Ok(map)
+    }
+}
+
+fn failed(e: std::io::Error) -> Error {
+    Error::failure(format!("maps cannot be kept for the time being: {e}"), "make room on the disk")
+}
