@@ -49,6 +49,9 @@ fn unweld(primitive: &mut Primitive) {
     for target in &mut primitive.morph_targets {
         *target = primitive.indices.iter().map(|i| target[pick(i)]).collect();
     }
+    if !primitive.control.is_empty() {
+        primitive.control = primitive.indices.iter().map(|i| primitive.control[pick(i)]).collect();
+    }
     primitive.vertices = primitive.indices.iter().map(|i| primitive.vertices[pick(i)]).collect();
     primitive.indices = (0..primitive.vertices.len() as u32).collect();
 }
@@ -245,6 +248,9 @@ fn duplicate(primitive: &mut Primitive, index: usize) {
     }
     for target in &mut primitive.morph_targets {
         target.push(target[index]);
+    }
+    if !primitive.control.is_empty() {
+        primitive.control.push(primitive.control[index]);
     }
 }
 

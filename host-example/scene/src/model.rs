@@ -59,6 +59,9 @@ pub struct MorphDelta {
     pub tangent: [f32; 3],
 }
 
+/// Value of a control map that changes nothing: detail, width of lines, their amount, and strength of the medium.
+pub const NEUTRAL: [f32; 4] = [0.5; 4];
+
 /// An indexed triangle list with one material.
 #[derive(Clone, Debug, Default)]
 pub struct Primitive {
@@ -72,6 +75,9 @@ pub struct Primitive {
     pub influence_sets: usize,
     /// One list of `vertices.len()` deltas per morph target.
     pub morph_targets: Vec<Vec<MorphDelta>>,
+    /// Values of the control map per vertex, of which [`NEUTRAL`] changes nothing; empty where the file gives none. They
+    /// are no part of [`Vertex`], since few scenes have them.
+    pub control: Vec<[f32; 4]>,
     /// Index into [`Scene::materials`].
     pub material: usize,
 }
@@ -328,6 +334,11 @@ impl Scene {
     /// The primitive of a draw.
     pub fn primitive(&self, draw: &Draw) -> &Primitive {
         &self.meshes[draw.mesh].primitives[draw.primitive]
+    }
+
+    /// True where a visible primitive has values of a control map.
+    pub fn has_control(&self) -> bool {
+        self.draws.iter().any(|draw| !self.primitive(draw).control.is_empty())
     }
 
     /// Index of the animation with this name (case ignored) or number (from 0).

@@ -7,7 +7,7 @@ use super::accessors::{Accessors, Pick};
 use super::draco::{self, Geometry};
 use super::materials::label;
 use crate::geometry::{self, Topology};
-use crate::model::{Influence, Mesh, MorphDelta, Primitive, Scene, Vertex};
+use crate::model::{Influence, Mesh, MorphDelta, NEUTRAL, Primitive, Scene, Vertex};
 
 /// Reads all meshes into the scene, whose materials must be there already.
 ///
@@ -29,12 +29,14 @@ pub fn read(document: &gltf::Document, accessors: &Accessors, scene: &mut Scene)
                     continue;
                 }
             };
-            let read = read_primitive(document, primitive, topology, accessors, scene)
+            let (read, warning) = read_primitive(document, primitive, topology, accessors, scene)
                 .map_err(|problem| format!("mesh {name}: {problem}"))?;
+            scene.warnings.extend(warning.map(|warning| format!("mesh {name}: {warning}")));
             if !read.indices.is_empty() {
                 primitives.push(read);
             }
         }
+        leave_medium(&mut primitives);
         scene.meshes.push(Mesh {
             name: mesh.name().unwrap_or_default().to_owned(),
             primitives,
@@ -42,6 +44,16 @@ pub fn read(document: &gltf::Document, accessors: &Accessors, scene: &mut Scene)
         });
     }
     Ok(())
+}
+
+/// Makes the strength of the medium neutral where all control values of a mesh have alpha 1: colours have that where
+/// nobody painted alpha. Control maps of pictures are read so, too.
+fn leave_medium(primitives: &mut [Primitive]) {
+    let mut values = primitives.iter().flat_map(|primitive| &primitive.control);
+    if values.all(|value| value[3] == 1.0) {
+        let values = primitives.iter_mut().flat_map(|primitive| &mut primitive.control);
+        values.for_each(|value| value[3] = NEUTRAL[3]);
+    }
 }
 
 /// Reader of the parts of a primitive.
@@ -56,13 +68,14 @@ struct Reader<'a> {
     used: Pick<'a>,
 }
 
+/// A primitive, and a warning of what is left out of it.
 fn read_primitive(
     document: &gltf::Document,
     source: gltf::Primitive,
     topology: Topology,
     accessors: &Accessors,
     scene: &Scene,
-) -> Result<Primitive, String> {
+) -> Result<(Primitive, Option<String>), String> {
     let positions = source.get(&Semantic::Positions).ok_or("it has no positions")?;
     let mut draco = draco::read(document, &source, accessors)?;
     let count = draco.as_ref().map_or(positions.count(), |geometry| geometry.count);
@@ -93,13 +106,14 @@ fn read_primitive(
     fill(&mut primitive, reader.attribute(Semantic::Colors(0), &[3, 4], [1.0; 4])?, |v, x| v.color = x);
     reader.influences(&mut primitive, vertices)?;
     reader.morph_targets(&mut primitive, vertices)?;
+    let warning = reader.control(&mut primitive, vertices);
     if flat {
         geometry::flat_normals(&mut primitive);
     }
     if let Some(map) = scene.materials[primitive.material].normal_texture.filter(|_| bent) {
         geometry::tangents(&mut primitive, map.uv_set);
     }
-    Ok(primitive)
+    Ok((primitive, warning))
 }
 
 /// The triangles of a primitive as indices of its `count` vertices.
@@ -229,6 +243,28 @@ impl Reader<'_> {
             }
         }
         Ok(())
+    }
+
+    /// Reads values of the control map: the attribute `_CONTROL`, or the second set of colours. Both may be meant for others
+    /// in files that know nothing of control maps, so that what cannot be read is left out, which the result says.
+    fn control(&self, primitive: &mut Primitive, vertices: usize) -> Option<String> {
+        let semantics = [Semantic::Extras("CONTROL".to_owned()), Semantic::Colors(1)];
+        let semantic = semantics.into_iter().find(|semantic| self.source.get(semantic).is_some())?;
+        let name = semantic.to_string();
+        let read = self.attribute(semantic, &[3, 4], NEUTRAL).and_then(|values| {
+            self.accessors.budget.take(vertices, size_of::<[f32; 4]>())?;
+            Ok(values.unwrap_or_default())
+        });
+        let mut values = match read {
+            Ok(values) => values,
+            Err(problem) => return Some(format!("its {name} is no control map: {problem}")),
+        };
+        let mut others = values.iter_mut().flatten().filter(|value| !value.is_finite()).peekable();
+        let warning =
+            others.peek().map(|_| format!("its {name} has values that are not finite; they change nothing"));
+        others.for_each(|value| *value = NEUTRAL[0]);
+        primitive.control = values;
+        warning
     }
 
     /// Four joints of every used vertex.
