@@ -82,3 +82,30 @@ fn rest_fragment(in: RestInput) -> @location(0) vec4f {
     }
     return vec4f(in.rest, 1.0);
 }
+
+// Values of the control map at the vertices of a primitive; where it has none, a single one that changes nothing.
+@group(3) @binding(0) var<storage, read> control_values: array<vec4f>;
+
+struct ControlInput {
+    @builtin(position) clip: vec4f,
+    @location(0) control: vec4f,
+    @location(1) uv0: vec2f,
+    @location(2) uv1: vec2f,
+    @location(3) alpha: f32,
+}
+
+// What an artist painted on surfaces, for styles; a pass of its own, since few scenes have it.
+@vertex
+fn control_vertex(in: VertexInput) -> ControlInput {
+    let position = vec4f(current_position(in, current_matrix(in)), 1.0);
+    let control = control_values[min(in.vertex, arrayLength(&control_values) - 1u)];
+    return ControlInput(frame.view_projection * position, control, in.uv0, in.uv1, in.color.a);
+}
+
+@fragment
+fn control_fragment(in: ControlInput) -> @location(0) vec4f {
+    if CUTOUT == 1u && base_color(in.uv0, in.uv1, vec4f(1.0, 1.0, 1.0, in.alpha)).a < material.alpha_cutoff {
+        discard;
+    }
+    return in.control;
+}

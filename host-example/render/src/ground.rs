@@ -152,7 +152,7 @@ impl Ground {
             Pass::Geometry => &self.motion,
             Pass::Rest => &self.rest,
             // Of the ground itself there is nothing.
-            Pass::Shadow | Pass::Depth | Pass::Layers => return,
+            Pass::Shadow | Pass::Depth | Pass::Layers | Pass::Control => return,
         };
         pass.set_pipeline(pipeline);
         pass.set_bind_group(1, &self.group, &[]);

@@ -13,6 +13,8 @@ pub struct Layouts {
     pub shadow: wgpu::BindGroupLayout,
     /// Group 3 of the shadow pass: which map is drawn.
     pub cascade: wgpu::BindGroupLayout,
+    /// Group 3 of the pass of control maps: values of the vertices.
+    pub control: wgpu::BindGroupLayout,
 }
 
 impl Layouts {
@@ -41,6 +43,7 @@ impl Layouts {
             material: make("material", &material),
             shadow: make("shadow", &[depth_array(0), sampler(1, wgpu::SamplerBindingType::Comparison)]),
             cascade: make("cascade", &[uniform(0, vertex)]),
+            control: make("control", &[storage(0, vertex)]),
         }
     }
 }

@@ -18,6 +18,7 @@
 mod animated;
 pub mod background;
 pub mod buffers;
+mod control;
 pub mod drivers;
 mod frame_buffers;
 pub mod gpu;

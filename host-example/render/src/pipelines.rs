@@ -4,9 +4,10 @@ use std::collections::HashMap;
 
 use crate::layouts::Layouts;
 use crate::targets::{
-    COLOR_FORMAT, DEPTH_FORMAT, LINEAR_DEPTH_FORMAT, MOTION_FORMAT, NORMAL_FORMAT, OBJECT_ID_FORMAT,
-    REST_FORMAT, SAMPLES,
+    COLOR_FORMAT, CONTROL_FORMAT, DEPTH_FORMAT, LINEAR_DEPTH_FORMAT, MOTION_FORMAT, NORMAL_FORMAT,
+    OBJECT_ID_FORMAT, REST_FORMAT, SAMPLES,
 };
+use isophote_scene::model::NEUTRAL;
 use isophote_scene::{AlphaMode, Material, Vertex};
 
 /// The passes over the scene.
@@ -22,6 +23,8 @@ pub enum Pass {
     Geometry,
     /// Rest positions.
     Rest,
+    /// Control maps.
+    Control,
     /// Colours of surfaces and their light.
     Layers,
 }
@@ -30,6 +33,17 @@ impl Pass {
     /// True where surfaces are shaded, and what is transparent is blended.
     fn is_seen(self) -> bool {
         matches!(self, Self::Surface | Self::Layers)
+    }
+
+    /// Values of the geometry buffer where there is no surface.
+    pub fn nothing(self) -> wgpu::Color {
+        match self {
+            Self::Control => {
+                let [r, g, b, a] = NEUTRAL.map(f64::from);
+                wgpu::Color { r, g, b, a }
+            }
+            _ => wgpu::Color::TRANSPARENT,
+        }
     }
 }
 
@@ -57,7 +71,7 @@ impl Variant {
         match pass {
             Pass::Depth => Self { pass, alpha: 0, double_sided: material.double_sided, mirrored },
             Pass::Shadow => Self { pass, alpha: alpha.min(1), double_sided: true, mirrored: false },
-            Pass::Geometry | Pass::Rest => {
+            Pass::Geometry | Pass::Rest | Pass::Control => {
                 Self { pass, alpha: alpha.min(1), double_sided: material.double_sided, mirrored }
             }
             Pass::Surface | Pass::Layers => {
@@ -72,6 +86,7 @@ impl Variant {
 pub struct Pipelines {
     layout: wgpu::PipelineLayout,
     shadow_layout: wgpu::PipelineLayout,
+    control_layout: wgpu::PipelineLayout,
     surface: wgpu::ShaderModule,
     geometry: wgpu::ShaderModule,
     shadow: wgpu::ShaderModule,
@@ -125,6 +140,10 @@ impl Pipelines {
         Self {
             layout: pipeline_layout("scene", &[scene[0], scene[1], scene[2], Some(&layouts.shadow)]),
             shadow_layout: pipeline_layout("shadow", &[scene[0], scene[1], scene[2], Some(&layouts.cascade)]),
+            control_layout: pipeline_layout(
+                "control",
+                &[scene[0], scene[1], scene[2], Some(&layouts.control)],
+            ),
             surface: module("surface", &[SCENE, MATERIAL, SKY, include_str!("../shaders/surface.wgsl")]),
             geometry: module(
                 "geometry buffer",
@@ -180,6 +199,7 @@ impl Pipelines {
                 (&self.geometry, "geometry", formats.map(|f| target(f, None)).to_vec(), cutout)
             }
             Pass::Rest => (&self.geometry, "rest", vec![target(REST_FORMAT, None)], cutout),
+            Pass::Control => (&self.geometry, "control", vec![target(CONTROL_FORMAT, None)], cutout),
             Pass::Layers => {
                 let layers = [COLOR_FORMAT; 3].map(|f| target(f, blend)).to_vec();
                 (&self.surface, "layers", layers, alpha_mode)
@@ -209,7 +229,11 @@ impl Pipelines {
         let options = wgpu::PipelineCompilationOptions { constants: &constants, ..Default::default() };
         device.create_render_pipeline(&wgpu::RenderPipelineDescriptor {
             label: Some(name),
-            layout: Some(if in_shadow { &self.shadow_layout } else { &self.layout }),
+            layout: Some(match variant.pass {
+                Pass::Shadow => &self.shadow_layout,
+                Pass::Control => &self.control_layout,
+                _ => &self.layout,
+            }),
             vertex: wgpu::VertexState {
                 module,
                 entry_point: Some(&vertex_entry),

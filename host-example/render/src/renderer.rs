@@ -9,13 +9,14 @@ use glam::{Mat4, Vec3};
 
 use crate::animated::{fill_joints, fill_weights, joint_offsets, weight_offsets};
 use crate::background::{Backdrop, Background};
+use crate::control::ControlValues;
 use crate::frame_buffers::Buffers;
 use crate::ground::Ground;
 use crate::layouts::Layouts;
 use crate::lighting::Lighting;
 use crate::pipelines::{Pass, Pipelines, Variant};
 use crate::shadow::{Cascades, ShadowMaps};
-use crate::targets::{Layers, REST_FORMAT, Target, Targets};
+use crate::targets::{CONTROL_FORMAT, Layers, REST_FORMAT, Target, Targets};
 use crate::textures::TextureStore;
 use crate::tone_map::ToneMap;
 use crate::uniforms::{FrameBlock, InstanceBlock, LightBlock};
@@ -49,6 +50,8 @@ pub struct Renderer {
     weights: Vec<u32>,
     /// For every draw, from its mesh to the scene at rest.
     rest: Vec<Mat4>,
+    /// Values of the control map, where it is rendered.
+    control: Option<ControlValues>,
     joint_count: usize,
     weight_count: usize,
     history: History,
@@ -119,6 +122,7 @@ impl Renderer {
             joints,
             weights,
             rest: rest::matrices(scene),
+            control: None,
             joint_count,
             weight_count,
             history: History::default(),
@@ -146,6 +150,7 @@ impl Renderer {
             if has_layers {
                 self.add_layers();
             }
+            self.add_control_target();
             if let Some(ground) = &mut self.ground {
                 ground.resize(&self.device, size);
             }
@@ -162,6 +167,25 @@ impl Renderer {
         }
         let size = (self.targets.width, self.targets.height);
         self.targets.rest = Some(Target::new(&self.device, "rest position", REST_FORMAT, 1, size));
+    }
+
+    /// Renders the control map too from now on, in a pass of its own, where `scene`, which must be the one given to
+    /// [`Renderer::new`], has one.
+    ///
+    /// # Errors
+    /// [`isophote_files::error::Error::Input`] when its values are beyond the limits of the device.
+    pub fn add_control(&mut self, scene: &Scene) -> Result<()> {
+        if self.control.is_none() && scene.has_control() {
+            self.control = Some(ControlValues::new(&self.device, &self.layouts, scene)?);
+            self.add_control_target();
+        }
+        Ok(())
+    }
+
+    fn add_control_target(&mut self) {
+        let size = (self.targets.width, self.targets.height);
+        let make = || Target::new(&self.device, "control", CONTROL_FORMAT, 1, size);
+        self.targets.control = self.control.as_ref().map(|_| make());
     }
 
     /// Renders colours of surfaces and their light too from now on, in a pass of their own.
@@ -208,15 +232,19 @@ impl Renderer {
         lighting: &Lighting,
     ) {
         let frame = self.write_buffers(scene, pose, view, lighting);
+        let Targets { rest, control, layers, .. } = &self.targets;
+        let passes = [
+            (Pass::Shadow, true),
+            (Pass::Depth, true),
+            (Pass::Surface, true),
+            (Pass::Geometry, true),
+            (Pass::Rest, rest.is_some()),
+            (Pass::Control, control.is_some()),
+            (Pass::Layers, layers.is_some()),
+        ];
         for draw in 0..scene.draws.len() {
-            for pass in [Pass::Shadow, Pass::Depth, Pass::Surface, Pass::Geometry] {
+            for (pass, _) in passes.into_iter().filter(|(_, is_wanted)| *is_wanted) {
                 self.pipelines.prepare(&self.device, self.variant(scene, draw, pass));
-            }
-            if self.targets.rest.is_some() {
-                self.pipelines.prepare(&self.device, self.variant(scene, draw, Pass::Rest));
-            }
-            if self.targets.layers.is_some() {
-                self.pipelines.prepare(&self.device, self.variant(scene, draw, Pass::Layers));
             }
         }
         let eye = frame.eye.truncate();
@@ -232,6 +260,9 @@ impl Renderer {
         self.geometry_passes(encoder, scene);
         if let Some(rest) = &self.targets.rest {
             self.geometry_pass(encoder, scene, Pass::Rest, &[rest]);
+        }
+        if let Some(control) = &self.targets.control {
+            self.geometry_pass(encoder, scene, Pass::Control, &[control]);
         }
         self.tone_map.encode(encoder, &self.targets);
         self.history.view_projection = Some(frame.view_projection);
@@ -331,6 +362,9 @@ impl Renderer {
         pass.set_pipeline(pipeline);
         pass.set_bind_group(1, &primitive.bind_group, &[]);
         pass.set_bind_group(2, &self.materials[scene.primitive(draw).material], &[]);
+        if let (Some(control), Pass::Control) = (&self.control, kind) {
+            pass.set_bind_group(3, control.group(draw), &[]);
+        }
         pass.set_vertex_buffer(0, primitive.vertices.slice(..));
         pass.set_index_buffer(primitive.indices.slice(..), wgpu::IndexFormat::Uint32);
         pass.draw_indexed(0..primitive.index_count, 0, index as u32..index as u32 + 1);
@@ -409,7 +443,7 @@ impl Renderer {
         }
     }
 
-    /// All that is known of each pixel but its colour and its rest position.
+    /// All that is known of each pixel but its colour, its rest position and its control values.
     fn geometry_passes(&self, encoder: &mut wgpu::CommandEncoder, scene: &Scene) {
         let targets = &self.targets;
         let geometry = [&targets.normal, &targets.depth, &targets.object_id, &targets.motion];
@@ -425,7 +459,7 @@ impl Renderer {
         targets: &[&Target],
     ) {
         let attachments: Vec<_> =
-            targets.iter().map(|t| Some(layouts::cleared(&t.view, wgpu::Color::TRANSPARENT))).collect();
+            targets.iter().map(|t| Some(layouts::cleared(&t.view, kind.nothing()))).collect();
         let mut pass = self.begin(encoder, "geometry", &attachments, &self.targets.geometry_depth);
         for &(_, index) in self.visible.solid.iter().chain(&self.visible.blended) {
             self.draw(&mut pass, scene, index, kind);

@@ -18,6 +18,8 @@ pub const OBJECT_ID_FORMAT: wgpu::TextureFormat = wgpu::TextureFormat::R32Float;
 pub const MOTION_FORMAT: wgpu::TextureFormat = wgpu::TextureFormat::Rg32Float;
 /// Format of rest positions.
 pub const REST_FORMAT: wgpu::TextureFormat = wgpu::TextureFormat::Rgba32Float;
+/// Format of control maps, which holds neutral values exactly and far more steps than bytes have.
+pub const CONTROL_FORMAT: wgpu::TextureFormat = wgpu::TextureFormat::Rgba16Float;
 /// Format of depth buffers and the shadow map.
 pub const DEPTH_FORMAT: wgpu::TextureFormat = wgpu::TextureFormat::Depth32Float;
 
@@ -113,6 +115,9 @@ pub struct Targets {
     /// Position in the scene before anything moves in x, y, z, where w is 1; all 0 on the background but where a shadow
     /// falls on the ground. Missing until [`crate::renderer::Renderer::add_rest_positions`] asks for it.
     pub rest: Option<Target>,
+    /// Control map: values of the scene's vertices, and 0.5 where a surface has none and where there is no surface. Missing
+    /// until [`crate::renderer::Renderer::add_control`] asks for it, and of scenes without any.
+    pub control: Option<Target>,
     /// Colours of surfaces and their light. Missing until [`crate::renderer::Renderer::add_layers`] asks for them.
     pub layers: Option<Layers>,
     pub(super) multisampled: Target,
@@ -148,6 +153,7 @@ impl Targets {
             object_id: make("object id", OBJECT_ID_FORMAT, 1),
             motion: make("motion", MOTION_FORMAT, 1),
             rest: None,
+            control: None,
             layers: None,
             multisampled: make("multisampled", COLOR_FORMAT, SAMPLES),
             multisampled_depth: make("multisampled depth", DEPTH_FORMAT, SAMPLES),

@@ -36,22 +36,7 @@ pub fn primitive(
     let influences: &[Influence] =
         if source.influences.is_empty() { &[Influence::default()] } else { &source.influences };
     let deltas = if deltas.is_empty() { vec![MorphDelta::default()] } else { deltas };
-    let limits = device.limits();
-    let make = |label, bytes: &[u8], usage: wgpu::BufferUsages| {
-        let most = if usage.contains(wgpu::BufferUsages::STORAGE) {
-            limits.max_storage_buffer_binding_size.min(limits.max_buffer_size)
-        } else {
-            limits.max_buffer_size
-        };
-        if bytes.len() as u64 > most {
-            return Err(Error::input(
-                format!("mesh '{name}'"),
-                format!("has {} bytes of {label}, more than this device takes at once ({most})", bytes.len()),
-                "split the mesh",
-            ));
-        }
-        Ok(filled_buffer(device, label, bytes, usage))
-    };
+    let make = |label, bytes: &[u8], usage| buffer(device, name, (label, bytes), usage);
     let influences = make("joints", bytemuck::cast_slice(influences), wgpu::BufferUsages::STORAGE)?;
     let deltas = make("morph targets", bytemuck::cast_slice(&deltas), wgpu::BufferUsages::STORAGE)?;
     Ok(GpuPrimitive {
@@ -66,6 +51,32 @@ pub fn primitive(
             entries: &[bind_buffer(0, &influences), bind_buffer(1, &deltas)],
         }),
     })
+}
+
+/// Uploads data of a mesh, with a label that says what it is.
+///
+/// # Errors
+/// [`Error::Input`] when it is larger than a buffer of the device may be.
+pub fn buffer(
+    device: &wgpu::Device,
+    mesh: &str,
+    (label, bytes): (&str, &[u8]),
+    usage: wgpu::BufferUsages,
+) -> Result<wgpu::Buffer> {
+    let limits = device.limits();
+    let most = if usage.contains(wgpu::BufferUsages::STORAGE) {
+        limits.max_storage_buffer_binding_size.min(limits.max_buffer_size)
+    } else {
+        limits.max_buffer_size
+    };
+    if bytes.len() as u64 > most {
+        return Err(Error::input(
+            format!("mesh '{mesh}'"),
+            format!("has {} bytes of {label}, more than this device takes at once ({most})", bytes.len()),
+            "split the mesh",
+        ));
+    }
+    Ok(filled_buffer(device, label, bytes, usage))
 }
 
 /// Uploads one material with its textures.
