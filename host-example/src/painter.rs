@@ -6,6 +6,7 @@ use isophote_example::kernels::Kernels;
 use isophote_example::plan_runner::ALL;
 use isophote_files::error::{AtPlace, Result};
 use isophote_loader::Library;
+use isophote_loader::abi::IsophoteRequest;
 use isophote_render::gpu::Gpu;
 use isophote_render::lighting::Lighting;
 use isophote_render::renderer::Renderer;
@@ -52,8 +53,10 @@ impl Painter {
             if style.wants_rest_positions()? {
                 renderer.add_rest_positions();
             }
+            renderer.add_control(&scene)?;
             let request = guides::request(&library, size, REFERENCE_HEIGHT)
                 .map_err(|e| e.at("--size", "choose another size"))?;
+            let request = IsophoteRequest { guides: guides::known(renderer.targets()), ..request };
             let kernels = Kernels::new(gpu.device.clone(), gpu.queue.clone());
             let frames = FrameRunner::new(&kernels, &library, style.named(), request)?;
             stylized = Some(Stylized { style, frames });

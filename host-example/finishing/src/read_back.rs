@@ -131,7 +131,8 @@ fn drawn(guide: Guide, targets: &Targets) -> Option<&Target> {
         Guide::ObjectId => Some(&targets.object_id),
         Guide::Motion => Some(&targets.motion),
         Guide::RestPosition => targets.rest.as_ref(),
-        Guide::MotionForward | Guide::Control | Guide::Flow | Guide::Paper | Guide::Hatching => None,
+        Guide::Control => targets.control.as_ref(),
+        Guide::MotionForward | Guide::Flow | Guide::Paper | Guide::Hatching => None,
         // They are scene-referred, which pictures of a style are not always.
         Guide::Albedo | Guide::Diffuse | Guide::Specular => None,
     }

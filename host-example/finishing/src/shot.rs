@@ -11,6 +11,7 @@ use isophote_example::kernels::Kernels;
 use isophote_example::plan_runner::ALL;
 use isophote_files::error::Result;
 use isophote_loader::Library;
+use isophote_loader::catalogue::Kind;
 use isophote_pictures::exr::MadeMatte;
 use isophote_pictures::floats::Picture;
 use isophote_pictures::material::Material;
@@ -60,6 +61,8 @@ pub struct Options {
     pub scene_referred: bool,
     /// True where rest positions are rendered whatever the style.
     pub rest_positions: bool,
+    /// True where the control map of a scene that has one is rendered whatever the style.
+    pub control: bool,
     /// True where colours of surfaces and their light are rendered, whatever the style.
     pub layers: bool,
     /// Backend that the style runs on; the renderer's device may be a driver that computes on the CPU.
@@ -134,6 +137,11 @@ impl Shot {
         if options.ground {
             renderer.add_ground();
         }
+        // Before the style, which asks for what is there.
+        let reads_control = style.as_ref().map(|(_, style)| style.can_use(Kind::Control)).transpose()?;
+        if options.control || reads_control == Some(true) {
+            renderer.add_control(&scene)?;
+        }
         let finish = match style {
             None => Finish::Plain,
             Some((library, style)) if options.backend.is_cpu(gpu.is_software()) => {
@@ -145,7 +153,8 @@ impl Shot {
                 let materials = materials::on_frame(&options.materials, options.size);
                 let materials =
                     materials.iter().map(|(name, pixels)| (*name, uploaded(&gpu, pixels))).collect();
-                let stylizer = Stylizer::on_materials(&kernels, library, style, options.size, materials)?;
+                let stylizer =
+                    Stylizer::on_materials(&kernels, library, style, renderer.targets(), materials)?;
                 Finish::Device(Box::new(stylizer))
             }
         };

@@ -57,8 +57,9 @@ impl Stage {
 
     fn stylizer(&self, kernels: &Arc<Kernels>, name: &str) -> Stylizer {
         let style = style(&self.library, name);
-        let mut stylizer = Stylizer::new(kernels, &self.library, style, SIZE).expect("the style fits");
-        stylizer.bind(self.renderer.targets()).expect("the targets fit");
+        let targets = self.renderer.targets();
+        let mut stylizer = Stylizer::new(kernels, &self.library, style, targets).expect("the style fits");
+        stylizer.bind(targets).expect("the targets fit");
         stylizer
     }
 

@@ -37,14 +37,13 @@ pub struct Stylizer {
 }
 
 impl Stylizer {
-    /// Makes `style` ready for frames of `size`, with all guides that the renderer has. `kernels` are
-    /// those of the renderer's device.
+    /// Makes `style` ready for frames as large as `targets`, with all guides that the renderer has there. `kernels` are
+    /// those of its device.
     ///
     /// # Errors
     /// [`isophote_files::error::Error::Input`] when an input that the style needs is open, [`isophote_files::error::Error::Failure`] when the device refuses.
-    pub fn new(kernels: &Arc<Kernels>, library: &Library, style: Style, size: (u32, u32)) -> Result<Self> {
-        let request = frame_request(library, &style, size)?;
-        Self::with_request(kernels, library, style, request)
+    pub fn new(kernels: &Arc<Kernels>, library: &Library, style: Style, targets: &Targets) -> Result<Self> {
+        Self::on_materials(kernels, library, style, targets, Vec::new())
     }
 
     /// Makes `style` ready for pictures as `request` says. `kernels` are those of the device that they are on.
@@ -69,12 +68,12 @@ impl Stylizer {
         kernels: &Arc<Kernels>,
         library: &Library,
         style: Style,
-        size: (u32, u32),
+        targets: &Targets,
         materials: Vec<(&'static str, wgpu::TextureView)>,
     ) -> Result<Self> {
-        let usual = frame_request(library, &style, size)?;
+        let usual = frame_request(library, &style, (targets.width, targets.height))?;
         let bits = library.guide_bits(materials.iter().map(|(name, _)| *name)).map_err(refused)?;
-        let request = IsophoteRequest { guides: usual.guides | bits, ..usual };
+        let request = IsophoteRequest { guides: guides::known(targets) | bits, ..usual };
         Ok(Self { materials, ..Self::with_request(kernels, library, style, request)? })
     }
 
@@ -214,7 +213,7 @@ impl Stylizer {
     }
 
     fn bind_with(&mut self, color: &Target, targets: &Targets) -> Result<()> {
-        let mut inputs = guides::inputs(color, targets).to_vec();
+        let mut inputs = guides::inputs(color, targets);
         inputs.extend(self.materials.iter().map(|(name, view)| (*name, view)));
         self.frames.bind(&inputs)
     }
@@ -241,7 +240,7 @@ impl Style {
     }
 }
 
-/// Request of the renderer's frames: linear light, premultiplied, with guides.
+/// Request of the renderer's frames: linear light, premultiplied, with the guides of every scene.
 ///
 /// # Errors
 /// [`isophote_files::error::Error::Input`] for impossible sizes.

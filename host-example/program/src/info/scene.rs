@@ -44,6 +44,7 @@ pub fn add(facts: &mut Facts, path: &Path) -> Result<()> {
     facts.add("cameras", list_file_cameras(&scene));
     facts.add("skins", scene.skins.len());
     let animation = |animation: &isophote_scene::animation::Animation| json!({ "name": name(&animation.name), "seconds": animation.duration(), "channels": animation.channels.len() });
+    facts.add("control_map", scene.has_control());
     facts.add("animations", scene.animations.iter().map(animation).collect::<Vec<_>>());
     let extension =
         |(name, is_understood): &(String, bool)| json!({ "name": name, "understood": is_understood });

@@ -368,6 +368,7 @@ impl RenderArgs {
             fps: self.fps,
             scene_referred: is_exr && !self.tone_mapped,
             rest_positions: is_exr,
+            control: is_exr,
             // They are light of the scene.
             layers: is_exr && !self.tone_mapped && !self.no_light,
             backend: self.backend,
@@ -383,13 +384,16 @@ type Guide = (fn(&Targets) -> Option<&Target>, &'static [&'static str], Precisio
 const ALBEDO: [&str; 4] = ["albedo.R", "albedo.G", "albedo.B", "albedo.A"];
 const DIFFUSE: [&str; 4] = ["diffuse.R", "diffuse.G", "diffuse.B", "diffuse.A"];
 const SPECULAR: [&str; 4] = ["specular.R", "specular.G", "specular.B", "specular.A"];
+/// Channels of a control map.
+const CONTROL: [&str; 4] = ["control.R", "control.G", "control.B", "control.A"];
 
 /// Named as compositors and `apply` know them.
-const GUIDES: [Guide; 7] = [
+const GUIDES: [Guide; 8] = [
     (|targets| Some(&targets.normal), &["N.X", "N.Y", "N.Z"], Precision::Half),
     (|targets| Some(&targets.depth), &["Z"], Precision::Float),
     (|targets| Some(&targets.object_id), &["id"], Precision::Float),
     (|targets| targets.rest.as_ref(), &["Pref.X", "Pref.Y", "Pref.Z"], Precision::Float),
+    (|targets| targets.control.as_ref(), &CONTROL, Precision::Half),
     (|targets| Some(&targets.layers.as_ref()?.albedo), &ALBEDO, Precision::Half),
     (|targets| Some(&targets.layers.as_ref()?.diffuse), &DIFFUSE, Precision::Half),
     (|targets| Some(&targets.layers.as_ref()?.specular), &SPECULAR, Precision::Half),

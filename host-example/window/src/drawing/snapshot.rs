@@ -63,6 +63,7 @@ impl<F: PartialEq> Snapshots<F> {
             (Guide::ObjectId, copied(&targets.object_id)),
         ];
         guides.extend(targets.rest.iter().map(|rest| (Guide::RestPosition, copied(rest))));
+        guides.extend(targets.control.iter().map(|control| (Guide::Control, copied(control))));
         let color = copied(&targets.color);
         gpu.queue.submit([encoder.finish()]);
         for buffer in guides.iter().map(|(_, buffer)| buffer).chain([&color]) {

@@ -5,12 +5,10 @@ use std::sync::Arc;
 use super::canvas::Numbers;
 use super::pictures::PictureSource;
 use crate::state::scenery::{Scenery, is_same};
+use isophote_example::guides;
 use isophote_files::error::Result;
 use isophote_finishing::stylize::Stylizer;
-use isophote_loader::abi::{
-    ISOPHOTE_GUIDE_DEPTH, ISOPHOTE_GUIDE_MOTION, ISOPHOTE_GUIDE_NORMAL, ISOPHOTE_GUIDE_OBJECT_ID,
-    ISOPHOTE_GUIDE_REST_POSITION, ISOPHOTE_SPACE_LINEAR, IsophoteRequest,
-};
+use isophote_loader::abi::{ISOPHOTE_SPACE_LINEAR, IsophoteRequest};
 use isophote_render::background::Background;
 use isophote_render::gpu::Gpu;
 use isophote_render::lighting::Lighting as Light;
@@ -66,6 +64,7 @@ impl SceneSource {
         if *ground {
             renderer.add_ground();
         }
+        renderer.add_control(scene)?;
         // A frame that is not submitted compiles what the first one needs, so that the window does not wait for it.
         renderer.encode(
             &mut gpu.device.create_command_encoder(&Default::default()),
@@ -108,11 +107,7 @@ impl SceneSource {
             width: targets.width,
             height: targets.height,
             space: ISOPHOTE_SPACE_LINEAR,
-            guides: ISOPHOTE_GUIDE_NORMAL
-                | ISOPHOTE_GUIDE_DEPTH
-                | ISOPHOTE_GUIDE_OBJECT_ID
-                | ISOPHOTE_GUIDE_MOTION
-                | ISOPHOTE_GUIDE_REST_POSITION,
+            guides: guides::known(targets),
             ..self.usual
         }
     }
