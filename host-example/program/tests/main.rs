@@ -6,6 +6,7 @@ mod bad_input;
 mod carry;
 mod command_line;
 mod compose;
+mod control;
 mod cryptomatte;
 mod documents;
 mod drawing;

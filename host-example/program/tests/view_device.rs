@@ -1,6 +1,7 @@
 //! The window in this process, on a display without a screen: its device is lost, and counted is what it makes.
 #![cfg(target_os = "linux")]
 
+mod directed;
 mod named;
 
 use std::cell::RefCell;

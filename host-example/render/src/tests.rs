@@ -280,6 +280,49 @@ fn motion_is_the_same_after_a_frame_that_was_passed_over() {
 }
 
 #[test]
+fn control_maps_are_those_of_vertices_and_neutral_elsewhere() {
+    let Some(gpu) = gpu() else { return };
+    let small = Node {
+        mesh: Some(1),
+        transform: isophote_scene::Transform::Matrix(
+            Mat4::from_translation(Vec3::new(0.0, 0.0, 1.0)) * Mat4::from_scale(Vec3::splat(0.25)),
+        ),
+        ..Node::default()
+    };
+    let nodes = vec![Node { mesh: Some(0), ..Node::default() }, small];
+    let mut scene = scene(vec![square(), square()], nodes, vec![]);
+    let rendered = |renderer: &mut Renderer, scene: &Scene| {
+        let mut encoder = gpu.device.create_command_encoder(&Default::default());
+        renderer.encode(&mut encoder, scene, &Pose::at_rest(scene), &view(), &Lighting::default());
+        gpu.queue.submit([encoder.finish()]);
+        let control = renderer.targets().control.as_ref();
+        control.map(|control| Readback::default().read(&gpu, &control.texture).unwrap())
+    };
+    let mut plain = Renderer::new(&gpu.device, &gpu.queue, &scene, SIZE).unwrap();
+    plain.add_control(&scene).unwrap();
+    assert_eq!(rendered(&mut plain, &scene), None, "no vertex has a value");
+    let (left, right) = ([0.0, 1.0, 0.25, 0.5], [1.0, 0.0, 0.25, 0.75]);
+    scene.meshes[0].primitives[0].control = vec![left, right, right, left];
+    let mut renderer = Renderer::new(&gpu.device, &gpu.queue, &scene, (8, 8)).unwrap();
+    assert_eq!(rendered(&mut renderer, &scene), None, "nobody asked for it");
+    renderer.add_control(&scene).unwrap();
+    renderer.resize(SIZE).unwrap();
+    let control = rendered(&mut renderer, &scene).expect("the scene has values");
+    let id = Readback::default().read(&gpu, &renderer.targets().object_id.texture).unwrap();
+    for (x, y) in (0..SIZE.1).flat_map(|y| (0..SIZE.0).map(move |x| (x, y))) {
+        let share = ((x as f32 + 0.5 - 32.0) / 12.0 + 1.0) * 0.5;
+        let expected = match pixel(&id, x, y)[0] {
+            1.0 => [0, 1, 2, 3].map(|k| left[k] + (right[k] - left[k]) * share),
+            _ => [0.5; 4],
+        };
+        let found = pixel(&control, x, y);
+        let is_near = found.iter().zip(expected).all(|(a, b)| (a - b).abs() < 1e-3);
+        assert!(is_near, "{found:?} instead of {expected:?} at {x}, {y}");
+    }
+    assert_eq!([pixel(&id, 32, 24), pixel(&id, 22, 24), pixel(&id, 1, 1)], [[2.0], [1.0], [0.0]]);
+}
+
+#[test]
 fn backs_are_hidden_holes_are_open_and_mirrors_keep_their_front() {
     let Some(gpu) = gpu() else { return };
     let covered = |scale: Vec3, change: fn(&mut Material)| {

@@ -183,6 +183,30 @@ pub fn cube_json(uri: &str, length: usize) -> String {
     )
 }
 
+/// Writes the cube with values of a control map at its vertices, `value` of where each is, as the attribute `name`.
+pub fn controlled_cube(folder: &Path, name: &str, value: impl Fn([f32; 3]) -> [f32; 4]) -> PathBuf {
+    let json = fs::read_to_string(cube(folder)).expect("the cube was written");
+    let mut json: serde_json::Value = serde_json::from_str(&json).expect("the cube is JSON");
+    let mut bytes = fs::read(folder.join("cube.bin")).expect("the cube was written");
+    let (length, half) = (bytes.len(), bytes.len() / 2);
+    let numbers: Vec<f32> = bytes[..half].as_chunks().0.iter().map(|b| f32::from_le_bytes(*b)).collect();
+    let values = numbers.as_chunks::<3>().0.iter().flat_map(|position| value(*position));
+    bytes.extend(values.flat_map(f32::to_le_bytes));
+    fs::write(folder.join("controlled.bin"), &bytes).expect("the folder is writable");
+    let mut push = |list: &str, item| json[list].as_array_mut().expect("a list").push(item);
+    let view = serde_json::json!({"buffer": 0, "byteOffset": length, "byteLength": bytes.len() - length});
+    push("bufferViews", view);
+    push(
+        "accessors",
+        serde_json::json!({"bufferView": 2, "componentType": 5126, "count": 36, "type": "VEC4"}),
+    );
+    json["meshes"][0]["primitives"][0]["attributes"][name] = 2.into();
+    json["buffers"][0] = serde_json::json!({"uri": "controlled.bin", "byteLength": bytes.len()});
+    let file = folder.join("controlled.gltf");
+    fs::write(&file, json.to_string()).expect("the folder is writable");
+    file
+}
+
 /// The folder of real scenes and pictures, where there is one.
 pub fn assets() -> Option<PathBuf> {
     let folder = root().join("../shared/assets");

@@ -215,6 +215,32 @@ fn document(name: &str) -> Builder {
     Builder { json, bytes: Vec::new() }
 }
 
+#[cfg(feature = "compressed")]
+#[test]
+fn control_maps_are_decoded() {
+    for name in ["gltf_meshopt/ball_khr.glb", "gltf_draco/ball_sequential.glb", "gltf_draco/ball_valence.glb"]
+    {
+        let plain = whole(name);
+        let mut b = document(name);
+        for mesh in b.json["meshes"].as_array_mut().unwrap() {
+            for primitive in mesh["primitives"].as_array_mut().unwrap() {
+                for pointer in ["/attributes", "/extensions/KHR_draco_mesh_compression/attributes"] {
+                    let Some(attributes) = primitive.pointer_mut(pointer) else { continue };
+                    let attributes = attributes.as_object_mut().unwrap();
+                    let colours = attributes.remove("COLOR_0").unwrap();
+                    attributes.insert("_CONTROL".to_owned(), colours);
+                }
+            }
+        }
+        let scene = b.load().unwrap();
+        let colours = first(&plain).0.vertices.iter().map(|vertex| vertex.color);
+        // Their alpha is 1 everywhere, which nobody painted.
+        let expected: Vec<[f32; 4]> = colours.map(|[r, g, b, _]| [r, g, b, 0.5]).collect();
+        assert!(expected.iter().any(|value| *value != expected[0]), "{name}");
+        assert_eq!(first(&scene).0.control, expected, "{name}");
+    }
+}
+
 /// One thing that is changed in a good document, and a word of the message.
 type Change = (&'static str, fn(&mut Value));
 

@@ -5,5 +5,6 @@ mod broken;
 pub(crate) mod build;
 mod cases;
 mod compressed;
+mod control;
 mod gltf;
 mod obj;
