@@ -57,7 +57,7 @@ fn what_is_no_strength_of_the_medium_leaves_it_alone() {
 #[test]
 fn normalized_integers_are_values() {
     for (kind, bytes) in [
-        (U8, vec![255, 0, 51, 102].repeat(3)),
+        (U8, [255, 0, 51, 102].repeat(3)),
         (U16, [65535u16, 0, 13107, 26214].map(u16::to_le_bytes).concat().repeat(3)),
     ] {
         let mut b = Builder::triangle();
