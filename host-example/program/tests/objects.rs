@@ -121,6 +121,81 @@ fn frames_follow_rules_by_themselves_and_beside_others() {
 }
 
 #[test]
+fn things_have_looks_of_their_own() {
+    let folder = folder();
+    let at = |name: &str| folder.path().join(name);
+    save_numbered(&at("in.exr"));
+    let run = |rules: &str| {
+        succeeds(&mut apply(folder.path(), ("cartoon", rules), &["in.exr", "out.exr"]));
+        rgb(&at("out.exr"))
+    };
+    let layered = |looks: &str| {
+        fs::write(at("looks.json"), looks).expect("the folder is writable");
+        let mut command = isophote();
+        command
+            .current_dir(folder.path())
+            .args("apply --layered looks.json in.exr out.exr --force".split(' '));
+        succeeds(command.args(["--backend", "cpu"]).args(IN_PIXELS));
+        rgb(&at("out.exr"))
+    };
+    // Written out, by name, and as a preset beside it.
+    let written = r#"{"match": "cryptomatte:hero", "look": {"style": "ink", "parameters": {"tone": 0.8}}}"#;
+    let hero = r#"{"style": "ink", "parameters": {"tone": 0.8}}"#;
+    fs::write(at("hero.json"), hero).expect("the folder is writable");
+    let beside = r#"{"match": "cryptomatte:hero", "look": "hero.json"}"#;
+    let wanted = layered(
+        r#"[{"style": "cartoon"}, {"style": "ink", "params": {"tone": 0.8}, "mask": "cryptomatte:hero"}]"#,
+    );
+    assert_eq!(run(written), wanted);
+    assert_eq!(run(beside), wanted);
+    assert_ne!(run(""), wanted);
+    let named = r#"{"match": "id:3", "look": "watercolor"}"#;
+    assert_eq!(run(named), layered(r#"[{"style": "cartoon"}, {"style": "watercolor", "mask": "id:3"}]"#));
+    // Factors direct a thing in its own look as well, and a style of its own need not follow rules.
+    let both = r#"{"match": "id:3", "look": "ink", "lines": false}"#;
+    assert_ne!(run(both), run(r#"{"match": "id:3", "look": "ink"}"#));
+    let mut blurred = apply(folder.path(), ("gaussian", named), &["in.exr", "out.exr"]);
+    succeeds(&mut blurred);
+}
+
+#[test]
+fn looks_of_things_that_are_none_say_why() {
+    let folder = folder();
+    let at = |name: &str| folder.path().join(name);
+    save_numbered(&at("in.exr"));
+    for (rules, more, words) in [
+        (
+            r#"{"match": "id:3", "look": {"style": "ink", "objects": []}}"#,
+            "",
+            &["object 1: its look", "rules"][..],
+        ),
+        (r#"{"match": "id:3", "look": {"style": "inc"}}"#, "", &["object 1: its look", "inc"]),
+        (
+            r#"{"match": "id:3", "look": {"stile": "ink"}}"#,
+            "",
+            &["object 1: its look", "did you mean 'style'"],
+        ),
+        (r#"{"match": "id:3", "look": 3}"#, "", &["object 1", "its look is none"]),
+        (r#"{"match": "id:3", "look": "missing.json"}"#, "", &["missing.json"]),
+        (r#"{"match": "id:3", "look": "rules.json"}"#, "", &["rules"]),
+        (r#"{"match": "id:3", "look": "ink"}"#, "--mask=id:1", &["--mask", "--layered"]),
+    ] {
+        let more: Vec<&str> = more.split(' ').filter(|word| !word.is_empty()).collect();
+        fails(
+            &mut apply(folder.path(), ("cartoon", rules), &[&["in.exr", "out.exr"], &more[..]].concat()),
+            2,
+            words,
+        );
+    }
+    let wrong = r#"{"style": "cartoon", "objects": [{"match": "id:3", "look": {"style": "ink", "parameters": {"tome": 1}}}]}"#;
+    fs::write(at("wrong.json"), wrong).expect("the folder is writable");
+    let mut check = isophote();
+    check.current_dir(folder.path()).args(["preset", "check", "wrong.json"]);
+    let said = support::errors(&check.output().expect("the program can be started"));
+    assert!(said.contains("object 1: its look") && said.contains("tome"), "{said}");
+}
+
+#[test]
 fn rules_that_cannot_be_followed_say_why() {
     let folder = folder();
     let at = |name: &str| folder.path().join(name);

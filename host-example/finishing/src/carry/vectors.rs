@@ -107,7 +107,7 @@ impl Vectors {
         // To the library time runs from there to here, whichever comes first.
         let numbers = if way == Guide::Motion { [frame, there] } else { [-frame, -there] };
         let size = (own.pixels.width(), own.pixels.height());
-        let usual = library.request(size).map_err(|e| e.at(&name(), "use a smaller picture"))?;
+        let usual = library.request(size).map_err(|e| e.at(name(), "use a smaller picture"))?;
         let request = PictureRequest::of(own, working.space, Some(numbers[0])).request(usual);
         let image = |name: &str, number: i64| {
             let at = numbers.iter().position(|known| *known == number).filter(|_| name == "color")?;

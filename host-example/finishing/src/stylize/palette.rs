@@ -69,17 +69,20 @@ impl Style {
     ) -> Result<Self> {
         let Some(palette) = palette else { return Self::load(library, name, settings) };
         let mut style = Self::load(library, name, &[])?;
-        style.end_in_palette()?;
-        style.colour_by(palette)?;
+        style.end_in(palette)?;
         settings.iter().try_for_each(|setting| style.set(setting))?;
         Ok(style)
     }
 
-    /// Draws its result by a node `palette` of its own, where it has none and yields colours.
-    fn end_in_palette(&mut self) -> Result<()> {
+    /// Draws its result in the colours of a palette, by a node of its own where it has none and yields colours.
+    ///
+    /// # Errors
+    /// As [`Style::colour_by`].
+    pub fn end_in(&mut self, palette: &Palette) -> Result<()> {
         let is_masked = self.takes("mask")?;
         let Self { graph, name, kind, .. } = self;
-        end_in_palette(graph, *kind, is_masked).map_err(|e| e.at(name, FIX))
+        end_in_palette(graph, *kind, is_masked).map_err(|e| e.at(name, FIX))?;
+        self.colour_by(palette)
     }
 
     /// Gives its nodes `palette` the colours of a palette.

@@ -112,6 +112,7 @@ impl Preset {
             None => {}
         }
         let objects = ObjectRule::take(place, &mut file, &mut faults);
+        faults.extend(looks_of(place, &objects));
         Ok((Self { title, style, lengths, params, objects }, faults))
     }
 
@@ -149,6 +150,25 @@ impl Preset {
         ObjectRule::put(&self.objects, &mut file);
         file
     }
+}
+
+/// Faults of looks that rules for objects have written out.
+fn looks_of(place: &str, rules: &[ObjectRule]) -> Vec<Fault> {
+    let mut faults = Vec::new();
+    for (number, rule) in rules.iter().enumerate() {
+        let Some(look @ Value::Object(own)) = rule.rule.get(objects::LOOK) else { continue };
+        let place = format!("{place}: object {}: its look", number + 1);
+        if own.contains_key(objects::KEY) {
+            let fix = "write rules for all things in the preset itself";
+            faults.push(Fault::format(&place, "has rules for objects", fix));
+            continue;
+        }
+        match Preset::examine(&place, &look.to_string()) {
+            Ok((_, own)) => faults.extend(own),
+            Err(fault) => faults.push(fault),
+        }
+    }
+    faults
 }
 
 /// Faults of the keys of a file that are not known, each with the nearest one that is.

@@ -1,5 +1,6 @@
-//! Rules of a preset for things in a picture: how much detail they have, how wide and how many their lines are, and how strong
-//! the medium is on them. A host that knows where things are makes a control map of them.
+//! Rules of a preset for things in a picture: how much detail they have, how wide and how many their lines are, how strong
+//! the medium is on them, and whether they have a look of their own. A host that knows where things are makes a control map of
+//! them, and lays the looks over the picture there.
 
 use super::fault::Fault;
 use crate::error::nearest_name;
@@ -14,6 +15,8 @@ const MOST: usize = 256;
 /// Keys of a rule: what names the things, what turns lines off, and its factors in the order of a map's channels.
 const MATCH: &str = "match";
 const LINES: &str = "lines";
+/// Key of a look of their own.
+pub(super) const LOOK: &str = "look";
 const FACTORS: [&str; 4] = ["detail", "line_width", "line_amount", "medium"];
 /// Channel of the amount of lines.
 const AMOUNT: usize = 2;
@@ -83,7 +86,11 @@ impl ObjectRule {
             let fix = format!("leave out \"{LINES}\" or \"{}\"", FACTORS[AMOUNT]);
             faults.push(Fault::format(place, "has no lines, and an amount of them", fix));
         }
-        let is_known = |key: &str| key == MATCH || key == LINES || FACTORS.contains(&key);
+        if rule.get(LOOK).is_some_and(|look| !look.is_string() && !look.is_object()) {
+            let fix = "write {\"style\": \"ink\"}, or the name of a style, a look or a preset";
+            faults.push(Fault::value(place, "its look is none", fix));
+        }
+        let is_known = |key: &str| [MATCH, LINES, LOOK].contains(&key) || FACTORS.contains(&key);
         faults.extend(rule.keys().filter(|key| !is_known(key)).map(|key| unknown(place, key)));
         let control = control(lines, factors);
         (faults.len() == before).then_some(Self { rule, things, control })
@@ -117,7 +124,7 @@ fn factor(place: &str, key: &str, value: Option<&Value>, faults: &mut Vec<Fault>
 }
 
 fn unknown(place: &str, key: &str) -> Fault {
-    let keys = [&[MATCH, LINES], &FACTORS[..]].concat();
+    let keys = [&[MATCH, LINES, LOOK], &FACTORS[..]].concat();
     let fix = nearest_name(key, keys.iter().copied()).map_or_else(
         || format!("the keys are {}", keys.join(", ")),
         |near| format!("did you mean '{near}'?"),

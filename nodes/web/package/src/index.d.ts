@@ -31,6 +31,8 @@ export interface ObjectRule {
   line_width?: number;
   line_amount?: number;
   medium?: number;
+  /** A look of their own: a preset without rules, or its name. */
+  look?: Preset | string;
 }
 
 /** Nodes and how they are connected: a graph file. */

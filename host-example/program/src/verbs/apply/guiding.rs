@@ -11,7 +11,8 @@ use isophote_finishing::apply::masks::{MaskChoice, Masks};
 use isophote_finishing::apply::materials::Laid;
 use isophote_finishing::apply::planner::Planner;
 use isophote_finishing::apply::tasks::Tasks;
-use isophote_finishing::stylize::preset;
+use isophote_finishing::stylize::preset::{self, ObjectRule};
+use isophote_finishing::stylize::style::LOOK;
 use isophote_loader::Library;
 use isophote_pictures::exr::{Guide, MaskSource, Selection};
 use isophote_pictures::read::Opened;
@@ -43,10 +44,12 @@ impl ApplyArgs {
             return Ok(Vec::new());
         };
         let wrong = |problem, fix| Err(Error::input(format!("{}: objects", style.name), problem, fix));
-        if looks.len() > 1 {
+        if self.layered.is_some() {
             return wrong("are rules of one of several looks", "give looks masks, or name the preset alone");
         }
-        if !style.takes(Guide::Control.id())? {
+        let is_look_alone =
+            |rule: &ObjectRule| rule.rule.contains_key(LOOK) && rule.control.iter().all(Option::is_none);
+        if !style.objects.iter().all(is_look_alone) && !style.takes(Guide::Control.id())? {
             let fix = "choose another style, or connect @control in its graph";
             return wrong("are rules that the style does not follow", fix);
         }

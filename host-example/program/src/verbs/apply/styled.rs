@@ -3,7 +3,7 @@
 use std::path::Path;
 
 use super::ApplyArgs;
-use isophote_files::error::Result;
+use isophote_files::error::{Error, Result};
 use isophote_finishing::apply::filter::MaskedStyle;
 use isophote_finishing::apply::looks::{self, Entry};
 use isophote_finishing::stylize::style::Style;
@@ -50,7 +50,18 @@ impl ApplyArgs {
         let palette = palette.as_ref();
         let looks = if entries.is_empty() {
             let style = Style::load_in(library, name, palette, &self.set)?;
-            vec![MaskedStyle { style, mask: self.mask.as_ref().and_then(|_| masks.next()) }]
+            let own = style.own_looks(library)?;
+            if self.mask.is_some() && !own.is_empty() {
+                let problem = "the preset's rules give things looks of their own, which no mask covers";
+                return Err(Error::input("--mask", problem, "leave it out, or list looks by --layered"));
+            }
+            let mask = self.mask.as_ref().and_then(|_| masks.next());
+            let mut looks = vec![MaskedStyle { style, mask }];
+            for (rule, mut style) in own {
+                palette.map_or(Ok(()), |palette| style.end_in(palette))?;
+                looks.push(MaskedStyle { style, mask: Some(rule) });
+            }
+            looks
         } else {
             let look = |entry: &Entry| {
                 let style = entry.style(library)?;
