@@ -29,7 +29,7 @@ const START: [&str; 8] = [
     "link 'photo.png'",
 ];
 /// Controls while a picture is edited.
-const EDITING: [&str; 28] = [
+const EDITING: [&str; 27] = [
     "button 'File'",
     "button 'Undo'",
     "button 'Redo'",
@@ -52,7 +52,6 @@ const EDITING: [&str; 28] = [
     "spin button 'Blur'",
     "toggle button 'Output'",
     "toggle button 'Brush'",
-    "toggle button 'Materials'",
     "toggle button 'Histogram'",
     "slider 'Width of the panel'",
     "spin button 'Exposure'",

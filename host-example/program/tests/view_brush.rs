@@ -129,12 +129,35 @@ fn strokes_paint_along_their_way_and_are_steps() {
     harness.state_mut().redo();
     harness.state_mut().redo();
     assert_eq!((at(&harness, 80, 45), at(&harness, 50, 20)), (127, 0));
+}
+
+#[test]
+fn maps_are_filled_and_cleared_and_looks_tell_what_they_follow() {
+    let folder = support::folder();
+    let mut harness = window(folder.path(), "ink");
+    harness.get_by_label("Brush").click();
+    harness.run_ok();
+    harness.get_by_label("Paint").click();
+    harness.run_ok();
+    let brush = &mut harness.state_mut().painting.brush;
+    (brush.channel, brush.strengths[Channel::LineAmount as usize]) = (Channel::LineAmount, -1.0);
+    let at = |harness: &Harness<'_, Session>, x, y| painted(harness.state(), Channel::LineAmount)(x, y);
     harness.get_by_label("Fill").click();
     harness.run_ok();
     assert_eq!(at(&harness, 119, 89), 0);
     harness.get_by_label("Clear").click();
     harness.run_ok();
     assert_eq!(at(&harness, 50, 20), 127);
+    // Of a look that follows no map only the mask is painted.
+    assert!(harness.query_by_label_contains("follows no").is_none());
+    let library = harness.state().library.clone();
+    let blur = EditedLook::open(&library, "gaussian".as_ref()).expect("the style");
+    harness.state_mut().take_over(Outcome::Opened(Opened::Look(Box::new(blur))));
+    harness.run_ok();
+    harness.get_by_label_contains("follows no control map");
+    harness.state_mut().painting.brush.channel = Channel::Mask;
+    harness.run_ok();
+    assert!(harness.query_by_label_contains("follows no").is_none());
     // A stroke ends where the brush is put away under it.
     harness.get_by_label("Paint").click();
     harness.run_ok();

@@ -14,6 +14,15 @@ use isophote_finishing::stylize::style::Setting;
 use isophote_loader::Library;
 use isophote_loader::catalogue::Node;
 
+/// Inputs that people make.
+const MADE: [&str; 4] = ["mask", "control", "paper", "hatching"];
+
+/// Those that a look reads; none where it cannot be made.
+fn inputs(look: &EditedLook, library: &Library) -> Vec<&'static str> {
+    let Ok(Some(style)) = look.style(library) else { return Vec::new() };
+    MADE.into_iter().filter(|input| style.takes(input).unwrap_or_default()).collect()
+}
+
 /// The looks, at least one.
 pub struct Looks {
     /// Look that the present one is compared with, if that is not the original.
@@ -24,6 +33,8 @@ pub struct Looks {
     current: usize,
     /// Parameters of the present look.
     parameters: Arc<[Parameter]>,
+    /// Inputs that it reads beside the picture, of those that people make.
+    inputs: Vec<&'static str>,
     /// The list of nodes that the present look is, if it is one.
     chain: Option<Chain>,
     /// The part of it that is looked at, if not the whole.
@@ -51,6 +62,7 @@ impl Looks {
             list: looks.into_iter().map(Arc::new).collect(),
             current: 0,
             parameters: Arc::default(),
+            inputs: Vec::new(),
             chain: None,
             watched: None,
             selected: None,
@@ -61,6 +73,7 @@ impl Looks {
         if let Some(first) = looks.list.first() {
             looks.chain = first.chain(library)?;
             looks.parameters = first.parameters(library)?.into();
+            looks.inputs = inputs(first, library);
         }
         Ok(looks)
     }
@@ -83,6 +96,11 @@ impl Looks {
     /// Its parameters.
     pub fn parameters(&self) -> &Arc<[Parameter]> {
         &self.parameters
+    }
+
+    /// True where it reads an input that people make: a mask, a control map, paper or hatching.
+    pub fn takes(&self, input: &str) -> bool {
+        self.inputs.contains(&input)
     }
 
     /// True where a parameter of it has no effect at the moment.
@@ -152,6 +170,7 @@ impl Looks {
         self.select(selected);
         self.watch(watched);
         self.idle.clear();
+        self.inputs = inputs(self.present(), &self.library);
         self.parameters = self.present().parameters(&self.library)?.into();
         Ok(())
     }

@@ -49,13 +49,19 @@ pub fn show(ui: &mut Ui, session: &mut Session) {
         ui.checkbox(&mut session.painting.is_shown, "Show it").on_hover_text(hint);
     });
     channels(ui, session);
+    let kind = session.painting.brush.channel.kind();
+    if !session.looks.takes(kind.option()) {
+        note(ui, &format!("{} follows no {}.", session.look().name, kind.name()));
+    }
     sliders(ui, session);
     whole(ui, session);
     if session.open.playback().is_some_and(|playback| playback.frames().is_some()) {
-        ui.add(egui::Label::new(
-            egui::RichText::new("It lies on all frames as it is.").small().color(theme::FAINT),
-        ));
+        note(ui, "It lies on all frames as it is.");
     }
+}
+
+fn note(ui: &mut Ui, text: &str) {
+    ui.add(egui::Label::new(egui::RichText::new(text).small().color(theme::FAINT)).wrap());
 }
 
 /// The list of what can be painted.
@@ -63,12 +69,15 @@ fn channels(ui: &mut Ui, session: &mut Session) {
     ui.horizontal(|ui| {
         ui.add_space(12.0);
         let label = ui.label("Paints");
+        let takes = |kind: Kind| session.looks.takes(kind.option());
         let brush = &mut session.painting.brush;
         let name = brush.channel.label();
         let list = ComboBox::from_id_salt("channel").selected_text(name).width(200.0).truncate();
         let shown = list.show_ui(ui, |ui| {
             for channel in Channel::ALL {
-                ui.selectable_value(&mut brush.channel, channel, channel.label());
+                ui.add_enabled_ui(takes(channel.kind()), |ui| {
+                    ui.selectable_value(&mut brush.channel, channel, channel.label());
+                });
             }
         });
         keyboard::tell(&shown.response, name);

@@ -6,6 +6,7 @@ use egui::{ComboBox, Ui};
 
 use super::keyboard;
 use crate::state::outcome::Dialog;
+use crate::state::playback::Playback;
 use crate::state::session::Session;
 use crate::state::work::Request;
 use isophote_pictures::material::MaterialKind;
@@ -13,14 +14,23 @@ use isophote_pictures::material::MaterialKind;
 /// Text where the look has its own.
 const OWN: &str = "The look's own";
 
-/// True where materials can lie on what is open: pictures, not scenes.
+/// True where materials can lie on what is open, which are pictures and not scenes, and the look has any.
 pub fn has_any(session: &Session) -> bool {
-    session.open.playback().is_some()
+    MaterialKind::ALL.into_iter().any(|kind| has(session, kind))
+}
+
+/// True where the look has a kind of material, or one was chosen.
+fn has(session: &Session, kind: MaterialKind) -> bool {
+    let is_chosen = |playback: &Playback| playback.info().materials.iter().any(|(known, _)| *known == kind);
+    session
+        .open
+        .playback()
+        .is_some_and(|playback| session.looks.takes(kind.guide().id()) || is_chosen(playback))
 }
 
 /// Shows the controls.
 pub fn show(ui: &mut Ui, session: &mut Session) {
-    for kind in MaterialKind::ALL {
+    for kind in MaterialKind::ALL.into_iter().filter(|kind| has(session, *kind)).collect::<Vec<_>>() {
         let Some(playback) = session.open.playback() else { return };
         let chosen = playback.info().materials.iter().find(|(known, _)| *known == kind);
         let request = row(ui, kind, chosen.map(|(_, name)| name.as_path()));
