@@ -124,6 +124,6 @@ fn build(scope: &mut Scope<'_>) -> ImageId {
         fill: scope.float("fill"),
         cover: scope.bool("cover"),
     };
-    let drawing = Drawing { lightness, edges, paper: paper::given(scope) };
+    let drawing = Drawing { lightness, edges, paper: paper::colours(scope) };
     blueprint_paper::pass(scope.plan, &drawing, &sheet)
 }
