@@ -8,7 +8,9 @@ use egui::accesskit::Role;
 use egui::{Event, Modifiers, PointerButton, Pos2, pos2};
 use egui_kittest::Harness;
 use egui_kittest::kittest::Queryable;
+use exr::prelude::WritableImage;
 use isophote_loader::{Control, Library};
+use isophote_pictures::exr::Guide;
 use isophote_window::jobs::document::{Document, Options};
 use isophote_window::jobs::export::{Export, ExportJob};
 use isophote_window::jobs::maps;
@@ -20,6 +22,7 @@ use isophote_window::state::look::EditedLook;
 use isophote_window::state::outcome::{Dialog, Opened, Outcome};
 use isophote_window::state::painted::channel::{Channel, Kind};
 use isophote_window::state::painted::maps::Maps;
+use isophote_window::state::playback::Playback;
 use isophote_window::state::progress::State;
 use isophote_window::state::session::Session;
 use isophote_window::state::settings::Settings;
@@ -197,7 +200,7 @@ fn maps_are_kept_with_their_files_and_nothing_is_lost_unasked() {
     assert_eq!(painted(harness.state(), Channel::Mask)(45, 30), 0);
     // Saved, it is as safe as a file.
     let maps = Arc::clone(harness.state().open.playback().and_then(|p| p.maps()).expect("maps"));
-    maps::write(Kind::Mask, &maps, &file).expect("it is saved");
+    maps::write(Kind::Mask, &maps, SIZE, &file).expect("it is saved");
     let saved = Opened::SavedMap(Kind::Mask, file.clone(), Arc::clone(&maps));
     harness.state_mut().take_over(Outcome::Opened(saved));
     assert!(harness.state().unsaved_maps().is_empty());
@@ -206,7 +209,7 @@ fn maps_are_kept_with_their_files_and_nothing_is_lost_unasked() {
     assert_eq!(session.dialogs.leaving, Leaving::Closes);
     session.dialogs.leaving = Leaving::Stays;
     // What a file holds comes back as it was.
-    let read = maps::read(Kind::Mask, &file, SIZE).expect("it is read");
+    let read = maps::read(Kind::Mask, &file, [SIZE; 2]).expect("it is read");
     assert_eq!(*read, *maps);
     session.clear_map();
     session.take_over(Outcome::Opened(Opened::Map(Kind::Mask, file.clone(), read)));
@@ -217,12 +220,12 @@ fn maps_are_kept_with_their_files_and_nothing_is_lost_unasked() {
     let wanted = [Request::OpenMap(Kind::Control, file.clone()), Request::SaveMap(Kind::Mask, file.clone())];
     assert_eq!(session.work.take_requests(), wanted);
     // A mask is no control map, nor is one of another picture's size.
-    let refused = maps::read(Kind::Control, &file, SIZE).expect_err("it is grey").to_string();
+    let refused = maps::read(Kind::Control, &file, [SIZE; 2]).expect_err("it is grey").to_string();
     assert!(refused.contains("is grey"), "{refused}");
-    let refused = maps::read(Kind::Mask, &file, (30, 30)).expect_err("of another size").to_string();
+    let refused = maps::read(Kind::Mask, &file, [(30, 30); 2]).expect_err("of another size").to_string();
     assert!(refused.contains("120x90") && refused.contains("30x30"), "{refused}");
     let refused =
-        maps::write(Kind::Mask, &maps, &folder.path().join("map.exr")).expect_err("no PNG").to_string();
+        maps::write(Kind::Mask, &maps, SIZE, &folder.path().join("map.exr")).expect_err("no PNG").to_string();
     assert!(refused.contains("map.exr") && refused.contains(".png"), "{refused}");
 }
 
@@ -249,7 +252,7 @@ fn looks_follow_what_is_painted_as_apply_does() {
         let (frame, share) = playback.frame(false).expect("a frame");
         let maps: &Maps = playback.maps().expect("maps");
         for kind in Kind::ALL {
-            maps::write(kind, maps, &at(&format!("{}.png", kind.option()))).expect("it is saved");
+            maps::write(kind, maps, SIZE, &at(&format!("{}.png", kind.option()))).expect("it is saved");
         }
         let own = EditedLook::clone(session.look());
         let task = Task { look: own, frame: Arc::clone(frame), share, size: SIZE, shot: 1 };
@@ -268,7 +271,7 @@ fn looks_follow_what_is_painted_as_apply_does() {
         assert_eq!(applied.get_pixel(60, 80), source.get_pixel(60, 80));
         let mut job = ExportJob::new(DocumentKind::Picture, &at("in.png"), &at("exported.png"), None);
         job.preset = Some(format!("{{\"style\": \"{look}\"}}"));
-        (job.maps, job.program) = (playback.maps().cloned(), Some(isophote().get_program().into()));
+        (job.maps, job.program) = (playback.painted(), Some(isophote().get_program().into()));
         let export = Export::start(job).expect("it begins");
         let started = Instant::now();
         while export.poll().state == State::Running {
@@ -278,4 +281,54 @@ fn looks_follow_what_is_painted_as_apply_does() {
         assert_eq!(export.poll().state, State::Done);
         assert!(image::open(at("exported.png")).expect("a picture").into_rgba8() == applied, "{look}");
     }
+}
+
+/// Pixels of the file that are not square, and frames that follow one another.
+#[test]
+fn what_is_painted_fits_files_whose_pixels_are_not_square_and_lies_on_all_frames() {
+    let folder = support::folder();
+    let at = |name: &str| folder.path().join(name);
+    for frame in 1..=2 {
+        picture(60, 40).save(at(&format!("shot.000{frame}.png"))).expect("it can be written");
+    }
+    let document = Document::open(&at("shot.####.png"), &Options::default()).expect("a sequence");
+    let mut harness = window(folder.path(), "ink");
+    let session = harness.state_mut();
+    session.show_playback(document.playback().expect("it is read"));
+    session.fill_map();
+    assert_eq!(command::map_file(session, Kind::Control), at("shot-control.png"));
+    let playback = session.open.playback_mut().expect("frames");
+    let map = |playback: &Playback| {
+        let (frame, _) = playback.frame(false).expect("a frame");
+        let control = frame.guides.iter().find(|image| image.guide == Guide::Control);
+        (frame.number, Arc::clone(control.expect("what is painted")))
+    };
+    let first = map(playback);
+    playback.step(1);
+    let second = document.wait(2).expect("the frame");
+    playback.take(document.frames().expect("frames"), Some(Ok(second))).expect("it is shown");
+    let next = map(playback);
+    assert_eq!((first.0, next.0), (Some(1), Some(2)));
+    assert!(Arc::ptr_eq(&first.1, &next.1), "made once");
+    // Twice as wide as high.
+    let mut command = isophote();
+    command.args(["apply", "gaussian"]).args([at("in.png"), at("wide.exr")]).arg("--set=sigma=1");
+    succeeds(&mut command);
+    let mut exr = exr::prelude::read_all_data_from_file(at("wide.exr")).expect("a file");
+    exr.attributes.pixel_aspect = 2.0;
+    exr.write().to_file(at("wide.exr")).expect("it can be written");
+    show(&mut harness, &at("wide.exr"));
+    let session = harness.state_mut();
+    let playback = session.open.playback().expect("a picture");
+    assert!(playback.file_size() == SIZE && playback.size() != SIZE, "{:?}", playback.size());
+    session.painting.brush.channel = Channel::Mask;
+    session.begin_stroke([30.0, 30.0], false);
+    session.end_stroke();
+    let (maps, size) = session.open.playback().and_then(Playback::painted).expect("maps");
+    maps::write(Kind::Mask, &maps, size, &at("wide.png")).expect("it is saved");
+    let mut apply = isophote();
+    apply.args(["apply", "ink"]).args([at("wide.exr"), at("out.exr")]).arg("--mask").arg(at("wide.png"));
+    succeeds(&mut apply);
+    let read = maps::read(Kind::Mask, &at("wide.png"), [size, maps.size()]).expect("it is read");
+    assert_eq!(read.layer(Channel::Mask).get(30, 30), 0);
 }

@@ -95,6 +95,7 @@ impl Copied {
             number: None,
             width: self.size.0,
             height: self.size.1,
+            file_size: self.size,
             guides: guides.collect::<Result<_>>()?,
             mask: None,
             color: Arc::new(color),

@@ -16,6 +16,7 @@ use super::reader::Reader;
 use super::reveal::Reveal;
 use super::worker::{Wake, Worker};
 use crate::state::outcome::{Dialog, Outcome};
+use crate::state::playback::Playback;
 use crate::state::preview::order::Task;
 use crate::state::samples::{self, SAMPLES};
 use crate::state::session::Session;
@@ -150,12 +151,13 @@ impl Background {
                 Request::ChooseLayer(layer, view) => self.open_layer(session, layer, view),
                 Request::ChooseMaterial(kind, name) => self.open_on(session, kind, name),
                 Request::OpenMap(kind, path) => {
-                    let size = session.nominal_size();
-                    self.opener.ask(OpenJob::Map(kind, path, size));
+                    let sizes = session.open.playback().map(|shown| [shown.file_size(), shown.size()]);
+                    let job = sizes.map(|sizes| OpenJob::Map(kind, path, sizes));
+                    job.into_iter().for_each(|job| self.opener.ask(job));
                 }
                 Request::SaveMap(kind, path) => {
-                    let maps = session.open.playback().and_then(|playback| playback.maps().cloned());
-                    let job = maps.map(|maps| OpenJob::SaveMap(kind, path, maps));
+                    let maps = session.open.playback().and_then(Playback::painted);
+                    let job = maps.map(|(maps, size)| OpenJob::SaveMap(kind, path, maps, size));
                     job.into_iter().for_each(|job| self.opener.ask(job));
                 }
                 Request::OpenDemo => self.opener.ask(OpenJob::Demo),

@@ -48,8 +48,8 @@ pub struct ExportJob {
     pub turntable: bool,
     /// Frames per second of scenes and of sequences that become videos.
     pub rate: f64,
-    /// Maps that are painted over the document.
-    pub maps: Option<Arc<Maps>>,
+    /// Maps that are painted over the document, for pictures of a size.
+    pub maps: Option<(Arc<Maps>, (u32, u32))>,
     /// More options of the verb.
     pub arguments: Vec<OsString>,
     /// The program instead of this one.
@@ -121,10 +121,10 @@ impl ExportJob {
                 }
             }
         }
-        if let Some(maps) = &self.maps {
+        if let Some((maps, size)) = &self.maps {
             for kind in Kind::ALL.into_iter().filter(|kind| maps.has(*kind)) {
                 let file = folder.join(format!("{}.png", kind.option()));
-                maps::write(kind, maps, &file)?;
+                maps::write(kind, maps, *size, &file)?;
                 command.arg(format!("--{}", kind.option())).arg(file);
             }
         }

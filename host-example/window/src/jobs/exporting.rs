@@ -8,6 +8,7 @@ use crate::state::command;
 use crate::state::document::kind::Kind;
 use crate::state::outcome::Outcome;
 use crate::state::plan::{Plan, What};
+use crate::state::playback::Playback;
 use crate::state::progress::State;
 use crate::state::session::Session;
 use isophote_files::error::{Error, Result};
@@ -68,7 +69,7 @@ fn job(session: &Session, plan: &Plan, file: &Path) -> Result<ExportJob> {
     let mut job = ExportJob::new(plan.kind, file, Path::new(&plan.path), preset_of(session)?);
     let is_turntable = plan.what == What::Turntable;
     (job.frames, job.turntable, job.rate) = (plan.frames(), is_turntable, plan.rate);
-    job.maps = session.open.playback().and_then(|playback| playback.maps().cloned());
+    job.maps = session.open.playback().and_then(Playback::painted);
     let mut words: Vec<String> = match session.open.playback() {
         Some(playback) => command::selection(playback),
         None => {

@@ -15,11 +15,11 @@ use isophote_pictures::pixels::{Pixels, Precision, Samples};
 use isophote_pictures::read::Source;
 use isophote_pictures::write::{self, Format, Options};
 
-/// Writes a map as a PNG file, which is replaced whole.
+/// Writes a map for a file with a picture of a size as a PNG file, which is replaced whole.
 ///
 /// # Errors
 /// [`Error::Input`] for other files, and for places where none can be written.
-pub fn write(kind: Kind, maps: &Maps, path: &Path) -> Result<()> {
+pub fn write(kind: Kind, maps: &Maps, (width, height): (u32, u32), path: &Path) -> Result<()> {
     if Format::of(path)? != Format::Png {
         return Err(Error::file(
             path,
@@ -27,7 +27,6 @@ pub fn write(kind: Kind, maps: &Maps, path: &Path) -> Result<()> {
             "end its name in .png",
         ));
     }
-    let (width, height) = maps.size();
     let channels = if kind == Kind::Control { 4 } else { 1 };
     let pixels = Pixels::new(width, height, channels, Samples::U8(maps.bytes(kind, (width, height))));
     let pixels =
@@ -37,11 +36,11 @@ pub fn write(kind: Kind, maps: &Maps, path: &Path) -> Result<()> {
     write::write(path, Existing::Replace, format, vec![pixels], &meaning, &source, None)
 }
 
-/// Reads a map for pictures of a size.
+/// Reads a map for a file with a picture of a size, as one for the picture as it is shown.
 ///
 /// # Errors
 /// As [`Masks::add`].
-pub fn read(kind: Kind, path: &Path, size: (u32, u32)) -> Result<Arc<Maps>> {
+pub fn read(kind: Kind, path: &Path, [file_size, size]: [(u32, u32); 2]) -> Result<Arc<Maps>> {
     let masks = match kind {
         Kind::Mask => {
             let choice = MaskChoice { source: MaskSource::File(path.to_owned()), invert: false };
@@ -53,7 +52,7 @@ pub fn read(kind: Kind, path: &Path, size: (u32, u32)) -> Result<Arc<Maps>> {
             Masks::default().with_maps(&paths)?
         }
     };
-    let under = Pixels::zeroed(size.0, size.1, 1, Precision::U8);
+    let under = Pixels::zeroed(file_size.0, file_size.1, 1, Precision::U8);
     let mut source = Source::alone(under, Meaning::display());
     masks.add(&mut source, None)?;
     let Some(picture) = source.pictures.pop() else { return Ok(Arc::new(Maps::new(size))) };
@@ -68,7 +67,7 @@ pub fn read(kind: Kind, path: &Path, size: (u32, u32)) -> Result<Arc<Maps>> {
     };
     let mut maps = Maps::new(size);
     if let Some(numbers) = numbers {
-        maps.take(kind, &numbers.to_f32());
+        maps.take(kind, &numbers.to_f32(), file_size);
     }
     Ok(Arc::new(maps))
 }

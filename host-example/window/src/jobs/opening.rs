@@ -39,10 +39,10 @@ pub enum OpenJob {
     Surroundings(PathBuf),
     /// Colours for the look.
     Palette(Library, PathBuf),
-    /// A painted map for pictures of a size.
-    Map(Kind, PathBuf, (u32, u32)),
-    /// A painted map, to be saved.
-    SaveMap(Kind, PathBuf, Arc<Maps>),
+    /// A painted map for pictures of a size in their file, and another as they are shown.
+    Map(Kind, PathBuf, [(u32, u32); 2]),
+    /// A painted map, to be saved for a picture of a size.
+    SaveMap(Kind, PathBuf, Arc<Maps>, (u32, u32)),
 }
 
 /// Something that was opened, with the document whose frames are to be read while it is shown.
@@ -74,12 +74,12 @@ pub fn open(job: OpenJob) -> Result<WithFrames> {
             Opened::Surroundings(Surround::Environment(environment), path)
         }
         OpenJob::Palette(library, path) => Opened::Palette(palette::read(&library, &path, None)?),
-        OpenJob::Map(kind, path, size) => {
-            let maps = maps::read(kind, &path, size)?;
+        OpenJob::Map(kind, path, sizes) => {
+            let maps = maps::read(kind, &path, sizes)?;
             Opened::Map(kind, path, maps)
         }
-        OpenJob::SaveMap(kind, path, maps) => {
-            maps::write(kind, &maps, &path)?;
+        OpenJob::SaveMap(kind, path, maps, size) => {
+            maps::write(kind, &maps, size, &path)?;
             Opened::SavedMap(kind, path, maps)
         }
     };

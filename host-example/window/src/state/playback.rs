@@ -101,6 +101,11 @@ impl Playback {
         self.maps.as_ref()
     }
 
+    /// The same with the size of the picture in its file.
+    pub fn painted(&self) -> Option<(Arc<Maps>, (u32, u32))> {
+        self.maps.clone().map(|maps| (maps, self.file_size()))
+    }
+
     /// Paints these over the pictures from now on.
     pub fn paint(&mut self, maps: Option<Arc<Maps>>) {
         (self.maps, self.laid) = (maps, None);
@@ -130,6 +135,11 @@ impl Playback {
     /// Pixels across and down.
     pub fn size(&self) -> (u32, u32) {
         self.size
+    }
+
+    /// Pixels across and down of the picture in its file, whose pixels need not be square.
+    pub fn file_size(&self) -> (u32, u32) {
+        self.read().map_or(self.size, |read| read.file_size)
     }
 
     /// Number of the frame.

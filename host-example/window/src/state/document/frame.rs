@@ -24,6 +24,8 @@ pub struct Frame {
     pub width: u32,
     /// Pixels down.
     pub height: u32,
+    /// Pixels across and down of the picture in its file, whose pixels need not be square.
+    pub file_size: (u32, u32),
     /// Red, green, blue and alpha, rows from the top. Colour is multiplied by alpha where the picture is scene-referred, and
     /// is apart from it where it is display-referred: multiplied and divided again it would not be the same.
     pub color: Arc<Vec<[f32; 4]>>,
@@ -82,6 +84,7 @@ impl Frame {
             number,
             width: pixels.width(),
             height: pixels.height(),
+            file_size: picture.own.map_or((pixels.width(), pixels.height()), |own| own.size),
             has_light: picture.meaning.is_premultiplied() && color.iter().any(is_beyond_coverage),
             request: PictureRequest::of(picture, working.space, number),
             guides: named.collect(),

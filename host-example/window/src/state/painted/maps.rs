@@ -44,9 +44,6 @@ impl Maps {
         let channels: Vec<&Tiles> =
             Channel::ALL.iter().filter(|c| c.kind() == kind).map(|c| self.layer(*c)).collect();
         let (across, down) = self.size();
-        let middle = |at: usize, own: u32, of: u32| {
-            ((2 * at as u64 + 1) * u64::from(own) / (2 * u64::from(of.max(1)))) as u32
-        };
         let columns: Vec<u32> = (0..width as usize).map(|x| middle(x, across, width)).collect();
         let row = width as usize * channels.len();
         let mut bytes = vec![0; row * height as usize];
@@ -72,13 +69,14 @@ impl Maps {
         self.has(Kind::Mask).then(|| shares(&self.bytes(Kind::Mask, size)))
     }
 
-    /// Takes over a map of its own size from numbers of 0 to 1, as many a pixel as the map has.
-    pub fn take(&mut self, kind: Kind, numbers: &[f32]) {
+    /// Takes over a map from a picture of a size, by numbers of 0 to 1, as many a pixel as the map has.
+    pub fn take(&mut self, kind: Kind, numbers: &[f32], (width, height): (u32, u32)) {
         let size = self.size();
         let channels: Vec<Channel> = Channel::ALL.into_iter().filter(|c| c.kind() == kind).collect();
         for (at, channel) in channels.iter().enumerate() {
             let number = |x: u32, y: u32| {
-                let pixel = y as usize * size.0 as usize + x as usize;
+                let [x, y] = [middle(x as usize, width, size.0), middle(y as usize, height, size.1)];
+                let pixel = y as usize * width as usize + x as usize;
                 numbers.get(pixel * channels.len() + at).copied().unwrap_or(f32::NAN)
             };
             let tiles = self.layer_mut(*channel);
@@ -86,6 +84,11 @@ impl Maps {
             tiles.tidy();
         }
     }
+}
+
+/// The pixel of `own` pixels across that lies in the middle of one of `of`.
+fn middle(at: usize, own: u32, of: u32) -> u32 {
+    ((2 * at as u64 + 1) * u64::from(own) / (2 * u64::from(of.max(1)))) as u32
 }
 
 /// Bytes as shares, as files with 8 bits are read.
@@ -111,10 +114,14 @@ mod tests {
         assert_eq!(maps.bytes(Kind::Control, (2, 1))[1], 127);
         assert_eq!(maps.bytes(Kind::Control, (8, 4))[4 * 3 + 1], MOST);
         let mut read = Maps::new((4, 2));
-        read.take(Kind::Control, &control.data);
+        read.take(Kind::Control, &control.data, (4, 2));
         assert_eq!(read, maps);
-        read.take(Kind::Mask, &[1.0, 0.0, f32::NAN, 2.0, -1.0, 0.5, 1.0, 1.0]);
+        read.take(Kind::Mask, &[1.0, 0.0, f32::NAN, 2.0, -1.0, 0.5, 1.0, 1.0], (4, 2));
         assert_eq!(read.bytes(Kind::Mask, (4, 2)), [255, 0, 255, 255, 0, 128, 255, 255]);
         assert!(read.layer(Channel::Detail).is_plain());
+        // Of pixels that are twice as wide.
+        read.take(Kind::Mask, &[0.2, 0.4, 0.6, 0.8], (2, 2));
+        assert_eq!(read.bytes(Kind::Mask, (2, 2)), [51, 102, 153, 204]);
+        assert_eq!(read.bytes(Kind::Mask, (4, 2))[..4], [51, 51, 102, 102]);
     }
 }

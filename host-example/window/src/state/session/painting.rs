@@ -135,7 +135,7 @@ impl Session {
         // Each frame of a sequence has its own.
         let own = read.filter(|_| playback.info().kind == Document::Picture);
         if let Some(control) = own.and_then(|read| read.guide(Guide::Control)) {
-            maps.take(Kind::Control, &control.data);
+            maps.take(Kind::Control, &control.data, maps.size());
         }
         Some(Arc::new(maps))
     }
