@@ -37,9 +37,13 @@ fn mask(folder: &Path, frame: i64, value: u8) -> GrayImage {
     GrayImage::from_fn(SIZE.0, SIZE.1, |x, y| Luma([if plain.get_pixel(x, y)[3] > 127 { value } else { 0 }]))
 }
 
+/// Runs the verb; what it warns of.
 fn carry(folder: &Path, arguments: &[&str]) -> String {
     let mut command = isophote();
-    succeeds(command.current_dir(folder).arg("carry").args(arguments)).1
+    let (said, warned) = succeeds(command.current_dir(folder).arg("carry").args(arguments));
+    let lines = if arguments.contains(&"--quiet") { 0 } else { 1 };
+    assert_eq!(said.lines().count(), lines, "{said}");
+    warned
 }
 
 fn carried(folder: &Path, frame: i64) -> GrayImage {
@@ -108,6 +112,15 @@ fn between_two_key_frames_both_are_seen_and_neutral_is_what_nobody_knows() {
         last = mean;
         assert!(map.pixels().all(|pixel| (127..=128).contains(&pixel[0])));
     }
+    // One of two that has alpha gives it to both.
+    let with_alpha = RgbaImage::from_pixel(SIZE.0, SIZE.1, Rgba([128, 128, 128, 0]));
+    with_alpha.save(at.join("control.0008.png")).expect("the folder is writable");
+    carry(at, &["control.####.png", "shot.####.exr", "alpha/control.####.png", "--quiet"]);
+    let alpha = |frame: i64| {
+        let map = image::open(at.join(format!("alpha/control.{frame:04}.png"))).expect("a map").into_rgba8();
+        map.get_pixel(SIZE.0 / 2, SIZE.1 / 2)[3]
+    };
+    assert!((127..=128).contains(&alpha(1)) && alpha(5) < 80 && alpha(8) == 0);
     // Looks take them by their frames.
     let mut apply = isophote();
     apply.current_dir(at).args(["apply", "ink", "shot.####.exr", "ink.####.png"]);
@@ -149,6 +162,12 @@ fn motion_is_estimated_where_there_is_none_and_what_does_not_fit_is_refused() {
     refused(&["other.####.png", shot, out], &["other.####.png"]);
     square(0).save(at.join("far.0020.png")).expect("the folder is writable");
     refused(&["far.####.png", shot, out], &["far.####.png", "1 to 8"]);
+    RgbaImage::new(SIZE.0, SIZE.1).save(at.join("two.0001.png")).expect("the folder is writable");
+    square(0).save(at.join("two.0002.png")).expect("the folder is writable");
+    refused(&["two.####.png", shot, out], &["two.0002.png", "is grey", "by themselves"]);
+    std::fs::rename(at.join("shot.0005.png"), at.join("away.png")).expect("it is there");
+    refused(&["mask.png", shot, out, "--motion", "estimate"], &["no frame 5"]);
+    std::fs::rename(at.join("away.png"), at.join("shot.0005.png")).expect("it is there");
     GrayImage::new(10, 10).save(at.join("small.png")).expect("the folder is writable");
     refused(&["small.png", shot, out, "--motion", "estimate"], &["160x120", "10x10"]);
 }

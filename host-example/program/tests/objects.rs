@@ -159,6 +159,46 @@ fn things_have_looks_of_their_own() {
 }
 
 #[test]
+fn lines_of_things_have_colours_of_their_own() {
+    let folder = folder();
+    let at = |name: &str| folder.path().join(name);
+    // Two things side by side, the left one nearer, of other brightness.
+    let is_left = |at: usize| at % SIZE.0 < SIZE.0 / 2;
+    let channel = |name: &str, value: &dyn Fn(usize) -> f32| {
+        (name.to_owned(), FlatSamples::F32((0..PIXELS).map(value).collect()))
+    };
+    let grey = |at: usize| if is_left(at) { 0.1 } else { 0.8 };
+    let colours = ["R", "G", "B"].map(|name| channel(name, &grey));
+    let ids = channel("object_id.id", &|at| if is_left(at) { 1.0 } else { 3.0 });
+    let depth = channel("Z", &|at| if is_left(at) { 1.0 } else { 9.0 });
+    save(&at("in.exr"), vec![("", [&colours[..], &[ids, depth]].concat(), Default::default())]);
+    let run = |rules: &str| {
+        succeeds(&mut apply(folder.path(), ("cartoon", rules), &["in.exr", "out.exr"]));
+        rgb(&at("out.exr"))
+    };
+    let (plain, near, far) = (
+        run(""),
+        run(r##"{"match": "id:1", "line_color": "#ff0000"}"##),
+        run(r##"{"match": "id:3", "line_color": "#ff0000"}"##),
+    );
+    let red = |pixels: &[[f32; 3]], side: &dyn Fn(usize) -> bool| {
+        let is_red = |pixel: &[f32; 3]| pixel[0] > 2.0 * pixel[1] + 0.05;
+        pixels.iter().enumerate().filter(|(at, pixel)| side(*at) && is_red(pixel)).count()
+    };
+    assert_eq!(red(&plain, &|_| true), 0);
+    assert!(red(&near, &|_| true) > SIZE.1, "the line between has the colour of the nearer");
+    assert_eq!(red(&far, &|at| at % SIZE.0 <= SIZE.0 / 2), 0, "and not that of the farther");
+    let without = r##"{"match": "id:1", "line_color": "#ff0000"}"##;
+    fails(&mut apply(folder.path(), ("watercolor", without), &["in.exr", "out.exr"]), 2, &["line_color"]);
+    let none = r#"{"match": "id:1", "line_color": "reddish"}"#;
+    fails(
+        &mut apply(folder.path(), ("cartoon", none), &["in.exr", "out.exr"]),
+        2,
+        &["object 1", "no colour"],
+    );
+}
+
+#[test]
 fn looks_of_things_that_are_none_say_why() {
     let folder = folder();
     let at = |name: &str| folder.path().join(name);

@@ -9,7 +9,7 @@ use std::sync::{Mutex, PoisonError};
 use isophote_exr_edit::Window;
 
 use super::materials::Laid;
-use super::objects::{self, Control, Covered};
+use super::objects::{self, Covered, Rule};
 use super::painted::Painted;
 use super::tasks::Tasks;
 use isophote_files::error::{Error, Result};
@@ -35,7 +35,7 @@ pub struct Masks {
     /// Paper and hatching.
     materials: Vec<Laid>,
     /// What rules for things say. Where the things are, the last masks say.
-    rules: Vec<Control>,
+    rules: Vec<Rule>,
 }
 
 /// A painted map.
@@ -120,7 +120,7 @@ impl Masks {
 
     /// The same with rules for things, of which the last choices say where they are.
     #[must_use]
-    pub fn with_rules(self, rules: Vec<Control>) -> Self {
+    pub fn with_rules(self, rules: Vec<Rule>) -> Self {
         Self { rules, ..self }
     }
 
@@ -206,7 +206,7 @@ impl Masks {
         Ok(())
     }
 
-    /// Makes a control map of the rules for things.
+    /// Makes a control map of the rules for things, and lets masks of lines reach as far as these.
     fn follow_rules(&self, picture: &mut Picture) {
         let guide = |wanted: Guide| {
             let found = picture.guides.iter().find(|(name, _)| *name == wanted.id());
@@ -222,9 +222,18 @@ impl Masks {
         let rules: Vec<Covered<'_>> = coverage
             .iter()
             .zip(&self.rules)
-            .map(|(coverage, control)| Covered { coverage: coverage.as_deref(), control: *control })
+            .map(|(coverage, rule)| Covered { coverage: coverage.as_deref(), control: rule.control })
             .collect();
         let (painted, depth) = (guide(Guide::Control), guide(Guide::Depth));
+        for ((mask, rule), own) in picture.masks[first..].iter_mut().zip(&self.rules).zip(&coverage) {
+            if let Some(own) = own.as_ref().filter(|_| rule.has_lines) {
+                let reached = objects::with_lines(own, width as usize, depth.as_deref());
+                *mask = Pixels::new(width, height, 1, Samples::F32(reached));
+            }
+        }
+        if self.rules.iter().all(Rule::is_neutral) {
+            return;
+        }
         let map = objects::map(&rules, width as usize, painted.as_deref(), depth.as_deref());
         let id = Guide::Control.id();
         picture.guides.retain(|(name, _)| *name != id);

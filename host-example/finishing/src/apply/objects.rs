@@ -16,6 +16,22 @@ const BEHIND: f32 = 0.01;
 /// What a control map has where things are: detail, width of lines, their amount and strength of the medium.
 pub type Control = [Option<f32>; 4];
 
+/// A rule for things.
+#[derive(Clone, Copy, Debug)]
+pub struct Rule {
+    /// What a control map has where they are.
+    pub control: Control,
+    /// True where lines that follow it reach beyond them.
+    pub has_lines: bool,
+}
+
+impl Rule {
+    /// True where a control map says nothing of it.
+    pub fn is_neutral(&self) -> bool {
+        self.control.iter().all(Option::is_none)
+    }
+}
+
 /// Coverage of the things of a rule, and what it says.
 #[derive(Clone, Copy, Debug)]
 pub struct Covered<'a> {
@@ -37,7 +53,7 @@ pub fn map(rules: &[Covered<'_>], width: usize, painted: Option<&[f32]>, depth: 
         }
     }
     if let Some(depth) = depth {
-        map = of_nearest(&map, width, depth);
+        map = of_nearest(&map, 4, width, depth);
     }
     for (index, (value, painted)) in map.iter_mut().zip(painted.into_iter().flatten()).enumerate() {
         // What is no number was not painted.
@@ -49,8 +65,13 @@ pub fn map(rules: &[Covered<'_>], width: usize, painted: Option<&[f32]>, depth: 
     map
 }
 
-/// The map with the values of the nearest thing within reach: a line between two things lies on both.
-fn of_nearest(map: &[f32], width: usize, depth: &[f32]) -> Vec<f32> {
+/// Coverage of things with that of the lines around them: by what is nearest within reach, where the picture has depth.
+pub fn with_lines(coverage: &[f32], width: usize, depth: Option<&[f32]>) -> Vec<f32> {
+    depth.map_or_else(|| coverage.to_vec(), |depth| of_nearest(coverage, 1, width, depth))
+}
+
+/// The map, of so many channels, with the values of the nearest thing within reach: a line between two things lies on both.
+fn of_nearest(map: &[f32], channels: usize, width: usize, depth: &[f32]) -> Vec<f32> {
     let height = depth.len() / width.max(1);
     let reach = (REACH * height as f32 / 1080.0).round().max(1.0) as usize;
     let known = |depth: &f32| if depth.is_finite() && *depth > 0.0 { *depth } else { f32::INFINITY };
@@ -70,9 +91,9 @@ fn of_nearest(map: &[f32], width: usize, depth: &[f32]) -> Vec<f32> {
         nearer(&mut both[..part], &rows[whole..]);
     }
     let mut result = map.to_vec();
-    for (pixel, (near, own)) in result.chunks_exact_mut(4).zip(both.iter().zip(&own)) {
+    for (pixel, (near, own)) in result.chunks_exact_mut(channels).zip(both.iter().zip(&own)) {
         if near.0 < own.0 * (1.0 - BEHIND) {
-            pixel.copy_from_slice(&map[near.1 * 4..][..4]);
+            pixel.copy_from_slice(&map[near.1 * channels..][..channels]);
         }
     }
     result
@@ -120,6 +141,9 @@ mod tests {
             map.chunks_exact(4).map(|pixel| pixel[2]).collect()
         };
         assert_eq!(amounts(&[1.0, 1.0, 1.0, 5.0, 5.0, 5.0]), [0.0, 0.0, 0.0, 0.0, 0.5, 0.5]);
+        let far = [1.0, 1.0, 1.0, 5.0, 5.0, 5.0];
+        assert_eq!(with_lines(&coverage, 6, Some(&far)), [1.0, 1.0, 1.0, 1.0, 0.0, 0.0]);
+        assert_eq!(with_lines(&coverage, 6, None), coverage);
         assert_eq!(amounts(&[5.0, 5.0, 5.0, 1.0, 1.0, 1.0]), [0.0, 0.0, 0.5, 0.5, 0.5, 0.5]);
         // A surface that leads away is one thing, and what has no depth is behind all.
         assert_eq!(amounts(&[1.0, 1.001, 1.002, 1.003, 1.004, 1.005]), [0.0, 0.0, 0.0, 0.5, 0.5, 0.5]);

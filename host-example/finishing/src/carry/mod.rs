@@ -7,7 +7,7 @@ mod places;
 mod vectors;
 
 use std::io::{Read, Seek, SeekFrom, Write};
-use std::path::{Path, PathBuf};
+use std::path::PathBuf;
 
 use self::places::{Field, Places};
 pub use self::vectors::Vectors;
@@ -38,15 +38,30 @@ pub struct Carried {
 }
 
 impl Key {
-    /// Reads the map of a frame, as it is stored.
+    /// Reads the maps of frames, as they are stored, all with as many channels.
     ///
     /// # Errors
-    /// As [`read::read`].
-    pub fn read(path: &Path, frame: i64) -> Result<Self> {
-        let mut source = read::read(path, &Selection::default())?;
-        let picture = source.pictures.drain(..).next();
-        let pixels = picture.ok_or_else(|| Error::file(path, "is empty", "name another map"))?.pixels;
-        Ok(Self { frame, map: without_plain_alpha(pixels) })
+    /// As [`read::read`]; [`Error::Input`] for control maps among masks.
+    pub fn read_all(files: &[(i64, PathBuf)]) -> Result<Vec<Self>> {
+        let read = |(frame, path): &(i64, PathBuf)| {
+            let mut source = read::read(path, &Selection::default())?;
+            let picture = source.pictures.drain(..).next();
+            let pixels = picture.ok_or_else(|| Error::file(path, "is empty", "name another map"))?.pixels;
+            Ok(Self { frame: *frame, map: without_plain_alpha(pixels) })
+        };
+        let mut keys: Vec<Self> = files.iter().map(read).collect::<Result<_>>()?;
+        let most = keys.iter().map(|key| key.map.channels()).max().unwrap_or_default();
+        for (key, (_, path)) in keys.iter_mut().zip(files) {
+            match (key.map.channels(), most) {
+                (own, most) if own == most => {}
+                (3, 4) => key.map = with_neutral_alpha(&key.map),
+                _ => {
+                    let problem = "is grey as masks are, and others are control maps";
+                    return Err(Error::file(path, problem, "carry masks by themselves"));
+                }
+            }
+        }
+        Ok(keys)
     }
 
     fn size(&self) -> (u32, u32) {
@@ -71,6 +86,14 @@ fn without_plain_alpha(pixels: Pixels) -> Pixels {
     Pixels::new(width, height, 3, Samples::F32(three)).map_or(pixels, |pixels| pixels.converted(precision))
 }
 
+/// The same pixels with alpha that changes nothing.
+fn with_neutral_alpha(pixels: &Pixels) -> Pixels {
+    let numbers = pixels.to_f32();
+    let four = numbers.as_chunks::<3>().0.iter().flat_map(|[r, g, b]| [*r, *g, *b, 0.5]).collect();
+    let made = Pixels::new(pixels.width(), pixels.height(), 4, Samples::F32(four));
+    made.map_or_else(|| pixels.clone(), |made| made.converted(pixels.precision()))
+}
+
 /// Files that are read and written.
 pub struct Shot<'s> {
     /// Numbers of its frames, in order.
@@ -88,7 +111,7 @@ impl Shot<'_> {
     ///
     /// # Errors
     /// [`Error::Input`] for maps of other sizes and frames without vectors; as reading and writing.
-    pub fn carry(&self, vectors: &mut Vectors, told: &mut dyn FnMut(Carried) -> Result<()>) -> Result<()> {
+    pub fn carry(&self, vectors: &mut Vectors, told: &mut dyn FnMut(Carried)) -> Result<()> {
         for key in self.keys {
             let (size, map) = (vectors.size(key.frame)?, key.size());
             if size != map {
@@ -101,6 +124,14 @@ impl Shot<'_> {
             }
         }
         // Before anything is written.
+        if let Some(pair) = self.frames.windows(2).find(|pair| pair[1] != pair[0] + 1) {
+            let problem = format!("has no frame {}, and motion leads from frame to frame", pair[0] + 1);
+            return Err(Error::input(
+                "the shot",
+                problem,
+                "render it, or carry what is before and after by itself",
+            ));
+        }
         if let (Some(key), [first, second, ..]) = (self.keys.first(), self.frames) {
             let beside = if key.frame == *first { second } else { first };
             let there = if key.frame == *first { *first } else { *second };
@@ -116,7 +147,7 @@ impl Shot<'_> {
             self.span((before, after), &between, vectors, told)?;
             if let Some(key) = after {
                 self.write(key.frame, key.map.to_f32(), key)?;
-                told(Carried { frame: key.frame, unknown: 0.0 })?;
+                told(Carried { frame: key.frame, unknown: 0.0 });
             }
             before = after;
         }
@@ -129,7 +160,7 @@ impl Shot<'_> {
         (before, after): (Option<&Key>, Option<&Key>),
         frames: &[i64],
         vectors: &mut Vectors,
-        told: &mut dyn FnMut(Carried) -> Result<()>,
+        told: &mut dyn FnMut(Carried),
     ) -> Result<()> {
         let Some(key) = before.or(after).filter(|_| !frames.is_empty()) else { return Ok(()) };
         let backward: Vec<i64> = frames.iter().rev().copied().collect();
@@ -162,7 +193,7 @@ impl Shot<'_> {
             let nothing = key.nothing();
             let map = mixed.into_iter().map(|value| if value.is_nan() { nothing } else { value }).collect();
             self.write(*frame, map, key)?;
-            told(Carried { frame: *frame, unknown })?;
+            told(Carried { frame: *frame, unknown });
         }
         Ok(())
     }

@@ -10,6 +10,7 @@ pub mod preset;
 pub mod source;
 pub mod style;
 pub mod suggest;
+pub mod things;
 pub mod value;
 
 use std::ops::Range;

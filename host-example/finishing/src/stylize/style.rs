@@ -115,26 +115,6 @@ impl Style {
         Ok(style)
     }
 
-    /// All that keeps the preset of the file `path` from being used.
-    ///
-    /// # Errors
-    /// As [`preset::examine`].
-    pub fn faults(library: &Library, path: &Path, text: &str) -> Result<(Preset, Vec<Error>)> {
-        let (preset, faults) = preset::examine(path, text)?;
-        let graph = match graph_beside(library, path, &preset) {
-            Ok(graph) => graph,
-            Err(fault) => return Ok((preset, faults.into_iter().chain([fault]).collect())),
-        };
-        let place = path.display().to_string();
-        let failed = |e: isophote_loader::Error| e.at(&place, FIX);
-        let all = library.check_preset(&place, text, graph.as_deref()).map_err(failed)?;
-        let all = all.into_iter().map(|fault| Error::of_fault(fault, &place, FIX));
-        let things: Vec<Error> = preset::things(&place, &preset.objects).filter_map(Result::err).collect();
-        let looks = own_looks(library, path, &preset.objects).filter_map(|(_, look)| look.err());
-        let things: Vec<Error> = things.into_iter().chain(looks).collect();
-        Ok((preset, all.chain(things).collect()))
-    }
-
     fn of(tracks: Tracks, name: &OsStr, objects: Vec<ObjectRule>) -> Result<Self> {
         let name = name.to_string_lossy().into_owned();
         let graph = tracks.graph().map_err(|e| e.at(&name, "choose another style"))?;
@@ -142,16 +122,6 @@ impl Style {
             graph.output_kind().map_err(|e| e.at(&name, "name the node whose output is the graph's"))?;
         let lengths = if tracks.reference_height() == 0 { Lengths::Pixels } else { Lengths::Relative };
         Ok(Self { name, graph, kind, lengths, objects, tracks })
-    }
-
-    /// Looks that rules of its preset give to things, each with the place of its rule.
-    ///
-    /// # Errors
-    /// As [`Style::load`]; [`Error::Input`] for a look that has rules itself.
-    pub fn own_looks(&self, library: &Library) -> Result<Vec<(usize, Self)>> {
-        own_looks(library, Path::new(&self.name), &self.objects)
-            .map(|(number, look)| Ok((number, look?)))
-            .collect()
     }
 
     /// Request to the library for pictures of a size, with lengths as the style means them.
@@ -358,43 +328,11 @@ impl Style {
     }
 }
 
-/// Key of a rule for the look that its things have.
-pub const LOOK: &str = "look";
-
 /// Way to put most presets right.
-const FIX: &str = "correct the file";
+pub(super) const FIX: &str = "correct the file";
 
 /// Way to find a style.
 const LIST_OF_STYLES: &str = "`isophote nodes` lists the styles, and `isophote preset list` the looks";
-
-/// Looks of their own that rules of the preset in the file `path` have, each with the place of its rule.
-fn own_looks(
-    library: &Library,
-    path: &Path,
-    rules: &[ObjectRule],
-) -> impl Iterator<Item = (usize, Result<Style>)> {
-    let file = path.file_name().unwrap_or_default().to_string_lossy().into_owned();
-    let look = move |(number, rule): (usize, &ObjectRule)| {
-        let place = path.with_file_name(format!("{file}: object {}: its look", number + 1));
-        let look = match rule.rule.get(LOOK)? {
-            Value::String(name) => {
-                Style::load(library, preset::style_beside(name, path), &[]).map_err(|e| e.within(&place))
-            }
-            written => preset::parse(&place, &written.to_string())
-                .and_then(|preset| Style::of_preset(library, &place, &preset)),
-        };
-        let is_plain = |style: Style| match style.objects.is_empty() {
-            true => Ok(style),
-            false => Err(Error::file(
-                &place,
-                "has rules for objects",
-                "write rules for all things in the preset itself",
-            )),
-        };
-        Some((number, look.and_then(is_plain)))
-    };
-    rules.iter().enumerate().filter_map(look).collect::<Vec<_>>().into_iter()
-}
 
 /// The style of a name, and the rules of its preset for things.
 fn open(library: &Library, style: &OsStr) -> Result<(Tracks, Vec<ObjectRule>)> {
@@ -430,7 +368,7 @@ fn open_text(library: &Library, path: &Path, text: &str, preset: Option<&Preset>
 
 /// The text of the graph file that the preset of the file `path` names, if it names one. Of a node and a file of one name the
 /// node counts.
-fn graph_beside(library: &Library, path: &Path, preset: &Preset) -> Result<Option<String>> {
+pub(super) fn graph_beside(library: &Library, path: &Path, preset: &Preset) -> Result<Option<String>> {
     let inner = preset::style_beside(&preset.style, path);
     let named = Path::new(&inner);
     let is_no_file = preset.style.is_empty()

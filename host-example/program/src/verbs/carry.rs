@@ -60,7 +60,7 @@ pub fn run(args: &CarryArgs) -> Result<()> {
     let numbers = shot.on_disk()?;
     let keys = args.keys(&numbers)?;
     args.check(&out, &numbers, &keys)?;
-    let keys: Vec<Key> = keys.iter().map(|(frame, path)| Key::read(path, *frame)).collect::<Result<_>>()?;
+    let keys = Key::read_all(&keys)?;
     let mut vectors = args.vectors(shot)?;
     let existing = args.force.existing();
     let shot = Shot { frames: &numbers, keys: &keys, out: &out, existing };
@@ -69,8 +69,6 @@ pub fn run(args: &CarryArgs) -> Result<()> {
         if carried.unknown > TOLD {
             worst.push(carried);
         }
-        let path = out.file(carried.frame);
-        if args.quiet.quiet { Ok(()) } else { output::print(&format!("{}\n", path.display())) }
     })?;
     if let Some(most) = worst.iter().max_by(|a, b| a.unknown.total_cmp(&b.unknown)) {
         let frames: Vec<i64> = worst.iter().map(|carried| carried.frame).collect();
@@ -82,7 +80,10 @@ pub fn run(args: &CarryArgs) -> Result<()> {
             most.frame
         ));
     }
-    Ok(())
+    if args.quiet.quiet {
+        return Ok(());
+    }
+    output::print(&format!("{} maps written: {}\n", numbers.len(), args.out.display()))
 }
 
 /// The pattern of files for each frame.

@@ -1,8 +1,9 @@
-//! Rules of a preset for things in a picture: how much detail they have, how wide and how many their lines are, how strong
-//! the medium is on them, and whether they have a look of their own. A host that knows where things are makes a control map of
+//! Rules of a preset for things in a picture: how much detail they have, how wide, how many and of which colour their lines
+//! are, how strong the medium is on them, and whether they have a look of their own. A host that knows where things are makes a control map of
 //! them, and lays the looks over the picture there.
 
 use super::fault::Fault;
+use crate::declare::value::color_from_text;
 use crate::error::nearest_name;
 use crate::kernels::shared::control::value_of;
 use serde::{Deserialize, Serialize};
@@ -15,6 +16,8 @@ const MOST: usize = 256;
 /// Keys of a rule: what names the things, what turns lines off, and its factors in the order of a map's channels.
 const MATCH: &str = "match";
 const LINES: &str = "lines";
+/// Key of the colour of their lines.
+const LINE_COLOR: &str = "line_color";
 /// Key of a look of their own.
 pub(super) const LOOK: &str = "look";
 const FACTORS: [&str; 4] = ["detail", "line_width", "line_amount", "medium"];
@@ -90,7 +93,12 @@ impl ObjectRule {
             let fix = "write {\"style\": \"ink\"}, or the name of a style, a look or a preset";
             faults.push(Fault::value(place, "its look is none", fix));
         }
-        let is_known = |key: &str| [MATCH, LINES, LOOK].contains(&key) || FACTORS.contains(&key);
+        let is_color = |value: &Value| value.as_str().is_some_and(|text| color_from_text(text).is_ok());
+        if rule.get(LINE_COLOR).is_some_and(|value| !is_color(value)) {
+            let problem = format!("its {LINE_COLOR} is no colour");
+            faults.push(Fault::value(place, problem, "write one such as \"#552211\""));
+        }
+        let is_known = |key: &str| [MATCH, LINES, LINE_COLOR, LOOK].contains(&key) || FACTORS.contains(&key);
         faults.extend(rule.keys().filter(|key| !is_known(key)).map(|key| unknown(place, key)));
         let control = control(lines, factors);
         (faults.len() == before).then_some(Self { rule, things, control })
@@ -124,7 +132,7 @@ fn factor(place: &str, key: &str, value: Option<&Value>, faults: &mut Vec<Fault>
 }
 
 fn unknown(place: &str, key: &str) -> Fault {
-    let keys = [&[MATCH, LINES, LOOK], &FACTORS[..]].concat();
+    let keys = [&[MATCH, LINES, LINE_COLOR, LOOK], &FACTORS[..]].concat();
     let fix = nearest_name(key, keys.iter().copied()).map_or_else(
         || format!("the keys are {}", keys.join(", ")),
         |near| format!("did you mean '{near}'?"),

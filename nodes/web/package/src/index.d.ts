@@ -31,6 +31,8 @@ export interface ObjectRule {
   line_width?: number;
   line_amount?: number;
   medium?: number;
+  /** Colour of their lines, such as `#552211`. */
+  line_color?: string;
   /** A look of their own: a preset without rules, or its name. */
   look?: Preset | string;
 }

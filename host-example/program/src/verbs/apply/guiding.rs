@@ -9,10 +9,11 @@ use isophote_finishing::apply::filter::MaskedStyle;
 use isophote_finishing::apply::looks::Entry;
 use isophote_finishing::apply::masks::{MaskChoice, Masks};
 use isophote_finishing::apply::materials::Laid;
+use isophote_finishing::apply::objects::Rule;
 use isophote_finishing::apply::planner::Planner;
 use isophote_finishing::apply::tasks::Tasks;
 use isophote_finishing::stylize::preset::{self, ObjectRule};
-use isophote_finishing::stylize::style::LOOK;
+use isophote_finishing::stylize::things;
 use isophote_loader::Library;
 use isophote_pictures::exr::{Guide, MaskSource, Selection};
 use isophote_pictures::read::Opened;
@@ -47,9 +48,10 @@ impl ApplyArgs {
         if self.layered.is_some() {
             return wrong("are rules of one of several looks", "give looks masks, or name the preset alone");
         }
-        let is_look_alone =
-            |rule: &ObjectRule| rule.rule.contains_key(LOOK) && rule.control.iter().all(Option::is_none);
-        if !style.objects.iter().all(is_look_alone) && !style.takes(Guide::Control.id())? {
+        let needs_map = |rule: &ObjectRule| {
+            !(things::has_look(rule) || things::has_lines(rule)) || rule.control.iter().any(Option::is_some)
+        };
+        if style.objects.iter().any(needs_map) && !style.takes(Guide::Control.id())? {
             let fix = "choose another style, or connect @control in its graph";
             return wrong("are rules that the style does not follow", fix);
         }
@@ -69,7 +71,8 @@ impl ApplyArgs {
         }
         let laid = |material| Laid::new(material, self.space);
         let laid = self.painted.materials.open(&styles)?.into_iter().map(laid).collect();
-        let rules = looks.iter().flat_map(|look| &look.style.objects).map(|rule| rule.control);
+        let rules = looks.iter().flat_map(|look| &look.style.objects);
+        let rules = rules.map(|rule| Rule { control: rule.control, has_lines: things::has_lines(rule) });
         let masks = Masks::new(choices, self.mask_from.as_deref(), self.on_unknown)?;
         Ok(masks.with_maps(&paths)?.with_materials(laid).with_rules(rules.collect()))
     }

@@ -7,6 +7,7 @@ use isophote_files::error::{Error, Result};
 use isophote_finishing::apply::filter::MaskedStyle;
 use isophote_finishing::apply::looks::{self, Entry};
 use isophote_finishing::stylize::style::Style;
+use isophote_finishing::stylize::things;
 use isophote_loader::Library;
 use isophote_pictures::palette::Palette;
 
@@ -50,18 +51,9 @@ impl ApplyArgs {
         let palette = palette.as_ref();
         let looks = if entries.is_empty() {
             let style = Style::load_in(library, name, palette, &self.set)?;
-            let own = style.own_looks(library)?;
-            if self.mask.is_some() && !own.is_empty() {
-                let problem = "the preset's rules give things looks of their own, which no mask covers";
-                return Err(Error::input("--mask", problem, "leave it out, or list looks by --layered"));
-            }
+            let things = self.looks_of_things(library, name, palette, &style)?;
             let mask = self.mask.as_ref().and_then(|_| masks.next());
-            let mut looks = vec![MaskedStyle { style, mask }];
-            for (rule, mut style) in own {
-                palette.map_or(Ok(()), |palette| style.end_in(palette))?;
-                looks.push(MaskedStyle { style, mask: Some(rule) });
-            }
-            looks
+            std::iter::once(MaskedStyle { style, mask }).chain(things).collect()
         } else {
             let look = |entry: &Entry| {
                 let style = entry.style(library)?;
@@ -72,6 +64,36 @@ impl ApplyArgs {
             looks
         };
         self.timed(looks)
+    }
+
+    /// Looks that rules of the style's preset give to things, whose masks are those of the rules: looks of their own, and the style
+    /// once more with lines of another colour.
+    ///
+    /// # Errors
+    /// As [`Style::own_looks`]; [`Error::Input`] beside a mask.
+    fn looks_of_things(
+        &self,
+        library: &Library,
+        name: &Path,
+        palette: Option<&Palette>,
+        style: &Style,
+    ) -> Result<Vec<MaskedStyle>> {
+        let mut own = style.own_looks(library)?;
+        for (_, look) in &mut own {
+            palette.map_or(Ok(()), |palette| look.end_in(palette))?;
+        }
+        for (number, rule) in style.objects.iter().enumerate().filter(|(_, rule)| things::has_lines(rule)) {
+            let mut look = things::in_colour(Style::load_in(library, name, palette, &self.set)?, rule)?;
+            look.objects.clear();
+            own.push((number, look));
+        }
+        if self.mask.is_some() && !own.is_empty() {
+            let problem = "the preset's rules give things looks or lines of their own, which no mask covers";
+            return Err(Error::input("--mask", problem, "leave it out, or list looks by --layered"));
+        }
+        // The last rule lies over those before it.
+        own.sort_by_key(|(number, _)| *number);
+        Ok(own.into_iter().map(|(number, style)| MaskedStyle { style, mask: Some(number) }).collect())
     }
 
     /// The looks with what the command line says of time and lengths.

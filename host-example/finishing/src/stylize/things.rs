@@ -1,0 +1,97 @@
+//! Rules of a preset for things that ask for more than a control map: looks of their own, and colours of lines.
+
+use std::path::Path;
+
+use serde_json::Value;
+
+use super::preset::{self, ObjectRule, Preset};
+use super::style::{FIX, Setting, Style, graph_beside};
+use isophote_files::error::{AtPlace, Error, Result};
+use isophote_loader::Library;
+
+/// Key of a rule for the look that its things have.
+const LOOK: &str = "look";
+/// Key of a rule for the colour of lines, and the parameter of styles that it sets.
+const LINE_COLOR: &str = "line_color";
+
+/// True where a rule gives its things a look of their own.
+pub fn has_look(rule: &ObjectRule) -> bool {
+    rule.rule.contains_key(LOOK)
+}
+
+/// True where the lines of a rule's things have a colour of their own in the preset's own look.
+pub fn has_lines(rule: &ObjectRule) -> bool {
+    rule.rule.contains_key(LINE_COLOR) && !has_look(rule)
+}
+
+/// A style whose lines have the colour that a rule says, if it says one.
+///
+/// # Errors
+/// [`Error::Input`] for styles without such a parameter.
+pub fn in_colour(style: Style, rule: &ObjectRule) -> Result<Style> {
+    let Some(Value::String(color)) = rule.rule.get(LINE_COLOR) else { return Ok(style) };
+    style.set(&Setting { node: None, param: LINE_COLOR.into(), value: color.clone() })?;
+    Ok(style)
+}
+
+impl Style {
+    /// All that keeps the preset of the file `path` from being used.
+    ///
+    /// # Errors
+    /// As [`preset::examine`].
+    pub fn faults(library: &Library, path: &Path, text: &str) -> Result<(Preset, Vec<Error>)> {
+        let (preset, faults) = preset::examine(path, text)?;
+        let graph = match graph_beside(library, path, &preset) {
+            Ok(graph) => graph,
+            Err(fault) => return Ok((preset, faults.into_iter().chain([fault]).collect())),
+        };
+        let place = path.display().to_string();
+        let failed = |e: isophote_loader::Error| e.at(&place, FIX);
+        let all = library.check_preset(&place, text, graph.as_deref()).map_err(failed)?;
+        let all = all.into_iter().map(|fault| Error::of_fault(fault, &place, FIX));
+        let things: Vec<Error> = preset::things(&place, &preset.objects).filter_map(Result::err).collect();
+        let looks = own_looks(library, path, &preset.objects).filter_map(|(_, look)| look.err());
+        let things: Vec<Error> = things.into_iter().chain(looks).collect();
+        Ok((preset, all.chain(things).collect()))
+    }
+
+    /// Looks that rules of its preset give to things, each with the place of its rule.
+    ///
+    /// # Errors
+    /// As [`Style::load`]; [`Error::Input`] for a look that has rules itself.
+    pub fn own_looks(&self, library: &Library) -> Result<Vec<(usize, Self)>> {
+        own_looks(library, Path::new(&self.name), &self.objects)
+            .map(|(number, look)| Ok((number, look?)))
+            .collect()
+    }
+}
+
+/// Looks of their own that rules of the preset in the file `path` have, each with the place of its rule.
+fn own_looks(
+    library: &Library,
+    path: &Path,
+    rules: &[ObjectRule],
+) -> impl Iterator<Item = (usize, Result<Style>)> {
+    let file = path.file_name().unwrap_or_default().to_string_lossy().into_owned();
+    let look = move |(number, rule): (usize, &ObjectRule)| {
+        let place = path.with_file_name(format!("{file}: object {}: its look", number + 1));
+        let look = match rule.rule.get(LOOK)? {
+            Value::String(name) => {
+                Style::load(library, preset::style_beside(name, path), &[]).map_err(|e| e.within(&place))
+            }
+            written => preset::parse(&place, &written.to_string())
+                .and_then(|preset| Style::of_preset(library, &place, &preset)),
+        };
+        let look = look.and_then(|look| in_colour(look, rule));
+        let is_plain = |style: Style| match style.objects.is_empty() {
+            true => Ok(style),
+            false => Err(Error::file(
+                &place,
+                "has rules for objects",
+                "write rules for all things in the preset itself",
+            )),
+        };
+        Some((number, look.and_then(is_plain)))
+    };
+    rules.iter().enumerate().filter_map(look).collect::<Vec<_>>().into_iter()
+}
