@@ -9,6 +9,7 @@ use egui::{Event, Modifiers, PointerButton, Pos2, pos2};
 use egui_kittest::Harness;
 use egui_kittest::kittest::Queryable;
 use exr::prelude::WritableImage;
+use isophote_finishing::stylize::value::Value;
 use isophote_loader::{Control, Library};
 use isophote_pictures::exr::Guide;
 use isophote_window::jobs::document::{Document, Options};
@@ -162,9 +163,11 @@ fn maps_are_filled_and_cleared_and_looks_tell_what_they_follow() {
     harness.run_ok();
     assert!(harness.query_by_label_contains("follows no").is_none());
     // A stroke ends where the brush is put away under it.
+    harness.state_mut().begin_stroke([60.0, 45.0], false);
     harness.get_by_label("Paint").click();
     harness.run_ok();
-    assert!(!harness.state().is_painting());
+    assert!(!harness.state().is_painting() && harness.state().painting.stroke.is_none());
+    assert_eq!(painted(harness.state(), Channel::Mask)(60, 45), 0);
 }
 
 #[test]
@@ -198,6 +201,14 @@ fn maps_are_kept_with_their_files_and_nothing_is_lost_unasked() {
     assert_eq!(harness.state().unsaved_maps().len(), 1);
     show(&mut harness, &folder.path().join("in.png"));
     assert_eq!(painted(harness.state(), Channel::Mask)(45, 30), 0);
+    // Steps of before bring back no other maps than those of what is open.
+    let parameters = Arc::clone(harness.state().looks.parameters());
+    let parameter = parameters.iter().find(|parameter| parameter.name == "line_width").expect("it has one");
+    harness.state_mut().set(parameter, &Value::Float(3.0));
+    show(&mut harness, &other);
+    show(&mut harness, &folder.path().join("in.png"));
+    harness.state_mut().undo();
+    assert_eq!(painted(harness.state(), Channel::Mask)(45, 30), 0);
     // Saved, it is as safe as a file.
     let maps = Arc::clone(harness.state().open.playback().and_then(|p| p.maps()).expect("maps"));
     maps::write(Kind::Mask, &maps, SIZE, &file).expect("it is saved");
@@ -207,8 +218,20 @@ fn maps_are_kept_with_their_files_and_nothing_is_lost_unasked() {
     let session = harness.state_mut();
     session.leave();
     assert_eq!(session.dialogs.leaving, Leaving::Closes);
-    session.dialogs.leaving = Leaving::Stays;
-    // What a file holds comes back as it was.
+}
+
+#[test]
+fn files_of_maps_come_back_as_they_were_and_others_are_refused() {
+    let folder = support::folder();
+    let mut harness = window(folder.path(), "ink");
+    let session = harness.state_mut();
+    session.painting.brush.channel = Channel::Mask;
+    session.begin_stroke([30.0, 30.0], false);
+    session.go_on_stroke([60.0, 30.0]);
+    session.end_stroke();
+    let file = folder.path().join("in-mask.png");
+    let maps = Arc::clone(session.open.playback().and_then(|p| p.maps()).expect("maps"));
+    maps::write(Kind::Mask, &maps, SIZE, &file).expect("it is saved");
     let read = maps::read(Kind::Mask, &file, [SIZE; 2]).expect("it is read");
     assert_eq!(*read, *maps);
     session.clear_map();

@@ -11,7 +11,7 @@ use super::{keyboard, theme};
 use crate::state::outcome::Dialog;
 use crate::state::painted::brush::SIZES;
 use crate::state::painted::channel::{Channel, Kind, MOST};
-use crate::state::painted::maps::Maps;
+use crate::state::painted::maps::{Maps, middle};
 use crate::state::session::Session;
 use crate::state::viewport::{Area, Compare};
 use crate::state::work::Request;
@@ -233,10 +233,10 @@ fn image(maps: &Maps, channel: Channel) -> ColorImage {
     let share = (MOST_SHOWN as f32 / width.max(height) as f32).min(1.0);
     let [across, down] = [width, height].map(|length| ((length as f32 * share).round() as u32).max(1));
     let tiles = maps.layer(channel);
-    let middle =
-        |at: u32, of: u32, all: u32| ((u64::from(2 * at + 1) * u64::from(all)) / u64::from(2 * of)) as u32;
     let cells = (0..down).flat_map(|y| (0..across).map(move |x| (x, y)));
-    let colour = |(x, y)| colour(channel, tiles.get(middle(x, across, width), middle(y, down, height)));
+    let colour = |(x, y): (u32, u32)| {
+        colour(channel, tiles.get(middle(x as usize, width, across), middle(y as usize, height, down)))
+    };
     ColorImage::new([across as usize, down as usize], cells.map(colour).collect())
 }
 

@@ -11,12 +11,14 @@ use isophote_pictures::exr::Guide;
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Maps {
     layers: [Tiles; Channel::ALL.len()],
+    /// True where the control map stands for one of the file, also where nothing is painted.
+    covers_own: bool,
 }
 
 impl Maps {
     /// Maps of a picture on which nothing is painted.
     pub fn new(size: (u32, u32)) -> Self {
-        Self { layers: Channel::ALL.map(|channel| Tiles::new(size, channel.plain())) }
+        Self { layers: Channel::ALL.map(|channel| Tiles::new(size, channel.plain())), covers_own: false }
     }
 
     /// Pixels across and down.
@@ -34,9 +36,18 @@ impl Maps {
         &mut self.layers[channel as usize]
     }
 
-    /// True where something of a map is painted.
+    /// Maps over a picture whose file has a control map, by the numbers of that.
+    pub fn over(size: (u32, u32), control: &[f32]) -> Self {
+        let mut maps = Self { covers_own: true, ..Self::new(size) };
+        maps.take(Kind::Control, control, size);
+        maps
+    }
+
+    /// True where something of a map is painted, or it stands for one of the file.
     pub fn has(&self, kind: Kind) -> bool {
-        Channel::ALL.iter().any(|channel| channel.kind() == kind && !self.layer(*channel).is_plain())
+        let is_in_place = self.covers_own && kind == Kind::Control;
+        is_in_place
+            || Channel::ALL.iter().any(|channel| channel.kind() == kind && !self.layer(*channel).is_plain())
     }
 
     /// Numbers of a map, 4 a pixel of a control map and 1 of a mask, for pictures of a size: those in the middle of each pixel.
@@ -87,7 +98,7 @@ impl Maps {
 }
 
 /// The pixel of `own` pixels across that lies in the middle of one of `of`.
-fn middle(at: usize, own: u32, of: u32) -> u32 {
+pub fn middle(at: usize, own: u32, of: u32) -> u32 {
     ((2 * at as u64 + 1) * u64::from(own) / (2 * u64::from(of.max(1)))) as u32
 }
 
@@ -119,6 +130,10 @@ mod tests {
         read.take(Kind::Mask, &[1.0, 0.0, f32::NAN, 2.0, -1.0, 0.5, 1.0, 1.0], (4, 2));
         assert_eq!(read.bytes(Kind::Mask, (4, 2)), [255, 0, 255, 255, 0, 128, 255, 255]);
         assert!(read.layer(Channel::Detail).is_plain());
+        // What is cleared is clear, also over a map of the file.
+        let mut over = Maps::over((4, 2), &control.data);
+        over.layer_mut(Channel::LineWidth).fill(127);
+        assert!(over.control((4, 2)).unwrap().data.iter().all(|v| *v == plain));
         // Of pixels that are twice as wide.
         read.take(Kind::Mask, &[0.2, 0.4, 0.6, 0.8], (2, 2));
         assert_eq!(read.bytes(Kind::Mask, (2, 2)), [51, 102, 153, 204]);

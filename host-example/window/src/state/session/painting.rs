@@ -130,14 +130,12 @@ impl Session {
         if let Some(maps) = playback.maps() {
             return Some(Arc::clone(maps));
         }
-        let mut maps = Maps::new(playback.size());
-        let read = playback.read().filter(|read| (read.width, read.height) == maps.size());
+        let size = playback.size();
+        let read = playback.read().filter(|read| (read.width, read.height) == size);
         // Each frame of a sequence has its own.
         let own = read.filter(|_| playback.info().kind == Document::Picture);
-        if let Some(control) = own.and_then(|read| read.guide(Guide::Control)) {
-            maps.take(Kind::Control, &control.data, maps.size());
-        }
-        Some(Arc::new(maps))
+        let control = own.and_then(|read| read.guide(Guide::Control));
+        Some(Arc::new(control.map_or_else(|| Maps::new(size), |control| Maps::over(size, &control.data))))
     }
 
     /// Lays what was painted over the pictures, as one step.

@@ -57,11 +57,12 @@ impl Session {
         self.browser.is_outdated = true;
     }
 
-    /// Something else is open, which has its own light and maps: steps bring those of before back no more.
+    /// Something else is open, which has its own light and maps: steps bring those of before back no more, and leave its own.
     pub(super) fn forget_open(&mut self) {
         let mut now = self.state();
-        (now.lighting, now.maps) = (None, None);
-        self.edits.strip(&now, |state| (state.lighting, state.maps) = (None, None));
+        now.lighting = None;
+        let maps = now.maps.clone();
+        self.edits.strip(&now, |state| (state.lighting, state.maps) = (None, maps.clone()));
     }
 
     /// Changes the light.
