@@ -26,6 +26,8 @@ struct Params {
     origin: vec2f,
     /// Nonzero: its colours are those of the given sheet.
     given: u32,
+    /// Nonzero: lines are drawn.
+    lined: u32,
 }
 
 #params
@@ -59,7 +61,7 @@ fn of_pixel(id: vec3u, lightness: vec4f, edges: vec4f, given_sheet: vec4f) -> ve
         let strong = 0.32 * ruled(x, 5.0 * params.spacing, 1.5 * params.scale);
         sheet += max(fine, strong) * params.line.a * (params.line.rgb - sheet);
     }
-    let ink = (1.0 - clamp(edges.x, 0.0, 1.0)) * params.line.a;
+    let ink = select(0.0, (1.0 - clamp(edges.x, 0.0, 1.0)) * params.line.a, params.lined != 0u);
     let alpha = select(v.y, 1.0, params.cover != 0u);
     return vec4f(sheet + ink * (params.line.rgb - sheet), alpha);
 }

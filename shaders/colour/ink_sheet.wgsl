@@ -43,10 +43,12 @@ struct Params {
     bare: u32,
     /// Nonzero: colours and grain are those of the sheet.
     given: u32,
+    /// Nonzero: lines have a colour at each pixel.
+    painted: u32,
 }
 
 #params
-// Black lines on white; in the second channel those that are cut out of marks.
+// Black lines on white; in the second channel those that are cut out of marks. Where they are painted, see ink_paint.
 #input lines
 #input source, strokes
 // The share of the paper that marks cover.
@@ -82,20 +84,27 @@ fn of_pixel(id: vec3u, lines: vec4f, v: vec4f, strokes: vec4f, marks: vec4f, ton
     let stroke = clamp(strokes.x, 0.0, 1.0);
     let height = mix(tooth, stroke, params.follow);
 
-    let line = 1.0 - clamp(lines.x, 0.0, 1.0);
+    let is_painted = params.painted != 0u;
+    let line = 1.0 - clamp(select(lines.x, 1.0 - lines.w, is_painted), 0.0, 1.0);
     let grain = rise((params.smooth_from - tone_lightness(tones.xy)) * params.inverse_fade);
     // A dry tool leaves out the valleys of the paper even where it presses hard; in light tones nothing breaks.
     let dry = params.dryness * max(height - 0.55, 0.0);
     let pressed = catches(line, height, params.dryness * params.grain) * (1.0 - dry);
-    let kept = 1.0 - (1.0 - clamp(lines.y, 0.0, 1.0)) * params.cut;
+    let kept = 1.0 - (1.0 - clamp(select(lines.y, 1.0 + lines.w, is_painted), 0.0, 1.0)) * params.cut;
     let toned = catches(marks.x, height, params.grain * grain) * (1.0 - dry * grain) * kept;
-    let ink = (1.0 - (1.0 - pressed) * (1.0 - toned)) * params.line.a * alpha;
+    var drawn = (1.0 - (1.0 - pressed) * (1.0 - toned)) * params.line.a;
+    var pen = params.line.rgb;
+    if is_painted {
+        drawn = 1.0 - (1.0 - pressed) * (1.0 - toned * params.line.a);
+        pen += pressed / max(drawn, LEAST_COVERAGE) * (lines.rgb - pen);
+    }
+    let ink = drawn * alpha;
 
     // Chalk: the picture's own colours, a little lighter, where the paper catches them.
     let own = clamp(v.rgb, vec3f(0.0), vec3f(1.0));
     let chalk = catches(params.ground, height, params.grain * grain) * params.colour * alpha;
     let laid = mix(paper, own * 0.94 + 0.06, chalk);
-    let colour = mix(params.line.rgb, own * params.tint, params.colour);
+    let colour = mix(pen, own * params.tint, params.colour);
     if params.bare != 0u {
         let covered = 1.0 - (1.0 - ink) * (1.0 - chalk);
         return vec4f(mix(own * 0.94 + 0.06, colour, ink / max(covered, LEAST_COVERAGE)), covered);

@@ -4,25 +4,24 @@
 // smooths both kinds of lines along the same flow. Lines are centred on the break; where breaks are as
 // dense as the pixels nothing stands out, and no line is drawn.
 //
-// normal: 1 - cos of the angle. depth: 1/z is linear in x and y over any plane, so |z0/z+ + z0/z- - 2|
-// is 0 on planes however slanted, and has no scale. object id: different or not.
-// Creases and outlines have widths and strengths of their own.
+// Creases, outlines, and borders between things that touch have widths and strengths of their own.
 // Cost: up to 3 loads and four exponentials per step, 12 sigma_e steps.
 #import gpu/grid
+#import shared/breaks
 #import shared/tensor
 
 struct Params {
-    /// -1 / (2 sigma^2) of the narrower Gaussian, of creases and of outlines.
-    narrow: vec2f,
+    /// -1 / (2 sigma^2) of the narrower Gaussian, of creases, of outlines and of borders between things that touch.
+    narrow: vec4f,
     /// The same of the wider Gaussian.
-    wide: vec2f,
+    wide: vec4f,
     /// Cut-off, in pixels.
-    halfwidth: vec2f,
+    halfwidth: vec4f,
     /// Units of response that a unit of the difference takes off.
-    amount: vec2f,
-    /// Steps on each side that the longer cut-off takes at most.
+    amount: vec4f,
+    /// Steps on each side that the longest cut-off takes at most.
     steps: i32,
-    /// Bit 0: normal, bit 1: depth, bit 2: object id are there.
+    /// Bit 0: normal, bit 1: depth, bit 2: object id are there. Bit 3: borders between things that touch are no outlines.
     guides: u32,
     /// 1: the fourth channel of the field is a factor on the widths.
     scaled: u32,
@@ -35,60 +34,16 @@ struct Params {
 #input normal, depth, object_id
 #output target_image rg32float
 
-// False for NaN and infinities, by bits: shader compilers may assume that they do not exist.
-fn is_finite(v: f32) -> bool {
-    return (bitcast<u32>(v) & 0x7f800000u) != 0x7f800000u;
-}
-
-// The normal, all zero where there is none.
 fn normal_at(p: vec2i) -> vec3f {
-    let v = fetch(normal, 2u, p);
-    let valid = is_finite(v.x) && is_finite(v.y) && is_finite(v.z) && v.w > 0.5;
-    return select(vec3f(0.0), v.xyz, valid);
+    return known_normal(fetch(normal, 2u, p));
 }
 
-// Depth, 0 where there is nothing.
 fn depth_at(p: vec2i) -> f32 {
-    let z = fetch(depth, 3u, p).x;
-    return select(0.0, z, is_finite(z) && z > 0.0);
+    return known_depth(fetch(depth, 3u, p).x);
 }
 
 fn id_at(p: vec2i) -> f32 {
-    let v = fetch(object_id, 4u, p).x;
-    return select(0.0, v, is_finite(v));
-}
-
-// How far two directions differ, 0 for equal and 1 for perpendicular ones, and 1 where one is missing and the other not.
-fn normal_break(a: vec3f, b: vec3f) -> vec2f {
-    let aa = dot(a, a);
-    let bb = dot(b, b);
-    if aa <= 0.0 || bb <= 0.0 {
-        return vec2f(0.0, select(0.0, 1.0, aa > 0.0 || bb > 0.0));
-    }
-    let turn = 1.0 - dot(a, b) / sqrt(aa * bb);
-    // Below 10 degrees a pixel it is relief of the surface, from 31 degrees on an edge.
-    let t = clamp((turn - 0.015) * 8.0, 0.0, 1.0);
-    return vec2f(t * t * (3.0 - 2.0 * t), 0.0);
-}
-
-// Nearness relative to the pixel itself, 0..2; two empty places are equally near.
-fn relative_nearness(z0: f32, z: f32) -> f32 {
-    if z0 <= 0.0 {
-        return select(1.0, 2.0, z > 0.0);
-    }
-    return select(0.0, min(z0 / z, 2.0), z > 0.0);
-}
-
-// How far depth at the middle one of three pixels is from a plane through its neighbours.
-fn depth_bend(before: f32, z0: f32, after: f32) -> f32 {
-    return abs(relative_nearness(z0, before) + relative_nearness(z0, after) - 2.0);
-}
-
-// Both pixels at a jump lie off the plane of their neighbours.
-fn depth_break(bend: f32, next_bend: f32) -> f32 {
-    // A step of 2 % is relief, one of 12 % an edge.
-    let t = clamp((min(bend, next_bend) - 0.02) * 10.0, 0.0, 1.0);
-    return t * t * (3.0 - 2.0 * t);
+    return known_id(fetch(object_id, 4u, p).x);
 }
 
 // The pixel nearest to the place k steps along the main axis and k * slope across it. Ties are
@@ -96,6 +51,17 @@ fn depth_break(bend: f32, next_bend: f32) -> f32 {
 fn place(p: vec2i, upright: bool, k: i32, slope: f32) -> vec2i {
     let i = i32(floor(f32(k) * slope + 0.502));
     return p + select(vec2i(k, i), vec2i(i, k), upright);
+}
+
+// True where the surfaces at places k and k + 1 touch.
+fn touches(p: vec2i, upright: bool, k: i32, slope: f32) -> bool {
+    let nearnesses = vec4f(
+        nearness(depth_at(place(p, upright, k - 3, slope))),
+        nearness(depth_at(place(p, upright, k - 1, slope))),
+        nearness(depth_at(place(p, upright, k + 2, slope))),
+        nearness(depth_at(place(p, upright, k + 4, slope))),
+    );
+    return depth_apart(nearnesses) < APART;
 }
 
 fn main(@builtin(global_invocation_id) id: vec3u) {
@@ -112,7 +78,7 @@ fn main(@builtin(global_invocation_id) id: vec3u) {
     let ds = sqrt(1.0 + slope * slope) / factor;
 
     // Breaks between pixels k and k + 1 along the line; depth looks one further on either side.
-    let halfwidth = max(params.halfwidth.x, params.halfwidth.y);
+    let halfwidth = max(max(params.halfwidth.x, params.halfwidth.y), params.halfwidth.z);
     let steps = select(params.steps, min(i32(halfwidth * factor + 0.5), params.steps), params.scaled != 0u);
     let first = -steps;
     let start = place(p, upright, first, slope);
@@ -135,8 +101,10 @@ fn main(@builtin(global_invocation_id) id: vec3u) {
     // Of creases, which lie between two normals, and of outlines: borders of normals, depth and object id.
     var narrow = vec4f(0.0);
     var wide = vec4f(0.0);
-    var narrow_weights = vec2f(0.0);
-    var wide_weights = vec2f(0.0);
+    // Of borders of object ids alone, and weights of the three kinds.
+    var touching = vec2f(0.0);
+    var narrow_weights = vec3f(0.0);
+    var wide_weights = vec3f(0.0);
     for (var k = first; k < steps; k++) {
         let next = place(p, upright, k + 1, slope);
         var found = vec4f(0.0);
@@ -155,25 +123,35 @@ fn main(@builtin(global_invocation_id) id: vec3u) {
             depth_next = after;
             bend_here = bend_next;
         }
+        var border = 0.0;
         if (params.guides & 4u) != 0u {
             let id_next = id_at(next);
             found.w = select(0.0, 1.0, id_next != id_here);
             id_here = id_next;
+            if (params.guides & 8u) != 0u && found.w > 0.0 && touches(p, upright, k, slope) {
+                // A border is no crease as well.
+                border = found.w;
+                found.w = 0.0;
+                found.x *= 1.0 - border;
+            }
         }
         let d = (f32(k) + 0.5) * ds;
-        let near = abs(vec2f(d)) <= params.halfwidth;
-        let n = select(vec2f(0.0), exp(params.narrow * d * d), near);
-        let w = select(vec2f(0.0), exp(params.wide * d * d), near);
+        let near = abs(vec3f(d)) <= params.halfwidth.xyz;
+        let n = select(vec3f(0.0), exp(params.narrow.xyz * d * d), near);
+        let w = select(vec3f(0.0), exp(params.wide.xyz * d * d), near);
         narrow += n.xyyy * found;
         wide += w.xyyy * found;
+        touching += vec2f(n.z, w.z) * border;
         narrow_weights += n;
         wide_weights += w;
     }
     let ridge = max(narrow / narrow_weights.xyyy - wide / wide_weights.xyyy, vec4f(0.0));
     let outline = max(max(ridge.y, ridge.z), ridge.w);
+    let border = max(touching.x / narrow_weights.z - touching.y / wide_weights.z, 0.0);
     // A lone break is the fainter the wider it is smoothed.
     let evened = select(sqrt(factor), factor, factor >= 1.0);
-    let strength = evened * max(params.amount.x * ridge.x, params.amount.y * outline);
+    let sharp = max(params.amount.x * ridge.x, params.amount.y * outline);
+    let strength = evened * max(sharp, params.amount.z * border);
     let v = fetch(response, 0u, p).xy;
     textureStore(target_image, vec2i(id.xy), vec4f(v.x - strength * v.y, v.y, 0.0, 0.0));
 }

@@ -20,6 +20,7 @@ pub(crate) mod importance;
 pub(crate) mod line_context;
 pub(crate) mod line_integral_convolution;
 pub(crate) mod line_on_dark;
+pub(crate) mod line_sets;
 pub(crate) mod line_width;
 pub(crate) mod line_wobble;
 pub(crate) mod lines;

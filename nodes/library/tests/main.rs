@@ -4,6 +4,7 @@ mod control;
 mod cpu;
 mod graph;
 mod importance;
+mod line_sets;
 mod line_wobble;
 mod lines;
 mod materials;

@@ -8,10 +8,19 @@ use isophote::value::Value;
 use std::fmt::Write as _;
 
 /// Parameter that is set as well where a control does nothing by itself: node and control, then parameter and value.
-const TOGETHER: [(&str, &str, &str, &str); 15] = [
+const TOGETHER: [(&str, &str, &str, &str); 25] = [
     ("cartoon", "posterize_smooth", "posterize", "6"),
     ("coherent", "posterize_smooth", "posterize", "6"),
     ("coherent", "steps", "posterize", "6"),
+    ("cartoon", "outline_color", "line_colors", "kinds"),
+    ("cartoon", "border_color", "line_colors", "kinds"),
+    ("cartoon", "crease_color", "line_colors", "kinds"),
+    ("blueprint", "outline_color", "line_colors", "kinds"),
+    ("blueprint", "border_color", "line_colors", "kinds"),
+    ("blueprint", "crease_color", "line_colors", "kinds"),
+    ("ink", "outline_color", "line_colors", "kinds"),
+    ("ink", "border_color", "line_colors", "kinds"),
+    ("ink", "crease_color", "line_colors", "kinds"),
     // Ink itself is of one colour.
     ("ink", "saturation", "style", "pastel"),
     // Lines are off, and four process inks are printed.
@@ -19,6 +28,7 @@ const TOGETHER: [(&str, &str, &str, &str); 15] = [
     ("halftone", "suppress_small", "line_amount", "0.5"),
     ("halftone", "outline_width", "line_amount", "0.5"),
     ("halftone", "crease_width", "line_amount", "0.5"),
+    ("halftone", "border_width", "line_amount", "0.5"),
     ("halftone", "far_width", "line_amount", "0.5"),
     ("halftone", "texture_lines", "line_amount", "0.5"),
     ("halftone", "line_color", "line_amount", "0.5"),

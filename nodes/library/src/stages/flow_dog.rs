@@ -63,8 +63,8 @@ pub(crate) struct FlowDog {
     pub guide_weight: f32,
     /// Weight of the picture's own edges, 0..=1.
     pub texture: f32,
-    /// Creases and outlines.
-    pub guided: [Guided; 2],
+    /// Creases, outlines, and borders between things that touch.
+    pub guided: [Guided; guide_lines::KINDS],
     /// Lines narrower than a pixel are fainter.
     pub fades: bool,
     /// What is around lines, as far as it counts; it does in the separable filter.
@@ -147,7 +147,8 @@ impl FlowDog {
     pub(crate) fn on_pixels(self, scope: &Scope<'_>) -> Self {
         let guides = guides(scope, self.guide_weight);
         let own = if self.texture > 0.0 { self.sigma_e } else { 0.0 };
-        let there = [guides.normal.is_some(), guides != Guides::default()];
+        let some = guides != Guides::default();
+        let there = [guides.normal.is_some(), some, some && guides.object_id.is_some()];
         let kinds = self.guided.iter().zip(there).filter(|(_, there)| *there);
         let widest = kinds.fold(own, |widest, (kind, _)| kind.sigma.max(widest));
         let widest = if widest > 0.0 { widest } else { self.sigma_e };
@@ -231,6 +232,16 @@ impl FlowDog {
         self.with_guides(plan, response, directed, guides)
     }
 
+    /// The standard deviation of the widest kind of lines.
+    pub(crate) fn widest(&self) -> f32 {
+        self.guided.iter().fold(self.sigma_e, |widest, kind| widest.max(kind.sigma))
+    }
+
+    /// The standard deviation of outlines.
+    pub(crate) const fn outline(&self) -> f32 {
+        self.guided[guide_lines::OUTLINE].sigma
+    }
+
     /// The field that lines follow, with factors on their widths where places or distances ask for them.
     fn directed(
         &self,
@@ -244,8 +255,7 @@ impl FlowDog {
         match depth.filter(|_| self.distance.width != 1.0) {
             Some(depth) => {
                 // As far as lines reach from the things that they belong to.
-                let widest = self.guided.iter().fold(self.sigma_e, |widest, kind| widest.max(kind.sigma));
-                let radius = (REACH * widest * self.distance.width.max(1.0)).min(MOST_REACH);
+                let radius = (REACH * self.widest() * self.distance.width.max(1.0)).min(MOST_REACH);
                 self.distance.widened(plan, directed, depth, radius, least.min(1.0))
             }
             None => directed,

@@ -3,6 +3,7 @@
 use crate::declare::choice::choice;
 use crate::declare::spec::{Param, Scope};
 use crate::kernels::colour::light_on_dark::{self, Params};
+use crate::kernels::colour::light_paint;
 use crate::kernels::lines::lightness_moments;
 use crate::stages::line_context::surroundings;
 use isophote_engine::ImageId;
@@ -76,12 +77,31 @@ pub(crate) fn drawn(
         line,
         light: [1.0, 1.0, 1.0, LIFT],
         paper: [0.0; 4],
-        dark: least_ground(line, if guided { SEEN } else { SEEN_ALONE }),
+        dark: least_ground(line, seen(guided)),
         inverse: 1.0 / TURN,
         padding: Default::default(),
     };
     let ground = ground(scope, lightness);
     light_on_dark::pass(scope.plan, [rgb, edges, ground], &params)
+}
+
+/// RGB and opacity of lines at each pixel over `rgb`, light where its `lightness` is low; `guided` where guides are known.
+pub(crate) fn painted(scope: &mut Scope<'_>, [paint, rgb, lightness]: [ImageId; 3], guided: bool) -> ImageId {
+    let [from, to] = STRONG_LINES;
+    let params = light_paint::Params {
+        seen: seen(guided),
+        inverse: 1.0 / TURN,
+        lift: LIFT,
+        strong: to,
+        inverse_range: 1.0 / (to - from),
+    };
+    let ground = ground(scope, lightness);
+    light_paint::pass(scope.plan, [paint, rgb, ground], &params)
+}
+
+/// Lightness that a ground has above a line that is seen on it.
+const fn seen(guided: bool) -> f32 {
+    if guided { SEEN } else { SEEN_ALONE }
 }
 
 /// Lightness of the ground from which on a line is seen that needs `seen` units of L.

@@ -6,7 +6,8 @@ use crate::kernels::colour::lines_alone;
 use crate::kernels::lines::flow_dog_two_dimensional::Stepping;
 use crate::kernels::shared::edge_threshold::{Threshold, Xdog};
 use crate::kernels::shared::stream::Integrator;
-use crate::stages::flow_dog::{Distance, FlowDog, Guided, Kernel};
+use crate::stages::flow_dog::{self, Distance, FlowDog, Guided, Kernel};
+use crate::stages::flow_map;
 use crate::stages::line_context::{self, LineContext};
 use crate::stages::{ADVANCED, LOOK};
 use isophote_engine::ImageId;
@@ -27,6 +28,10 @@ pub(crate) const CREASE_WIDTH: Param = Param::float("crease_width", "Crease widt
     .slider(0.0, 3.0)
     .group(LOOK)
     .hint("Width of lines where a surface folds against other lines; 0 draws none. Needs normals.");
+pub(crate) const BORDER_WIDTH: Param =
+    Param::float("border_width", "Border width", 1.0, [0.0, 8.0]).slider(0.0, 3.0).group(LOOK).hint(
+        "Width of borders between things that touch against outlines; 0 draws none. Needs depth and object ids.",
+    );
 pub(crate) const FAR_WIDTH: Param = Param::float("far_width", "Width far away", 1.0, [0.0, 4.0])
     .slider(0.25, 2.0)
     .structural()
@@ -150,14 +155,24 @@ pub(crate) fn flow_dog(scope: &Scope<'_>, guide_weight: f32) -> FlowDog {
     .on_pixels(scope)
 }
 
+/// The tensor of the picture that is described, and of its guides.
+pub(crate) fn oriented(scope: &mut Scope<'_>, guide_weight: f32) -> ImageId {
+    let color = scope.required("color");
+    let guides = flow_dog::guides(scope, guide_weight);
+    let tensor = flow_dog::tensor(scope, color, &guides);
+    flow_map::bent(scope, tensor)
+}
+
 /// Width of lines by distance.
 pub(crate) fn distance(scope: &Scope<'_>) -> Distance {
     Distance { near: scope.float(NEAR.id), far: scope.float(FAR.id), width: scope.float(FAR_WIDTH.id) }
 }
 
-/// Creases and outlines beside lines of standard deviation `sigma_e`.
-pub(crate) fn guided(scope: &Scope<'_>, sigma_e: f32) -> [Guided; 2] {
-    [CREASE_WIDTH.id, OUTLINE_WIDTH.id].map(|width| Guided::new(sigma_e * scope.float(width)))
+/// Creases, outlines, and borders between things that touch, beside lines of standard deviation `sigma_e`.
+pub(crate) fn guided(scope: &Scope<'_>, sigma_e: f32) -> [Guided; 3] {
+    let [crease, outline, border] =
+        [CREASE_WIDTH, OUTLINE_WIDTH, BORDER_WIDTH].map(|width| scope.float(width.id));
+    [crease, outline, outline * border].map(|width| Guided::new(sigma_e * width))
 }
 
 /// Factor on the scale of edges for lines `width` pixels of the full picture wide.
@@ -186,7 +201,7 @@ fn base(technical: f32, amount: f32) -> f32 {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::stages::{difference_of_gaussians as dog, flow_dog};
+    use crate::stages::difference_of_gaussians as dog;
 
     const WIDTH: f32 = LINE_WIDTH.default_float();
     const AMOUNT: f32 = LINE_AMOUNT.default_float();

@@ -14,7 +14,7 @@ const GROUPS = {
 };
 
 /** Parameters that count only where a scene gives guides. */
-const GUIDED = new Set(["outline_width", "crease_width", "guide_weight", "cover"]);
+const GUIDED = new Set(["outline_width", "border_width", "crease_width", "line_colors", "outline_color", "border_color", "crease_color", "line_gap", "guide_weight", "cover"]);
 
 export class Panel {
   #catalogue;

@@ -47,8 +47,8 @@ pub struct Sheet {
 pub struct Drawing {
     /// (L alpha, alpha) of the picture.
     pub lightness: ImageId,
-    /// 1 = paper, 0 = line.
-    pub edges: ImageId,
+    /// 1 = paper, 0 = line; none where others draw the lines.
+    pub edges: Option<ImageId>,
     /// Colours of a paper ([`paper_relief`](super::paper_relief)).
     pub paper: Option<ImageId>,
 }
@@ -66,9 +66,11 @@ pub fn pass(plan: &mut PlanBuilder, drawing: &Drawing, sheet: &Sheet) -> ImageId
         cover: sheet.cover.into(),
         origin: sheet.origin,
         given: drawing.paper.is_some().into(),
+        lined: drawing.edges.is_some().into(),
         padding: Default::default(),
     };
-    let inputs = [drawing.lightness, drawing.edges, drawing.paper.unwrap_or(drawing.lightness)];
+    let [edges, paper] = [drawing.edges, drawing.paper].map(|image| image.unwrap_or(drawing.lightness));
+    let inputs = [drawing.lightness, edges, paper];
     plan.pass(&KERNEL, &inputs, &params, Class::Colour, Support::Pixels(0))
 }
 
@@ -104,8 +106,11 @@ fn sheet<S: Simd>(simd: S, pass: &CpuPass<'_>, params: &Params, band: &mut Band<
                 let strong = ruled(x, y, 5.0 * params.spacing, 1.5 * params.scale) * 0.32;
                 rule = fine.at_least(strong) * params.line[3];
             }
-            let [edge] = block.read(simd, edges);
-            let ink = (one - edge.within(0.0, 1.0)) * params.line[3];
+            let mut ink = one * 0.0;
+            if params.lined != 0 {
+                let [edge] = block.read(simd, edges);
+                ink = (one - edge.within(0.0, 1.0)) * params.line[3];
+            }
             let drawn = Drawn { paper, shade, light, rule, ink };
             let [r, g, b] = [drawn.over(params, 0), drawn.over(params, 1), drawn.over(params, 2)];
             write([r, g, b, if params.cover != 0 { one } else { alpha }], target);

@@ -60,8 +60,11 @@ pub struct Sheet {
 /// Drawing on the sheet.
 #[derive(Clone, Copy, Debug)]
 pub struct Drawing {
-    /// Black lines on white; in the second channel those that are cut out of marks.
+    /// Black lines on white; in the second channel those that are cut out of marks. Where lines are `painted`, those of
+    /// [`ink_paint`](super::ink_paint).
     pub lines: ImageId,
+    /// Lines have a colour at each pixel.
+    pub painted: bool,
     /// The picture, whose own colours may show.
     pub color: ImageId,
     /// Noise along the form, 0..=1, in the first channel.
@@ -98,6 +101,7 @@ pub fn pass(plan: &mut PlanBuilder, drawing: &Drawing, sheet: &Sheet) -> ImageId
         smooth_from: SMOOTH_FROM,
         inverse_fade: INVERSE_FADE,
         given: drawing.paper.is_some().into(),
+        painted: drawing.painted.into(),
         origin: sheet.origin,
         padding: Default::default(),
     };
@@ -134,7 +138,11 @@ fn sheet<S: Simd>(simd: S, pass: &CpuPass<'_>, params: &Params, band: &mut Band<
             let [stroke, ..]: [f32x8<S>; 4] = block.read(simd, strokes);
             let height = mix(tooth, stroke.within(zero, one), zero + params.follow);
 
-            let [edge, bare, ..]: [f32x8<S>; 4] = block.read(simd, lines);
+            let [mut edge, mut bare, blue, share]: [f32x8<S>; 4] = block.read(simd, lines);
+            let paint = [edge, bare, blue];
+            if params.painted != 0 {
+                (edge, bare) = (one - share, one + share);
+            }
             let line = one - edge.within(zero, one);
             let [mark] = block.read(simd, marks);
             let lightness = tone_lightness(block.read(simd, tones));
@@ -145,8 +153,15 @@ fn sheet<S: Simd>(simd: S, pass: &CpuPass<'_>, params: &Params, band: &mut Band<
             let grain = grained * params.grain;
             let kept = one - (one - bare.within(zero, one)) * params.cut;
             let toned = catches(mark, height, grain) * (one - dry * grained) * kept;
-            let drawn = one - (one - pressed) * (one - toned);
-            let ink = drawn * params.line[3] * alpha;
+            let mut ink = one - (one - pressed) * (one - toned);
+            let mut of_lines = zero;
+            if params.painted != 0 {
+                ink = one - (one - pressed) * (one - toned * params.line[3]);
+                of_lines = pressed / ink.at_least(LEAST_COVERAGE);
+            } else {
+                ink *= params.line[3];
+            }
+            ink *= alpha;
 
             // Chalk: the picture's own colours, a little lighter, where the paper catches them.
             let chalk = catches(zero + params.ground, height, grain) * params.colour * alpha;
@@ -155,7 +170,10 @@ fn sheet<S: Simd>(simd: S, pass: &CpuPass<'_>, params: &Params, band: &mut Band<
             for (channel, value) in laid.iter_mut().enumerate() {
                 let own = value.within(zero, one);
                 let own_chalk = own * 0.94 + 0.06;
-                let line = f32x8::splat(simd, params.line[channel]);
+                let mut line = f32x8::splat(simd, params.line[channel]);
+                if params.painted != 0 {
+                    line += of_lines * (paint[channel] - line);
+                }
                 let line = mix(line, own * params.tint, zero + params.colour);
                 *value = if params.bare != 0 {
                     mix(own_chalk, line, ink / covered.at_least(LEAST_COVERAGE))

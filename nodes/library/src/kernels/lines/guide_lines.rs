@@ -5,18 +5,20 @@
 //! takes a difference of Gaussians of their density off the response; the result is a line centred on
 //! the break, as wide as those of the difference of Gaussians. Where breaks are as dense as the pixels
 //! nothing stands out, and no line is drawn. The thesis has no guides; this is the reasoning of § 4.5
-//! applied to geometry. 1/z is linear in x and y over any plane, so z0/z+ + z0/z- - 2 is 0 on planes
-//! however slanted, and has no scale.
+//! applied to geometry.
 //!
-//! Creases, which lie between two normals, and outlines, borders of normals, depth and object ids, have widths and strengths
-//! of their own.
+//! Creases, which lie between two normals, outlines, where normals, depth or object ids end, and borders of object ids
+//! between things that touch, where depth goes on, have widths and strengths of their own.
 //!
 //! Cost: per step (12 sigma_e of them) up to three reads and two exponentials; four where the widths differ.
 
 use crate::kernels::lines::flow_dog_gradient::{Across, MOST, directed};
 pub use crate::kernels::shaders::guide_lines::Params;
-use crate::kernels::simd::pixels::{fetch1, fetch4, for_blocks, offsets, write};
-use isophote_engine::fearless_simd::{Simd, f32x8, i32x8, mask32x8, prelude::*};
+use crate::kernels::shared::breaks::{
+    APART, depth_apart, depth_bend, depth_break, depths, ids, nearness, normal_break, normals,
+};
+use crate::kernels::simd::pixels::{for_blocks, write};
+use isophote_engine::fearless_simd::{Simd, f32x8, prelude::*};
 use isophote_engine::math::Elementary;
 use isophote_engine::{Band, Class, CpuPass, ImageId, PlanBuilder, Support, Tolerance, View};
 
@@ -45,14 +47,25 @@ const WIDE: f32 = 3.0;
 /// Cut-off in standard deviations of the wider Gaussian.
 const PRECISION: f32 = 2.0;
 
+/// Kinds of lines that guides draw: creases, outlines, and borders between things that touch.
+pub const KINDS: usize = 3;
+
+const CREASE: usize = 0;
+/// Place of outlines among the kinds.
+pub const OUTLINE: usize = 1;
+const BORDER: usize = 2;
+
+/// Bit of `guides` where borders between things that touch are no outlines.
+const TELLS: u32 = 8;
+
 /// Options of lines that guides draw.
 #[derive(Clone, Copy, Debug)]
 pub struct Options {
-    /// Standard deviation of the narrower Gaussian across lines of creases and of outlines, pixels: half of one at least,
-    /// since of a much narrower one no tap but the two next to the pixel has any weight.
-    pub sigmas: [f32; 2],
-    /// Strength of the lines of creases and of outlines; 0 draws none of them.
-    pub weights: [f32; 2],
+    /// Standard deviation of the narrower Gaussian across lines of creases, of outlines and of borders between things that
+    /// touch, pixels: half of one at least, since of a much narrower one no tap but the two next to the pixel has any weight.
+    pub sigmas: [f32; KINDS],
+    /// Strength of the same lines; 0 draws none of them.
+    pub weights: [f32; KINDS],
     /// Weight of the difference of Gaussians in the response, tau or p.
     pub edge: f32,
     /// The fourth channel of the field is a factor on `sigmas`, [`MOST`] at the most.
@@ -73,26 +86,38 @@ pub fn pass(
     // A lone break is the fainter the wider it is smoothed.
     let evened = |sigma: f32| if sigma < 1.0 { sigma.sqrt() } else { sigma };
     let sigmas = sigmas.map(|sigma| sigma.min(100.0));
-    let amount = [0, 1].map(|kind| AMOUNT * weights[kind] * edge * evened(sigmas[kind]));
+    let amount = [0, 1, 2].map(|kind| AMOUNT * weights[kind] * edge * evened(sigmas[kind]));
     let falloff = |factor: f32| sigmas.map(|sigma| -0.5 / (factor * sigma * factor * sigma));
     let halfwidth = sigmas.map(|sigma| PRECISION * WIDE * sigma);
     let most = if scaled { MOST } else { 1.0 };
-    let steps = (halfwidth[0].max(halfwidth[1]) * most + 0.5) as i32;
+    let steps = (widest(&halfwidth) * most + 0.5) as i32;
+    // What touches what is known by depth; without it all borders are outlines.
+    let tells = (sigmas[BORDER], weights[BORDER]) != (sigmas[OUTLINE], weights[OUTLINE])
+        && guides[1].is_some()
+        && guides[2].is_some();
+    let given: u32 = (0..3).map(|i| u32::from(guides[i].is_some()) << i).sum();
+    let four = |[crease, outline, border]: [f32; KINDS]| [crease, outline, border, 0.0];
     let params = Params {
-        narrow: falloff(NARROW),
-        wide: falloff(WIDE),
-        halfwidth,
-        amount,
+        narrow: four(falloff(NARROW)),
+        wide: four(falloff(WIDE)),
+        halfwidth: four(halfwidth),
+        amount: four(amount),
         steps,
-        guides: (0..3).map(|i| u32::from(guides[i].is_some()) << i).sum(),
+        guides: given | if tells { TELLS } else { 0 },
         scaled: scaled.into(),
         padding: Default::default(),
     };
     // A guide that is not there is not read; any image may stand in for it.
     let [normal, depth, id] = guides.map(|guide| guide.unwrap_or(response));
-    // The bend of depth at the last pixel looks at one more.
-    let support = Support::Pixels(steps as u32 + 1);
+    // The bend of depth at the last pixel looks at one more, and what touches what is seen at three more.
+    let support = Support::Pixels(steps as u32 + if tells { 3 } else { 1 });
     plan.pass(&KERNEL, &[response, field, normal, depth, id], &params, Class::Field, support)
+}
+
+/// The largest of the values of the kinds.
+#[inline(always)]
+fn widest(of: &[f32]) -> f32 {
+    of[CREASE].max(of[OUTLINE]).max(of[BORDER])
 }
 
 #[inline(always)]
@@ -126,8 +151,7 @@ fn strength<S: Simd>(
         params.steps
     } else {
         // Beyond the cut-off of a pixel weights are 0.
-        let halfwidth = params.halfwidth[0].max(params.halfwidth[1]);
-        ((factor.reduce_max() * halfwidth + 0.5) as i32).min(params.steps)
+        ((factor.reduce_max() * widest(&params.halfwidth) + 0.5) as i32).min(params.steps)
     };
     // Of a step, against the width that is asked for.
     let length = line.step / factor;
@@ -141,8 +165,8 @@ fn strength<S: Simd>(
         depth_next = depths(simd, depth, line.nearest(first + 1));
         bend_here = depth_bend(depths(simd, depth, line.nearest(first - 1)), depth_here, depth_next);
     }
-    let mut sums = [GuideSums::new(simd), GuideSums::new(simd)];
-    let is_uniform = params.halfwidth[0] == params.halfwidth[1];
+    let mut sums = [GuideSums::new(simd), GuideSums::new(simd), GuideSums::new(simd)];
+    let is_uniform = params.halfwidth[CREASE] == params.halfwidth[OUTLINE];
     for k in first..steps {
         let next = line.nearest(k + 1);
         let mut found = [zero; 4];
@@ -154,7 +178,7 @@ fn strength<S: Simd>(
         if has(2) {
             let after = depths(simd, depth, line.nearest(k + 2));
             let bend_next = depth_bend(depth_here, depth_next, after);
-            found[2] = ramp((bend_here.at_most(bend_next) - 0.02) * 10.0);
+            found[2] = depth_break(bend_here, bend_next);
             (depth_here, depth_next, bend_here) = (depth_next, after, bend_next);
         }
         if has(4) {
@@ -163,18 +187,41 @@ fn strength<S: Simd>(
             id_here = id_next;
         }
         let d = length * (k as f32 + 0.5);
-        let weights = weights(d, params, 0);
-        let others = if is_uniform { weights } else { self::weights(d, params, 1) };
-        sums[0].add([found[0], zero, zero], weights);
-        sums[1].add([found[1], found[2], found[3]], others);
+        let weights = weights(d, params, CREASE);
+        let others = if is_uniform { weights } else { self::weights(d, params, OUTLINE) };
+        if has(TELLS) {
+            let touching = found[3] * touching(simd, depth, line, k);
+            sums[BORDER].add([touching, zero, zero], self::weights(d, params, BORDER));
+            // A border is no crease as well.
+            found[0] *= one - touching;
+            found[3] -= touching;
+        }
+        sums[CREASE].add([found[0], zero, zero], weights);
+        sums[OUTLINE].add([found[1], found[2], found[3]], others);
     }
-    let [creases, outlines] = [sums[0].ridge(), sums[1].ridge()];
     // A lone break is the fainter the wider it is smoothed.
     let evened = factor.simd_ge(1.0).select(factor, factor.sqrt());
-    (creases * params.amount[0]).at_least(outlines * params.amount[1]) * evened
+    let creases = sums[CREASE].ridge() * params.amount[CREASE];
+    let outlines = sums[OUTLINE].ridge() * params.amount[OUTLINE];
+    let mut strongest = creases.at_least(outlines);
+    if has(TELLS) {
+        strongest = strongest.at_least(sums[BORDER].ridge() * params.amount[BORDER]);
+    }
+    strongest * evened
 }
 
-/// Weights of the narrower and of the wider Gaussian at a distance, of creases or outlines.
+/// 1 where the surfaces at two successive pixels of the line touch, and 0 elsewhere.
+#[inline(always)]
+fn touching<S: Simd>(simd: S, depth: &View<'_>, line: &Across<S>, k: i32) -> f32x8<S> {
+    let mut nearnesses = [f32x8::splat(simd, 0.0); 4];
+    for (value, at) in nearnesses.iter_mut().zip([k - 3, k - 1, k + 2, k + 4]) {
+        *value = nearness(depths(simd, depth, line.nearest(at)));
+    }
+    let (zero, one) = (f32x8::splat(simd, 0.0), f32x8::splat(simd, 1.0));
+    depth_apart(nearnesses).simd_lt(APART).select(one, zero)
+}
+
+/// Weights of the narrower and of the wider Gaussian at a distance, of one kind.
 #[inline(always)]
 fn weights<S: Simd>(d: f32x8<S>, params: &Params, kind: usize) -> [f32x8<S>; 2] {
     let near = d.abs().simd_le(params.halfwidth[kind]);
@@ -217,72 +264,4 @@ impl<S: Simd> GuideSums<S> {
         }
         ridge
     }
-}
-
-#[inline(always)]
-fn finite<S: Simd>(v: f32x8<S>) -> mask32x8<S> {
-    v.abs().simd_le(f32::MAX)
-}
-
-/// Normals, all zero where there is none.
-#[inline(always)]
-fn normals<S: Simd>(simd: S, view: &View<'_>, [x, y]: [i32x8<S>; 2]) -> [f32x8<S>; 3] {
-    let [x, y, z, w] = fetch4(simd, view, offsets(view, x, y));
-    let valid = finite(x) & finite(y) & finite(z) & w.simd_gt(0.5);
-    let zero = f32x8::splat(simd, 0.0);
-    [valid.select(x, zero), valid.select(y, zero), valid.select(z, zero)]
-}
-
-/// Depths, 0 where there is nothing.
-#[inline(always)]
-fn depths<S: Simd>(simd: S, view: &View<'_>, [x, y]: [i32x8<S>; 2]) -> f32x8<S> {
-    let z = fetch1(simd, view, offsets(view, x, y));
-    (finite(z) & z.simd_gt(0.0)).select(z, f32x8::splat(simd, 0.0))
-}
-
-#[inline(always)]
-fn ids<S: Simd>(simd: S, view: &View<'_>, [x, y]: [i32x8<S>; 2]) -> f32x8<S> {
-    let id = fetch1(simd, view, offsets(view, x, y));
-    finite(id).select(id, f32x8::splat(simd, 0.0))
-}
-
-/// t^2 (3 - 2 t) of t clamped to 0..=1.
-#[inline(always)]
-fn ramp<S: Simd>(t: f32x8<S>) -> f32x8<S> {
-    let t = t.within(0.0, 1.0);
-    t * t * (t * -2.0 + 3.0)
-}
-
-/// Difference of two directions, 0 for equal and 1 for perpendicular ones, and 1 where one is missing and the other
-/// not. Below 10 degrees a pixel it is relief of the surface, from 31 degrees on an edge.
-#[inline(always)]
-fn normal_break<S: Simd>(a: [f32x8<S>; 3], b: [f32x8<S>; 3]) -> [f32x8<S>; 2] {
-    let (zero, one) = (f32x8::splat(a[0].simd, 0.0), f32x8::splat(a[0].simd, 1.0));
-    let (aa, bb) = (dot(a, a), dot(b, b));
-    let (has_a, has_b) = (aa.simd_gt(0.0), bb.simd_gt(0.0));
-    let both = has_a & has_b;
-    let turn = one - dot(a, b) / both.select(aa * bb, one).sqrt();
-    let lone = (has_a | has_b).select(one, zero);
-    [both.select(ramp((turn - 0.015) * 8.0), zero), both.select(zero, lone)]
-}
-
-#[inline(always)]
-fn dot<S: Simd>(a: [f32x8<S>; 3], b: [f32x8<S>; 3]) -> f32x8<S> {
-    a[0] * b[0] + a[1] * b[1] + a[2] * b[2]
-}
-
-/// Nearness relative to the pixel itself, 0..=2; two empty places are equally near.
-#[inline(always)]
-fn relative_nearness<S: Simd>(z0: f32x8<S>, z: f32x8<S>) -> f32x8<S> {
-    let (zero, one) = (f32x8::splat(z0.simd, 0.0), f32x8::splat(z0.simd, 1.0));
-    let there = z.simd_gt(0.0);
-    let near = there.select((z0 / there.select(z, one)).at_most(2.0), zero);
-    z0.simd_gt(0.0).select(near, there.select(one + 1.0, one))
-}
-
-/// Distance of the depth at the middle one of three pixels from a plane through its neighbours; both pixels
-/// at a jump are.
-#[inline(always)]
-fn depth_bend<S: Simd>(before: f32x8<S>, z0: f32x8<S>, after: f32x8<S>) -> f32x8<S> {
-    (relative_nearness(z0, before) + relative_nearness(z0, after) - 2.0).abs()
 }

@@ -99,7 +99,7 @@ fn build(scope: &mut Scope<'_>) -> ImageId {
         kernel: scope.option("kernel"),
         guide_weight: scope.float("guide_weight"),
         texture: 1.0,
-        guided: [Guided::new(sigma_e); 2],
+        guided: [Guided::new(sigma_e); 3],
         fades: dog::fades(scope),
         context: LineContext::of(scope, 1.0),
         colour: scope.float(COLOUR_EDGES.id),

@@ -4,15 +4,14 @@ use crate::declare::ports;
 use crate::declare::spec::{NodeSpec, Param, STEADINESS, Scope, WINDOW};
 use crate::declare::value::Value;
 use crate::kernels::colour::blueprint_paper::{self, Drawing, Sheet};
-use crate::kernels::colour::composite_lines::{self, Params as Composite};
 use crate::kernels::colour::{lightness, rgb_to_lab};
 use crate::stages::abstraction::{self, Abstraction};
 use crate::stages::control::Control;
+use crate::stages::line_sets::{self, Inked};
 use crate::stages::lines::{SHOW, Show};
 use crate::stages::steady::{Agreement, COLOUR_AGREEMENT, steadied};
 use crate::stages::{
-    ADVANCED, LOOK, difference_of_gaussians as dog, flow_dog, flow_map, line_context, line_wobble, lines,
-    paper,
+    ADVANCED, LOOK, difference_of_gaussians as dog, flow_dog, line_context, line_wobble, lines, paper,
 };
 use isophote_engine::ImageId;
 
@@ -39,6 +38,7 @@ pub static NODE: NodeSpec = NodeSpec {
         lines::LINE_AMOUNT,
         lines::SUPPRESS_SMALL,
         lines::OUTLINE_WIDTH,
+        lines::BORDER_WIDTH,
         lines::CREASE_WIDTH,
         lines::FAR_WIDTH,
         lines::TEXTURE_LINES,
@@ -46,6 +46,10 @@ pub static NODE: NodeSpec = NodeSpec {
         Param::color("line_color", "Line colour", [0.92, 0.96, 1.0, 1.0])
             .group(LOOK)
             .hint("Colour and opacity of the lines and the grid."),
+        line_sets::LINE_COLORS,
+        line_sets::OUTLINE_COLOR.with_default(Value::Color([1.0, 1.0, 1.0, 1.0])),
+        line_sets::BORDER_COLOR.with_default(Value::Color([0.75, 0.86, 0.98, 1.0])),
+        line_sets::CREASE_COLOR.with_default(Value::Color([0.5, 0.68, 0.92, 1.0])),
         Param::color("paper_color", "Paper colour", [0.0706, 0.251, 0.4824, 1.0])
             .group(LOOK)
             .hint("Colour of the paper."),
@@ -78,6 +82,8 @@ pub static NODE: NodeSpec = NodeSpec {
         lines::GUIDE_WEIGHT,
         lines::NEAR,
         lines::FAR,
+        line_sets::TAPER,
+        line_sets::LINE_GAP,
         STEADINESS,
         WINDOW,
         line_wobble::HOLD,
@@ -97,8 +103,7 @@ fn build(scope: &mut Scope<'_>) -> ImageId {
     let [smooth, edges] = steadied(scope, Agreement::lab(COLOUR_AGREEMENT), |scope| {
         let color = scope.required("color");
         let guides = flow_dog::guides(scope, guide_weight);
-        let tensor = flow_dog::tensor(scope, color, &guides);
-        let tensor = flow_map::bent(scope, tensor);
+        let tensor = lines::oriented(scope, guide_weight);
         let lab = rgb_to_lab::pass(scope.plan, color, 1.0);
         let control = Control::of(scope);
         let smooth = abstraction.apply(scope.plan, [lab, tensor], control, n_e);
@@ -106,12 +111,15 @@ fn build(scope: &mut Scope<'_>) -> ImageId {
         let seen = flow_dog::Seen { lightness, lab: Some(smooth), control };
         [smooth, flow.edges(scope.plan, seen, tensor, &guides)]
     });
+    let edges = line_sets::tapered(scope, &flow, edges, |scope| lines::oriented(scope, guide_weight));
+    let edges = line_sets::gapped(scope, &flow, edges);
     let edges = line_wobble::wavering(scope, edges);
     let line = scope.color("line_color");
+    let inked = Inked::new(scope, &flow, edges, line);
     if scope.option::<Show>(SHOW.id) == Show::Lines {
         let source = scope.required("color");
-        let drawn = composite_lines::pass(scope.plan, source, edges, &Composite { line, paper: [0.0; 4] });
-        return lines::shown(scope, [drawn, source, edges], line[3]);
+        let drawn = inked.over(scope, source);
+        return lines::shown(scope, [drawn, source, inked.edges], inked.line[3]);
     }
     let lightness = lightness::pass_lab(scope.plan, smooth);
     let sheet = Sheet {
@@ -124,6 +132,8 @@ fn build(scope: &mut Scope<'_>) -> ImageId {
         fill: scope.float("fill"),
         cover: scope.bool("cover"),
     };
-    let drawing = Drawing { lightness, edges, paper: paper::colours(scope) };
-    blueprint_paper::pass(scope.plan, &drawing, &sheet)
+    let is_painted = inked.paint.is_some();
+    let drawing = Drawing { lightness, edges: (!is_painted).then_some(edges), paper: paper::colours(scope) };
+    let drawn = blueprint_paper::pass(scope.plan, &drawing, &sheet);
+    if is_painted { inked.over(scope, drawn) } else { drawn }
 }

@@ -4,18 +4,18 @@ use crate::declare::choice::choice;
 use crate::declare::ports;
 use crate::declare::spec::{NodeSpec, Param, STEADINESS, Scope, WINDOW};
 use crate::declare::value::Value;
-use crate::kernels::colour::composite_lines::{self, Params as Composite};
 use crate::kernels::colour::{lab_to_rgb, lightness, rgb_to_lab};
 use crate::kernels::smoothing::line_integral_convolution::{self, Options as Lic};
 use crate::stages::abstraction::{self, Abstraction};
 use crate::stages::control::Control;
 use crate::stages::line_on_dark::{LINE_ON_DARK, OnDark};
+use crate::stages::line_sets::{self, Inked};
 use crate::stages::steady::{Agreement, COLOUR_AGREEMENT, steadied};
 use crate::stages::tensor_options::Guides;
 use crate::stages::{
-    ADVANCED, LOOK, difference_of_gaussians as dog, flow_dog, flow_map, line_context,
-    line_integral_convolution as lic, line_on_dark, line_wobble, lines, quantization as levels,
-    quantize_luminance as quantization, tone, warp_sharpen,
+    ADVANCED, LOOK, difference_of_gaussians as dog, flow_dog, line_context, line_integral_convolution as lic,
+    line_on_dark, line_wobble, lines, quantization as levels, quantize_luminance as quantization, tone,
+    warp_sharpen,
 };
 use isophote_engine::ImageId;
 
@@ -44,11 +44,16 @@ pub static NODE: NodeSpec = NodeSpec {
         lines::LINE_AMOUNT,
         lines::SUPPRESS_SMALL,
         lines::OUTLINE_WIDTH,
+        lines::BORDER_WIDTH,
         lines::CREASE_WIDTH,
         lines::FAR_WIDTH,
         lines::TEXTURE_LINES,
         line_wobble::WOBBLE,
         LINE_COLOR,
+        line_sets::LINE_COLORS,
+        line_sets::OUTLINE_COLOR.with_default(Value::Color([0.0, 0.0, 0.0, 1.0])),
+        line_sets::BORDER_COLOR,
+        line_sets::CREASE_COLOR,
         abstraction::DETAIL,
         levels::POSTERIZE,
         levels::POSTERIZE_SMOOTH,
@@ -78,6 +83,8 @@ pub static NODE: NodeSpec = NodeSpec {
         lines::GUIDE_WEIGHT,
         lines::NEAR,
         lines::FAR,
+        line_sets::TAPER,
+        line_sets::LINE_GAP,
         // Crisper steps than those of Fig. 4.8, where there is something that they follow.
         quantization::PHI_Q.with_default(Value::Float(8.0)).group(ADVANCED),
         quantization::ADAPTIVE.with_default(Value::Bool(false)).group(ADVANCED),
@@ -147,7 +154,7 @@ fn build(scope: &mut Scope<'_>) -> ImageId {
     let [smooth, edges, flat] = steadied(scope, by, |scope| {
         let color = scope.required("color");
         let guides = flow_dog::guides(scope, guide_weight);
-        let tensor = oriented(scope, guide_weight);
+        let tensor = lines::oriented(scope, guide_weight);
         let lab = rgb_to_lab::pass(scope.plan, color, 1.0);
         let control = Control::of(scope);
         // The first iterations are those behind the lines: the plan records them once.
@@ -171,26 +178,21 @@ fn build(scope: &mut Scope<'_>) -> ImageId {
         let sigma = warp_sharpen::SIGMA_W.default_float() * scope.scale();
         rgb = warp_sharpen::warped(scope.plan, rgb, sigma, warp);
     }
+    let edges = line_sets::tapered(scope, &flow, edges, |scope| lines::oriented(scope, guide_weight));
+    let edges = line_sets::gapped(scope, &flow, edges);
     let edges = line_wobble::wavering(scope, edges);
-    let drawn = lined(scope, [rgb, edges, smooth], flow.guide_weight);
-    let opacity = scope.color("line_color")[3];
-    let drawn = lines::shown(scope, [drawn, rgb, edges], opacity);
+    let line = scope.color("line_color");
+    let inked = Inked::new(scope, &flow, edges, line);
+    let drawn = lined(scope, [rgb, smooth], inked, flow.guide_weight);
+    let drawn = lines::shown(scope, [drawn, rgb, inked.edges], inked.line[3]);
     let sigma_a = scope.float("sigma_a");
     if sigma_a > 0.0 {
         let smooth = Lic { sigma: sigma_a, ..lic::unadapted() };
         // That of the frame itself, which is there: averages of neighbours would lead the smoothing hardly elsewhere.
-        let tensor = oriented(scope, guide_weight);
+        let tensor = lines::oriented(scope, guide_weight);
         return line_integral_convolution::pass_unadapted(scope.plan, drawn, tensor, &smooth);
     }
     drawn
-}
-
-/// The tensor of the picture that is described, and of its guides.
-fn oriented(scope: &mut Scope<'_>, guide_weight: f32) -> ImageId {
-    let color = scope.required("color");
-    let guides = flow_dog::guides(scope, guide_weight);
-    let tensor = flow_dog::tensor(scope, color, &guides);
-    flow_map::bent(scope, tensor)
 }
 
 /// A smoothed picture in few flat tones, in Lab.
@@ -204,15 +206,18 @@ fn flattened(scope: &mut Scope<'_>, smooth: ImageId) -> ImageId {
 
 /// A picture with its lines, of which those turn light that lie on dark tones, as `smooth` in Lab has them before they are
 /// flattened: a step between them is no reason to turn.
-fn lined(scope: &mut Scope<'_>, [rgb, edges, smooth]: [ImageId; 3], guide_weight: f32) -> ImageId {
-    let line = scope.color("line_color");
+fn lined(scope: &mut Scope<'_>, [rgb, smooth]: [ImageId; 2], inked: Inked, guide_weight: f32) -> ImageId {
     match scope.option(LINE_ON_DARK.id) {
-        OnDark::Off => composite_lines::pass(scope.plan, rgb, edges, &Composite { line, paper: [0.0; 4] }),
+        OnDark::Off => inked.over(scope, rgb),
         OnDark::Light => {
             let guided = flow_dog::guides(scope, guide_weight) != Guides::default();
             let toned = tone::curve(scope, smooth);
             let lightness = lightness::pass_lab(scope.plan, toned);
-            line_on_dark::drawn(scope, [rgb, edges, lightness], line, guided)
+            let Some(paint) = inked.paint else {
+                return line_on_dark::drawn(scope, [rgb, inked.edges, lightness], inked.line, guided);
+            };
+            let paint = line_on_dark::painted(scope, [paint, rgb, lightness], guided);
+            Inked { paint: Some(paint), ..inked }.over(scope, rgb)
         }
     }
 }

@@ -13,9 +13,8 @@ use crate::kernels::colour::{ink_separation, lightness, rgb_to_lab};
 use crate::stages::abstraction::{self, Abstraction};
 use crate::stages::control::Control;
 use crate::stages::steady::{Agreement, COLOUR_AGREEMENT, steadied};
-use crate::stages::tensor_options::Guides;
 use crate::stages::{
-    ADVANCED, LOOK, difference_of_gaussians as dog, flow_dog, flow_map, line_context, lines, tone,
+    ADVANCED, LOOK, difference_of_gaussians as dog, flow_dog, line_context, line_sets, lines, tone,
 };
 use isophote_engine::ImageId;
 
@@ -105,6 +104,7 @@ pub static NODE: NodeSpec = NodeSpec {
             .hint("How many solid lines are printed over the dots: 0 prints none and costs nothing, 1 draws faint edges too."),
         lines::SUPPRESS_SMALL,
         lines::OUTLINE_WIDTH,
+        lines::BORDER_WIDTH,
         lines::CREASE_WIDTH,
         lines::FAR_WIDTH,
         lines::TEXTURE_LINES,
@@ -139,6 +139,8 @@ pub static NODE: NodeSpec = NodeSpec {
         lines::GUIDE_WEIGHT,
         lines::NEAR,
         lines::FAR,
+        line_sets::TAPER,
+        line_sets::LINE_GAP,
         line_context::LOCAL_CONTRAST.with_default(Value::Float(1.0)).group(ADVANCED),
         line_context::INHIBITION.with_default(Value::Float(1.0)).group(ADVANCED),
         line_context::COLOUR_EDGES.with_default(Value::Float(0.5)).group(ADVANCED),
@@ -152,17 +154,14 @@ fn build(scope: &mut Scope<'_>) -> ImageId {
     let by = Agreement::lab(COLOUR_AGREEMENT);
     let guide_weight = scope.float(lines::GUIDE_WEIGHT.id);
     if scope.float(lines::LINE_AMOUNT.id) <= 0.0 {
-        let [smooth] = steadied(scope, by, |scope| {
-            let guides = flow_dog::guides(scope, guide_weight);
-            [smoothed(scope, &guides).0]
-        });
+        let [smooth] = steadied(scope, by, |scope| [smoothed(scope, guide_weight).0]);
         return printed(scope, smooth);
     }
     let flow = lines::flow_dog(scope, guide_weight);
     let n_e = scope.int(lines::N_E.id);
     let [smooth, edges] = steadied(scope, by, |scope| {
         let guides = flow_dog::guides(scope, guide_weight);
-        let (smooth, lab, tensor) = smoothed(scope, &guides);
+        let (smooth, lab, tensor) = smoothed(scope, guide_weight);
         let control = Control::of(scope);
         // The first iterations are those behind the tones: the plan records them once.
         let for_lines = Abstraction::of(scope).apply(scope.plan, [lab, tensor], control, n_e);
@@ -171,15 +170,16 @@ fn build(scope: &mut Scope<'_>) -> ImageId {
         [smooth, flow.edges(scope.plan, seen, tensor, &guides)]
     });
     let print = printed(scope, smooth);
+    let edges = line_sets::tapered(scope, &flow, edges, |scope| lines::oriented(scope, guide_weight));
+    let edges = line_sets::gapped(scope, &flow, edges);
     let line = scope.color("line_color");
     composite_lines::pass(scope.plan, print, edges, &Composite { line, paper: [0.0; 4] })
 }
 
 /// The picture in CIELAB, smoothed and as it is, and the tensor that the smoothing follows.
-fn smoothed(scope: &mut Scope<'_>, guides: &Guides) -> (ImageId, ImageId, ImageId) {
+fn smoothed(scope: &mut Scope<'_>, guide_weight: f32) -> (ImageId, ImageId, ImageId) {
     let color = scope.required("color");
-    let tensor = flow_dog::tensor(scope, color, guides);
-    let tensor = flow_map::bent(scope, tensor);
+    let tensor = lines::oriented(scope, guide_weight);
     let lab = rgb_to_lab::pass(scope.plan, color, 1.0);
     let n_a = scope.int(abstraction::N_A.id);
     let control = Control::of(scope);

@@ -7,6 +7,7 @@ use crate::declare::ports;
 use crate::declare::spec::{HOLD, NodeSpec, Param, RENEWAL, STEADINESS, Scope, WINDOW};
 use crate::declare::value::Value;
 use crate::kernels::colour::composite_lines::{self, Params as Composite};
+use crate::kernels::colour::ink_paint;
 use crate::kernels::colour::ink_sheet::{self, Drawing, Sheet};
 use crate::kernels::colour::light_on_dark::{self, Params as LightOnDark};
 use crate::kernels::colour::tone_marks::{self, CROSSING, HATCHING, Hatching, Inputs, Tones};
@@ -31,7 +32,7 @@ use crate::stages::structure_tensor::of_color_and_guides;
 use crate::stages::tensor_options::TensorOptions;
 use crate::stages::{
     ADVANCED, LOOK, difference_of_gaussians as dog, flow_map, line_context, line_integral_convolution as lic,
-    line_on_dark, lines, marks, paper, tone,
+    line_on_dark, line_sets, lines, marks, paper, tone,
 };
 use isophote_engine::{Class, ImageId, math};
 
@@ -70,6 +71,7 @@ pub static NODE: NodeSpec = NodeSpec {
             .doc("Scales p (4.10)."),
         lines::SUPPRESS_SMALL.doc("Lengthens the smoothing along lines by up to 0.8 of it and halves p."),
         lines::OUTLINE_WIDTH,
+        lines::BORDER_WIDTH,
         lines::CREASE_WIDTH,
         lines::FAR_WIDTH,
         lines::TEXTURE_LINES,
@@ -79,6 +81,10 @@ pub static NODE: NodeSpec = NodeSpec {
         Param::color("line_color", "Line colour", [0.09, 0.085, 0.1, 1.0])
             .group(LOOK)
             .hint("Colour and opacity of what is drawn with."),
+        line_sets::LINE_COLORS,
+        line_sets::OUTLINE_COLOR,
+        line_sets::BORDER_COLOR,
+        line_sets::CREASE_COLOR,
         Param::color("paper_color", "Paper colour", [0.965, 0.955, 0.93, 1.0])
             .group(LOOK)
             .hint("Colour of the paper."),
@@ -139,6 +145,8 @@ pub static NODE: NodeSpec = NodeSpec {
         lines::GUIDE_WEIGHT,
         lines::NEAR,
         lines::FAR,
+        line_sets::TAPER,
+        line_sets::LINE_GAP,
         STEADINESS,
         WINDOW,
         // Marks that are drawn anew do not fade.
@@ -437,6 +445,8 @@ fn build(scope: &mut Scope<'_>) -> ImageId {
     });
     let flow = flow(scope, &drawing, scope.float("guide_weight"));
     let [smooth, tensor, edges, form, marks] = steady(scope, &drawing, &flow);
+    let edges = line_sets::tapered(scope, &flow, edges, |_| tensor);
+    let edges = line_sets::gapped(scope, &flow, edges);
     // Where no own colour shows, saturation has no part in the plan, so that panels can tell.
     let saturation = if drawing.colour > 0.0 { scope.float("saturation") } else { 1.0 };
     let tinted = lab_to_rgb::pass(scope.plan, smooth, saturation);
@@ -446,8 +456,11 @@ fn build(scope: &mut Scope<'_>) -> ImageId {
     let lines = lines_on_white(scope, tinted, edges, tensor, drawing.sigma_a * scale, masses);
     // Where all grain is the paper's, none of it is read.
     let strokes = if drawing.follow > 0.0 { strokes(scope, form, drawing.stroke, 1.0).0 } else { tinted };
-    let sheet = sheet(scope, &drawing);
+    let (sheet, opacity) = (sheet(scope, &drawing), drawing.opacity);
     let paper = paper::given(scope);
-    let drawing = Drawing { lines, color: tinted, strokes, marks, tones: toned, paper };
+    let paint = line_sets::paint(scope, &flow, opacity, sheet.line);
+    let painted = paint.is_some();
+    let lines = paint.map_or(lines, |paint| ink_paint::pass(scope.plan, [lines, paint], sheet.cut));
+    let drawing = Drawing { lines, painted, color: tinted, strokes, marks, tones: toned, paper };
     ink_sheet::pass(scope.plan, &drawing, &sheet)
 }
