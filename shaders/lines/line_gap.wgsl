@@ -15,7 +15,7 @@ fn of_pixel(id: vec3u, depth: vec4f, beside: vec4f, around: vec4f) -> vec4f {
     let z = known_depth(depth.x);
     let own = SAME * nearness(z);
     // The outline of the nearest thing, not that of another one behind it.
-    let is_line = beside.w > 0.5 && beside.x > own && beside.x * SAME >= around.x;
-    let is_behind = around.w > 0.5 && around.x > own;
+    let is_line = beside.x > own && beside.x * SAME >= around.x;
+    let is_behind = around.x > own;
     return vec4f(0.0, 0.0, 0.0, select(1.0, 0.0, is_behind && !is_line));
 }

@@ -187,6 +187,14 @@ fn lines_behind_end_before_what_is_in_front() {
             let at = |lines: &Image, x: i32| strongest(lines, [x, 70], false)[3];
             let end = |lines: &Image| (84..130).find(|x| at(lines, *x) > 0.5 * at(lines, 130)).unwrap();
             assert!(end(&plain) <= 85, "{style}: {}", end(&plain));
+            for lines in [&plain, &gap] {
+                for y in 66..75 {
+                    let row: Vec<String> =
+                        (76..104).map(|x| format!("{:3}", (lines.pixel(x, y)[3] * 100.0) as i32)).collect();
+                    println!("{}", row.join(" "));
+                }
+                println!();
+            }
             let end = end(&gap);
             assert!((88..=97).contains(&end), "{style}: the line begins at {end}, and the post ends at 80");
             // What is in front has its own outline, as it was.

@@ -31,14 +31,12 @@ pub fn pass(plan: &mut PlanBuilder, images: [ImageId; 3]) -> ImageId {
 }
 
 #[inline(always)]
-fn kept<S: Simd>(z: f32x8<S>, beside: [f32x8<S>; 4], around: [f32x8<S>; 4]) -> [f32x8<S>; 4] {
+fn kept<S: Simd>(z: f32x8<S>, [beside, ..]: [f32x8<S>; 4], [around, ..]: [f32x8<S>; 4]) -> [f32x8<S>; 4] {
     let (zero, one) = (f32x8::splat(z.simd, 0.0), f32x8::splat(z.simd, 1.0));
     let is_there = z.abs().simd_le(f32::MAX) & z.simd_gt(0.0);
     let own = nearness(is_there.select(z, zero)) * SAME;
     // The outline of the nearest thing, not that of another one behind it.
-    let is_first = beside[0].simd_gt(own) & (beside[0] * SAME).simd_ge(around[0]);
-    let is_line = beside[3].simd_gt(0.5) & is_first;
-    let is_behind = around[3].simd_gt(0.5) & around[0].simd_gt(own);
-    let behind = is_behind.select(one, zero);
-    [zero, zero, zero, one - is_line.select(zero, behind)]
+    let is_first = beside.simd_gt(own) & (beside * SAME).simd_ge(around);
+    let behind = around.simd_gt(own).select(one, zero);
+    [zero, zero, zero, one - is_first.select(zero, behind)]
 }

@@ -25,7 +25,7 @@ const REACH: u32 = 5;
 /// Pixels beside a jump at which what is in front is known.
 pub const BAND: f32 = 3.0;
 
-/// (1/z, 1/z, 1/z, 1) of the nearest thing in front of a pixel beside it, and nothing elsewhere.
+/// (1/z, 1/z, 1/z, 1) of the nearest thing in front of a pixel beside it, and (0, 0, 0, 1) elsewhere.
 pub fn pass(plan: &mut PlanBuilder, depth: ImageId) -> ImageId {
     plan.pass(&KERNEL, &[depth], &(), Class::Field, Support::Pixels(REACH))
 }
@@ -38,12 +38,11 @@ fn nearest<S: Simd>(simd: S, pass: &CpuPass<'_>, band: &mut Band<'_>) {
         #[inline(always)]
         |block, target| {
             let at = [block.columns(simd), i32x8::splat(simd, block.y)];
-            let (zero, one) = (f32x8::splat(simd, 0.0), f32x8::splat(simd, 1.0));
-            let mut nearest = zero;
+            let mut nearest = f32x8::splat(simd, 0.0);
             for step in [[1, 0], [-1, 0], [0, 1], [0, -1]] {
                 nearest = nearest.at_least(in_front(simd, depth, at, step));
             }
-            write([nearest, nearest, nearest, nearest.simd_gt(0.0).select(one, zero)], target);
+            write([nearest, nearest, nearest, f32x8::splat(simd, 1.0)], target);
         },
     );
 }
