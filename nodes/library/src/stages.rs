@@ -8,6 +8,7 @@
 
 pub(crate) mod abstraction;
 pub(crate) mod anisotropic_kuwahara;
+pub(crate) mod ben_day;
 pub(crate) mod bilateral;
 pub(crate) mod coherence_enhancing;
 pub(crate) mod control;

@@ -8,8 +8,9 @@ use isophote::value::Value;
 use std::fmt::Write as _;
 
 /// Parameter that is set as well where a control does nothing by itself: node and control, then parameter and value.
-const TOGETHER: [(&str, &str, &str, &str); 15] = [
+const TOGETHER: [(&str, &str, &str, &str); 16] = [
     ("cartoon", "posterize_smooth", "posterize", "6"),
+    ("cartoon", "dot_spacing", "dots", "1"),
     ("coherent", "posterize_smooth", "posterize", "6"),
     ("coherent", "steps", "posterize", "6"),
     // Ink itself is of one colour.

@@ -13,7 +13,7 @@ use crate::stages::line_on_dark::{LINE_ON_DARK, OnDark};
 use crate::stages::steady::{Agreement, COLOUR_AGREEMENT, steadied};
 use crate::stages::tensor_options::Guides;
 use crate::stages::{
-    ADVANCED, LOOK, difference_of_gaussians as dog, flow_dog, flow_map, line_context,
+    ADVANCED, LOOK, ben_day, difference_of_gaussians as dog, flow_dog, flow_map, line_context,
     line_integral_convolution as lic, line_on_dark, line_wobble, lines, quantization as levels,
     quantize_luminance as quantization, tone, warp_sharpen,
 };
@@ -56,6 +56,8 @@ pub static NODE: NodeSpec = NodeSpec {
         tone::SATURATION,
         tone::LIGHTS,
         tone::DARKS,
+        ben_day::DOTS,
+        ben_day::DOT_SPACING,
         abstraction::ABSTRACTION,
         LINE_FILTER,
         lines::N_E,
@@ -174,15 +176,16 @@ fn build(scope: &mut Scope<'_>) -> ImageId {
     let edges = line_wobble::wavering(scope, edges);
     let drawn = lined(scope, [rgb, edges, smooth], flow.guide_weight);
     let opacity = scope.color("line_color")[3];
-    let drawn = lines::shown(scope, [drawn, rgb, edges], opacity);
+    let mut drawn = lines::shown(scope, [drawn, rgb, edges], opacity);
     let sigma_a = scope.float("sigma_a");
     if sigma_a > 0.0 {
         let smooth = Lic { sigma: sigma_a, ..lic::unadapted() };
         // That of the frame itself, which is there: averages of neighbours would lead the smoothing hardly elsewhere.
         let tensor = oriented(scope, guide_weight);
-        return line_integral_convolution::pass_unadapted(scope.plan, drawn, tensor, &smooth);
+        drawn = line_integral_convolution::pass_unadapted(scope.plan, drawn, tensor, &smooth);
     }
-    drawn
+    // Last: smoothing along the edges would draw the dots out. Lines are kept out of them.
+    ben_day::printed(scope, drawn, edges, opacity)
 }
 
 /// The tensor of the picture that is described, and of its guides.
