@@ -8,16 +8,17 @@ use crate::kernels::colour::composite_lines::{self, Params as Composite};
 use crate::kernels::colour::{lab_to_rgb, lightness, rgb_to_lab};
 use crate::kernels::smoothing::line_integral_convolution::{self, Options as Lic};
 use crate::stages::abstraction::{self, Abstraction};
+use crate::stages::cel_light::Tones;
 use crate::stages::control::Control;
 use crate::stages::line_on_dark::{LINE_ON_DARK, OnDark};
 use crate::stages::steady::{Agreement, COLOUR_AGREEMENT, steadied};
 use crate::stages::tensor_options::Guides;
 use crate::stages::{
-    ADVANCED, LOOK, ben_day, difference_of_gaussians as dog, flow_dog, flow_map, line_context,
-    line_integral_convolution as lic, line_on_dark, line_wobble, lines, quantization as levels,
+    ADVANCED, LOOK, ben_day, cel_light, difference_of_gaussians as dog, flow_dog, flow_map, light_steps,
+    line_context, line_integral_convolution as lic, line_on_dark, line_wobble, lines, quantization as levels,
     quantize_luminance as quantization, tone, warp_sharpen,
 };
-use isophote_engine::ImageId;
+use isophote_engine::{ImageId, PlanBuilder};
 
 /// The node.
 pub static NODE: NodeSpec = NodeSpec {
@@ -29,7 +30,7 @@ pub static NODE: NodeSpec = NodeSpec {
           structure, lines by the flow-based difference of Gaussians, soft quantization of lightness. \
           Defaults are those of Fig. 4.8, but for `tau`, and for steps of lightness, which are crisp and lie \
           only where tones change. Normals, depth and object ids, where given, draw lines of \
-          their own.",
+          their own; albedo, diffuse and mirrored light can be cut into steps of light in the place of lightness.",
     section: "4.6",
     inputs: &[
         ports::COLOR,
@@ -37,6 +38,9 @@ pub static NODE: NodeSpec = NodeSpec {
         flow_dog::DEPTH,
         flow_dog::OBJECT_ID,
         line_wobble::REST_POSITION,
+        light_steps::ALBEDO,
+        light_steps::DIFFUSE,
+        light_steps::SPECULAR,
     ],
     output: ports::color_output("The cartoon."),
     own_params: &[
@@ -58,6 +62,12 @@ pub static NODE: NodeSpec = NodeSpec {
         tone::DARKS,
         ben_day::DOTS,
         ben_day::DOT_SPACING,
+        cel_light::SHADING,
+        cel_light::LIGHT_STEPS,
+        cel_light::LIGHT,
+        cel_light::SHADOW_COLOR,
+        cel_light::MIDDLE_COLOR,
+        cel_light::LIGHT_COLOR,
         abstraction::ABSTRACTION,
         LINE_FILTER,
         lines::N_E,
@@ -163,7 +173,13 @@ fn build(scope: &mut Scope<'_>) -> ImageId {
             }
             LineFilter::Isotropic => flow.isotropic(scope.plan, lightness),
         };
-        [smooth, edges, flattened(scope, smooth)]
+        let flat = match scope.option(cel_light::SHADING.id) {
+            Tones::Lightness => flattened(scope, smooth),
+            Tones::Light => {
+                lit(scope, smooth, |plan, lab| abstraction.apply(plan, [lab, tensor], control, n_a))
+            }
+        };
+        [smooth, edges, flat]
     });
 
     let saturation = scope.float("saturation");
@@ -203,6 +219,16 @@ fn flattened(scope: &mut Scope<'_>, smooth: ImageId) -> ImageId {
         0 => toned,
         bins => levels::flattened(scope, toned, bins, levels::steepness(scope, bins)),
     }
+}
+
+/// A smoothed picture in steps of light, in Lab; `smoothed` smooths the colours of surfaces alike.
+fn lit(
+    scope: &mut Scope<'_>,
+    smooth: ImageId,
+    smoothed: impl FnOnce(&mut PlanBuilder, ImageId) -> ImageId,
+) -> ImageId {
+    let lit = cel_light::shaded(scope, smooth, smoothed);
+    tone::curve(scope, lit)
 }
 
 /// A picture with its lines, of which those turn light that lie on dark tones, as `smooth` in Lab has them before they are
