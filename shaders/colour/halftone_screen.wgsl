@@ -4,6 +4,7 @@
 // Cost: for one ink two loads, three powers and about 180 multiply-adds; where the paper has a texture, 12 hashes more.
 #import gpu/grid
 #import shared/colour
+#import shared/halftone_dots
 #import shared/sampling
 #import shared/value_noise
 
@@ -45,18 +46,6 @@ struct Params {
 #input plates, source
 #output target_image rgba32float
 
-// Width of the borders of dots, pixels; the least size of a dot's blur, square pixels; the steepest rise of the spot
-// function, per cell; and one of four places in a pixel, which the others turn to.
-const EDGE: f32 = 0.9;
-const LEAST_DOT: f32 = 4.65;
-const STEEPEST: f32 = 2.2;
-const PLACE: vec2f = vec2f(0.335, 0.236);
-
-// How far x lies from the nearest whole number, 0..=1/2.
-fn fold(x: vec2f) -> vec2f {
-    return abs(x - floor(x + 0.5));
-}
-
 // Share of a triangle of -1..=1 that lies below x.
 fn ramp(x: f32) -> f32 {
     let t = clamp(x, -1.0, 1.0);
@@ -71,45 +60,6 @@ fn stripe(a: f32, share: f32) -> f32 {
     return ramp((half - a) * h) - ramp((-half - a) * h) + ramp((a - 1.0 + half) * h);
 }
 
-// cos(2 pi a) for a in 0..=1/2.
-fn wave(a: vec2f) -> vec2f {
-    let t = 1.0 - 4.0 * a;
-    let q = t * t;
-    return t * (1.5706268 + q * (-0.6432292 + q * 0.0727102));
-}
-
-// The share of a cell where the sum of two cosines is greater than at (u, v).
-fn threshold(q: vec2f) -> f32 {
-    let w = wave(fold(q));
-    let s = 0.5 * (w.x + w.y);
-    let x = abs(s);
-    let r = sqrt(x);
-    let g = r * (0.04388541 + r * (1.13211294 + r * (-1.24463274 + r * (0.78631934 - r * 0.2178912))));
-    return 0.5 - select(g, -g, s < 0.0);
-}
-
-// Round dots that cover `share` of every cell; above a half, round holes. Thresholds are even in 0..1, so that a ramp of
-// them has a mean that is known, which is what moves it where it would leave the range.
-fn dot_at(q: vec2f, share: f32, turned: vec2f) -> f32 {
-    let dark = share > 0.5;
-    let m = select(share, 1.0 - share, dark);
-    let rise = min(3.5449077 * sqrt(m), STEEPEST) * EDGE * params.frequency;
-    let size = LEAST_DOT * params.frequency * params.frequency;
-    let w = max(max(rise, params.blur), 0.5 * size * size / max(m, 1e-5));
-    let extent = sqrt(2.0 * w * m);
-    let low = select(0.5 + w * (m - 0.5), extent - 0.5 * w, extent <= 1.0);
-    let middle = select(m, low, m < 0.5 * w);
-    let inverse = 1.0 / w;
-    let place = vec2f(-turned.y, turned.x);
-    var sum = 0.0;
-    for (var i = 0u; i < 4u; i++) {
-        let at = select(turned, place, (i & 1u) != 0u) * select(1.0, -1.0, i >= 2u);
-        let t = threshold(q + at);
-        sum += clamp((middle - select(t, 1.0 - t, dark)) * inverse + 0.5, 0.0, 1.0);
-    }
-    return select(0.25 * sum, 1.0 - 0.25 * sum, dark);
-}
-
 // The paper that a plate covers at absolute position p.
 fn covered(plate: u32, p: vec2f, share: f32) -> f32 {
     let screen = params.screens[plate];
@@ -120,8 +70,7 @@ fn covered(plate: u32, p: vec2f, share: f32) -> f32 {
     }
     let q = vec2f(p.x * screen.x - p.y * screen.y, p.x * screen.y + p.y * screen.x);
     if params.shape == 0u {
-        let turned = vec2f(PLACE.x * screen.x - PLACE.y * screen.y, PLACE.x * screen.y + PLACE.y * screen.x);
-        return dot_at(q, share, turned);
+        return dots_at(q, share, screen.xy, params.frequency, params.blur);
     }
     let a = fold(q);
     if params.shape == 1u {

@@ -230,6 +230,18 @@ pub fn fading(spec: &NodeSpec) -> Option<Setting> {
     carrying(spec).map(|setting| Setting { label: "fading marks".into(), ..setting })
 }
 
+/// For nodes whose lines have another width far away: values by which they do, within the depths of [`pictures`](crate::pictures).
+pub fn by_distance(spec: &NodeSpec) -> Option<Setting> {
+    spec.param("far_width")?;
+    Some(Setting { label: "by distance".into(), values: vec![("far_width", Value::Float(2.5))] })
+}
+
+/// For nodes that print with dots: values by which they do, of colours with lines.
+pub fn dotted(spec: &NodeSpec) -> Option<Setting> {
+    spec.param("dots")?;
+    Some(Setting { label: "in dots".into(), values: vec![("dots", Value::Float(0.9))] })
+}
+
 /// As [`request`] with all guides but rest positions, between two renewals of marks.
 pub fn request_without_rest(kind: Kind, width: u32, height: u32) -> Request {
     let request = request(kind, width, height, true);

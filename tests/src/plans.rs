@@ -84,9 +84,11 @@ fn variants(spec: &'static NodeSpec) -> Vec<Variant> {
     for kind in Kind::ALL {
         add(default, false, kind, false, 0.5);
     }
-    let others: [(_, FullRequest); 3] = [
+    let others: [(_, FullRequest); 5] = [
         (cases::carrying(spec), cases::request_without_rest),
         (cases::fading(spec), with_guides),
+        (cases::by_distance(spec), with_guides),
+        (cases::dotted(spec), with_guides),
         (cases::on_materials(spec), cases::request_on_materials),
     ];
     for (setting, request) in others {

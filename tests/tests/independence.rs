@@ -38,6 +38,7 @@ const DIRECTED: &[(&str, &str, &str)] = &[
 /// Parameters that belong to the place in nodes of which the rest does not, turned off: paper, grids, noise.
 const PLACED: &[(&str, &[&str])] = &[
     ("blueprint", &["grid", "paper_texture"]),
+    ("cartoon", &["dots"]),
     ("watercolor", &["clouds", "granulation", "wobble", "bleeding", "gaps", "dry_brush", "backruns"]),
     ("oil_paint", &["bristle", "shine", "dilation_length"]),
 ];

@@ -268,6 +268,23 @@ fn layers_add_up_to_the_picture_and_shade_it_in_steps() {
     assert!(flat * 10 > covered * 9, "{flat} of {covered} have a tone");
 }
 
+#[test]
+fn a_cartoon_reads_the_light_of_a_file_where_it_is_asked_to() {
+    let folder = folder();
+    render(folder.path(), "lit.exr", &["--background", "transparent", "--no-ground"]);
+    let none = ["--guide", "albedo=none", "--guide", "diffuse=none", "--guide", "specular=none"];
+    let reds = |name: &str, more: &[&str]| {
+        apply(folder.path(), &[&["cartoon", "lit.exr", name], more].concat());
+        channel(&read(&folder.path().join(name)), "R")
+    };
+    let light = ["--set", "shading=light"];
+    let [plain, plain_blind] = [reds("plain.exr", &[]), reds("plain-blind.exr", &none)];
+    assert_eq!(plain, plain_blind);
+    let [lit, blind] = [reds("cel.exr", &light), reds("blind.exr", &[&light[..], &none].concat())];
+    assert_ne!(lit, blind);
+    assert_ne!(blind, plain);
+}
+
 /// The light of a gamma-encoded number.
 fn colour_of(encoded: f32) -> f32 {
     ((encoded + 0.055) / 1.055).powf(2.4)

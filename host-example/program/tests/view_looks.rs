@@ -70,7 +70,7 @@ fn session(folder: &Path) -> Session {
 /// The controls in a window large enough for all cards.
 fn harness(session: Session) -> Harness<'static, Session> {
     let mut harness = Harness::builder()
-        .with_size(egui::vec2(1400.0, 4000.0))
+        .with_size(egui::vec2(1400.0, 4400.0))
         .build_ui_state(|ui, session: &mut Session| widgets::show(ui, session), session);
     widgets::theme::apply(&harness.ctx);
     harness.run_ok();

@@ -8,7 +8,9 @@
 
 pub(crate) mod abstraction;
 pub(crate) mod anisotropic_kuwahara;
+pub(crate) mod ben_day;
 pub(crate) mod bilateral;
+pub(crate) mod cel_light;
 pub(crate) mod coherence_enhancing;
 pub(crate) mod control;
 pub(crate) mod difference_of_gaussians;
@@ -17,6 +19,7 @@ pub(crate) mod flow_dog;
 pub(crate) mod flow_map;
 pub(crate) mod generalized_kuwahara;
 pub(crate) mod importance;
+pub(crate) mod light_steps;
 pub(crate) mod line_context;
 pub(crate) mod line_integral_convolution;
 pub(crate) mod line_on_dark;

@@ -1,5 +1,6 @@
 //! Kernels and nodes on the CPU executor, with numbers that their equations give.
 
+mod ben_day;
 mod colour_restrict;
 mod edge_detector;
 mod edge_hysteresis;
@@ -8,6 +9,7 @@ mod flow_map;
 mod gradient_tensor;
 mod halftone;
 mod jacobi_step;
+mod light;
 mod noise;
 mod oversampled_tensor;
 mod palette;

@@ -1,5 +1,6 @@
 //! Tests of the library. They are one program, since each would compile and link anew what all of them use.
 
+mod cel_light;
 mod control;
 mod cpu;
 mod graph;

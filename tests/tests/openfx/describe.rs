@@ -89,7 +89,8 @@ pub fn clips_are_source_and_output_and_in_general_a_mask_and_guides(binary: &Bin
     }
     // What an effect came to take later is its last input: projects store the numbers of the others.
     if ["cartoon", "blueprint"].contains(&node.id) {
-        general.sort_by_key(|clip| ["RestPosition", "Paper"].iter().position(|later| later == clip));
+        const LATER: [&str; 5] = ["RestPosition", "Paper", "Albedo", "Diffuse", "Specular"];
+        general.sort_by_key(|clip| LATER.iter().position(|later| later == clip));
     }
     assert_eq!(described.in_context(CONTEXTS[1]).clip_names(), general, "{}", node.id);
     host.no_faults();

@@ -8,8 +8,15 @@ use isophote::value::Value;
 use std::fmt::Write as _;
 
 /// Parameter that is set as well where a control does nothing by itself: node and control, then parameter and value.
-const TOGETHER: [(&str, &str, &str, &str); 25] = [
+const TOGETHER: [(&str, &str, &str, &str); 31] = [
     ("cartoon", "posterize_smooth", "posterize", "6"),
+    ("cartoon", "dot_spacing", "dots", "1"),
+    // Tones are steps of lightness.
+    ("cartoon", "light_steps", "shading", "light"),
+    ("cartoon", "exposure", "shading", "light"),
+    ("cartoon", "shadow_color", "shading", "light"),
+    ("cartoon", "middle_color", "shading", "light"),
+    ("cartoon", "light_color", "shading", "light"),
     ("coherent", "posterize_smooth", "posterize", "6"),
     ("coherent", "steps", "posterize", "6"),
     ("cartoon", "outline_color", "line_colors", "kinds"),

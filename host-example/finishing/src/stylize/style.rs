@@ -12,7 +12,7 @@ use super::suggest;
 use isophote_files::error::{AtPlace, Error, Result};
 use isophote_files::{frames, output};
 use isophote_loader::abi::IsophoteRequest;
-use isophote_loader::catalogue::Kind;
+use isophote_loader::catalogue::{Kind, Node};
 use isophote_loader::{Graph, Library, Style as Tracks};
 use isophote_pictures::exr::Guide;
 
@@ -285,16 +285,34 @@ impl Style {
         let is_steady = self.is_animated() || library.frames(&self.graph).map_err(refused)? != [0, 0];
         for node in 0..self.graph.count() {
             let spec = self.graph.spec(node).map_err(refused)?;
+            // Three more layers of each file.
+            let reads_light = self.is_animated() || self.shades_light(node, &spec)?;
             for port in spec.inputs {
                 let is_read = |guide: &Guide| (guide.id(), guide.kind()) == (port.id, port.kind);
                 let guide = Guide::ALL.into_iter().find(is_read);
                 // Several nodes may read one.
-                let is_new = |guide: &Guide| !guides.contains(guide) && (is_steady || !guide.is_motion());
+                let is_new = |guide: &Guide| {
+                    !guides.contains(guide)
+                        && (is_steady || !guide.is_motion())
+                        && (reads_light || !guide.is_light())
+                };
                 let guide = guide.filter(is_new);
                 guides.extend(guide);
             }
         }
         Ok(guides)
+    }
+
+    /// False where a node that could shade light in steps is not set to.
+    fn shades_light(&self, node: u32, spec: &Node) -> Result<bool> {
+        const SHADING: &str = "shading";
+        if spec.params.iter().all(|param| param.id != SHADING) {
+            return Ok(true);
+        }
+        let refused = |e: isophote_loader::Error| e.at(&self.name, "choose another style");
+        let json = self.graph.to_json().map_err(refused)?;
+        let graph: Value = serde_json::from_str(&json).unwrap_or_default();
+        Ok(graph["nodes"][node as usize]["params"][SHADING] == "light")
     }
 
     /// Lets all nodes that can be steady over time estimate motion from the pictures themselves.

@@ -7,14 +7,14 @@ use isophote_loader::catalogue::Node;
 use isophote_loader::preset::LOOK;
 
 /// Words of artists and of other programs, with the style, the look or the medium that comes nearest.
-pub const WORDS: [(&str, &str); 77] = [
+pub const WORDS: [(&str, &str); 79] = [
     ("abstract", "painting"),
     ("acrylic", "painting"),
     ("anime", "cartoon"),
     ("aquarelle", "watercolor"),
     ("attention", "importance"),
     ("bayer", "palette"),
-    ("ben_day", "halftone"),
+    ("ben_day", "look:sunday_strip"),
     ("blur", "gaussian"),
     ("canny", "edge_detector"),
     ("cel", "cartoon"),
@@ -46,6 +46,7 @@ pub const WORDS: [(&str, &str); 77] = [
     ("impressionist", "painting"),
     ("indexed", "palette"),
     ("lic", "line_integral_convolution"),
+    ("lichtenstein", "look:magnified_comic"),
     ("line_art", "ink"),
     ("line_drawing", "ink"),
     ("lineart", "ink"),
@@ -67,6 +68,7 @@ pub const WORDS: [(&str, &str); 77] = [
     ("pen", "ink"),
     ("pixel_art", "palette"),
     ("pixelart", "palette"),
+    ("pop_art", "look:magnified_comic"),
     ("poster", "cartoon"),
     ("posterize", "quantize_luminance"),
     ("retro", "palette"),

@@ -86,6 +86,11 @@ impl Guide {
         self.kind() == Kind::Motion
     }
 
+    /// True for what tells the light on surfaces apart from their colours.
+    pub fn is_light(self) -> bool {
+        matches!(self, Self::Albedo | Self::Diffuse | Self::Specular)
+    }
+
     /// True where its numbers are colours of the picture's space, multiplied by alpha where those are.
     pub fn is_colour(self) -> bool {
         self.kind() == Kind::Color

@@ -21,7 +21,15 @@ pub struct Shipped {
 
 /// Ids of looks and styles that were added when projects of users existed, in the order in which they came. They are the
 /// last options, wherever lists of people have them: projects store places.
-const LATER: [&str; 5] = ["newsprint", "comic_page", "two_colour_riso", "banknote_lines", "halftone"];
+const LATER: [&str; 7] = [
+    "newsprint",
+    "comic_page",
+    "two_colour_riso",
+    "banknote_lines",
+    "halftone",
+    "sunday_strip",
+    "magnified_comic",
+];
 
 /// The looks in their order, then the styles in theirs.
 static SHIPPED: LazyLock<Vec<Shipped>> = LazyLock::new(|| {

@@ -13,6 +13,7 @@
 use crate::declare::choice::Numbered;
 pub use crate::kernels::shaders::halftone_screen::Params;
 use crate::kernels::shared::colour::srgb_encode;
+use crate::kernels::shared::halftone_dots::{Screen, dots, fold, turn};
 use crate::kernels::shared::sampling::sample_linear4;
 use crate::kernels::shared::value_noise::noise;
 use crate::kernels::simd::pixels::{Block, for_blocks, write};
@@ -128,27 +129,12 @@ pub fn pass(plan: &mut PlanBuilder, shares: ImageId, source: ImageId, print: &Pr
     plan.pass(&KERNEL, &[shares, source], &params, Class::Colour, Support::Pixels(reach(&params)))
 }
 
-/// Sine and cosine of an angle in degrees, exact for right angles.
-fn turn(degrees: f32) -> (f32, f32) {
-    let (sin, cos) = f64::from(degrees).rem_euclid(360.0).to_radians().sin_cos();
-    let exact = |v: f64| if v.abs() < 1e-12 { 0.0 } else { v as f32 };
-    (exact(sin), exact(cos))
-}
-
 /// The most pixels that a plate reads away.
 fn reach(params: &Params) -> u32 {
     let farthest =
         params.screens.iter().flat_map(|screen| &screen[2..]).fold(0f32, |most, v| most.max(v.abs()));
     if farthest > 0.0 { farthest.ceil() as u32 + 1 } else { 0 }
 }
-
-/// Width of the borders of dots, pixels; the least size of a dot's blur, square pixels; the steepest rise of the spot
-/// function, per cell; and one of four places in a pixel, which the others turn to. Chosen together by the greatest
-/// error of a flat tone below a third of the screen's frequency.
-const EDGE: f32 = 0.9;
-const LEAST_DOT: f32 = 4.65;
-const STEEPEST: f32 = 2.2;
-const PLACE: [f32; 2] = [0.335, 0.236];
 
 #[inline(always)]
 fn print<S: Simd>(simd: S, pass: &CpuPass<'_>, params: &Params, band: &mut Band<'_>) {
@@ -215,8 +201,11 @@ fn covered<S: Simd>(params: &Params, plate: usize, [x, y]: [f32x8<S>; 2], share:
     }
     let (u, v) = (x * cos - y * sin, x * sin + y * cos);
     if params.shape == Shape::Dots as u32 {
-        let [px, py] = PLACE;
-        return dot(params, [u, v], share, [px * cos - py * sin, px * sin + py * cos]);
+        return dots(
+            Screen { turned: [cos, sin], frequency: params.frequency, blur: params.blur },
+            [u, v],
+            share,
+        );
     }
     let (a, b) = (fold(u), fold(v));
     if params.shape == Shape::Lines as u32 {
@@ -224,12 +213,6 @@ fn covered<S: Simd>(params: &Params, plate: usize, [x, y]: [f32x8<S>; 2], share:
     }
     let side = share.sqrt();
     stripe(params, a, side) * stripe(params, b, side)
-}
-
-/// Distance of x from the nearest whole number, 0..=1/2.
-#[inline(always)]
-fn fold<S: Simd>(x: f32x8<S>) -> f32x8<S> {
-    (x - (x + 0.5).floor()).abs()
 }
 
 /// Share of a triangle of -1..=1 that lies below x.
@@ -246,52 +229,4 @@ fn stripe<S: Simd>(params: &Params, a: f32x8<S>, share: f32x8<S>) -> f32x8<S> {
     let h = 1.0 / params.border;
     let half = share * 0.5;
     ramp((half - a) * h) - ramp((-half - a) * h) + ramp((a - 1.0 + half) * h)
-}
-
-/// cos(2 pi a) for a in 0..=1/2.
-#[inline(always)]
-fn wave<S: Simd>(a: f32x8<S>) -> f32x8<S> {
-    let t = a * -4.0 + 1.0;
-    let q = t * t;
-    t * (q * (q * 0.072_710_2 - 0.643_229_2) + 1.570_626_8)
-}
-
-/// The share of a cell where the sum of two cosines is greater than at (u, v): a fit by least squares, off by 0.0008.
-#[inline(always)]
-fn threshold<S: Simd>(u: f32x8<S>, v: f32x8<S>) -> f32x8<S> {
-    let s = (wave(fold(u)) + wave(fold(v))) * 0.5;
-    let r = s.abs().sqrt();
-    let g =
-        r * (r * (r * (r * (r * -0.217_891_2 + 0.786_319_34) - 1.244_632_74) + 1.132_112_94) + 0.043_885_41);
-    g.copysign(s) * -1.0 + 0.5
-}
-
-/// Round dots that cover `share` of every cell; above a half, round holes. `turned` is one of four places in a pixel,
-/// in cells.
-///
-/// Thresholds are even in 0..=1, so that a ramp of them has a mean that is known, which is what moves it where it would
-/// leave the range.
-#[inline(always)]
-fn dot<S: Simd>(params: &Params, [u, v]: [f32x8<S>; 2], share: f32x8<S>, turned: [f32; 2]) -> f32x8<S> {
-    let (zero, one) = (f32x8::splat(share.simd, 0.0), f32x8::splat(share.simd, 1.0));
-    let dark = share.simd_gt(0.5);
-    let m = dark.select(one - share, share);
-    // The circumference of a dot of area m is 2 sqrt(pi m).
-    let rise = (m.sqrt() * 3.544_907_7).at_most(STEEPEST) * (EDGE * params.frequency);
-    let size = LEAST_DOT * params.frequency * params.frequency;
-    let least = f32x8::splat(share.simd, 0.5 * size * size) / m.at_least(1e-5);
-    let w = rise.at_least(params.blur).at_least(least);
-    let extent = (w * m * 2.0).sqrt();
-    let low = extent.simd_le(1.0).select(extent - w * 0.5, w * (m - 0.5) + 0.5);
-    let middle = m.simd_lt(w * 0.5).select(low, m);
-    let inverse = one / w;
-    let [px, py] = turned;
-    let mut sum = zero;
-    for [du, dv] in [[px, py], [-py, px], [-px, -py], [py, -px]] {
-        let t = threshold(u + du, v + dv);
-        let t = dark.select(one - t, t);
-        sum += ((middle - t) * inverse + 0.5).within(zero, one);
-    }
-    let mean = sum * 0.25;
-    dark.select(one - mean, mean)
 }

@@ -3,9 +3,10 @@
 
 use crate::declare::ports;
 use crate::declare::spec::{ImageKind, NodeSpec, Param, Port, STEADINESS, Scope, WINDOW};
-use crate::kernels::colour::toon_ramp::{self, Area, STEPS, Shading, Step};
-use crate::kernels::colour::{lab_to_rgb, toon_light, toon_rest};
+use crate::kernels::colour::lab_to_rgb;
+use crate::kernels::colour::toon_ramp::{Area, STEPS, Shading, Step};
 use crate::kernels::smoothing::line_integral_convolution::{self, Options as Lic};
+use crate::stages::light_steps::{self, BORDERS, Layers, NOWHERE, PLACES, TINTS};
 use crate::stages::steady::{Agreement, COLOUR_AGREEMENT, compared, steadied};
 use crate::stages::tensor_options::TensorOptions;
 use crate::stages::{ADVANCED, LOOK, abstraction, line_integral_convolution as lic};
@@ -28,16 +29,13 @@ pub static NODE: NodeSpec = NodeSpec {
           has no albedo. Where `diffuse` is nothing and `specular` is something, as on metals, light is `specular`. \
           Borders are smooth steps at least a pixel and a half wide, by the gradient of the light.",
     section: "4.6",
-    inputs: &[ports::COLOR, ALBEDO, DIFFUSE, SPECULAR, NORMAL],
+    inputs: &[ports::COLOR, light_steps::ALBEDO, light_steps::DIFFUSE, light_steps::SPECULAR, NORMAL],
     output: ports::color_output("The shaded picture."),
     own_params: &[
         Param::int("steps", "Steps", 3, [1, STEPS as i32])
             .group(LOOK)
             .hint("Number of flat tones, from shadow to light. Steps above it have no effect."),
-        Param::float("exposure", "Light", 0.0, [-16.0, 16.0])
-            .slider(-4.0, 4.0)
-            .group(LOOK)
-            .hint("Brightens or dims the light before it is cut into steps, in stops: more light moves shadows back."),
+        light_steps::EXPOSURE,
         Param::float("softness", "Softness", 0.02, [0.0, 1.0])
             .slider(0.0, 0.5)
             .group(LOOK)
@@ -78,25 +76,6 @@ pub static NODE: NodeSpec = NodeSpec {
     build,
 };
 
-const ALBEDO: Port = Port {
-    id: "albedo",
-    kind: ImageKind::Color,
-    optional: true,
-    doc: "Colours of surfaces without light, in the picture's space.",
-};
-const DIFFUSE: Port = Port {
-    id: "diffuse",
-    kind: ImageKind::Color,
-    optional: true,
-    doc: "Light that surfaces reflect in all directions, in their colours: a pass without colour, such as Blender's DiffDir, \
-          is to be multiplied by that of the albedo.",
-};
-const SPECULAR: Port = Port {
-    id: "specular",
-    kind: ImageKind::Color,
-    optional: true,
-    doc: "Light that surfaces mirror, by which highlights are shaped; by all light when open.",
-};
 const NORMAL: Port = Port {
     id: "normal",
     kind: ImageKind::Normal,
@@ -114,9 +93,6 @@ const COLOR_NAMES: [[&str; 2]; STEPS] = [
     ["color_6", "Step 6 colour"],
 ];
 
-/// Borders between steps.
-const BORDERS: usize = STEPS - 1;
-
 /// Ids and labels of the borders: place and softness of the step above.
 const BORDER_NAMES: [[[&str; 2]; 2]; BORDERS] = [
     [["at_2", "Step 2 from"], ["softness_2", "Step 2 softness"]],
@@ -125,17 +101,6 @@ const BORDER_NAMES: [[[&str; 2]; 2]; BORDERS] = [
     [["at_5", "Step 5 from"], ["softness_5", "Step 5 softness"]],
     [["at_6", "Step 6 from"], ["softness_6", "Step 6 softness"]],
 ];
-
-/// A cool shadow, a mid tone and a warm light; further steps are lights within the light.
-const TINTS: [[f32; 4]; STEPS] = [
-    [0.54, 0.54, 0.69, 1.0],
-    [0.8, 0.78, 0.81, 1.0],
-    [1.0, 0.985, 0.94, 1.0],
-    [1.0, 1.0, 0.97, 1.0],
-    [1.0, 1.0, 1.0, 1.0],
-    [1.0, 1.0, 1.0, 1.0],
-];
-const PLACES: [f32; BORDERS] = [0.55, 0.88, 1.0, 1.1, 1.2];
 
 /// Colours of the steps.
 const COLORS: [Param; STEPS] = [color(0), color(1), color(2), color(3), color(4), color(5)];
@@ -222,23 +187,15 @@ fn build(scope: &mut Scope<'_>) -> ImageId {
 
 /// The frame that is described in steps.
 fn shaded(scope: &mut Scope<'_>) -> ImageId {
-    let color = scope.required("color");
-    let [albedo, diffuse, specular] = [ALBEDO, DIFFUSE, SPECULAR].map(|port| scope.input(port.id));
+    let layers = Layers::of(scope);
     // Colours without light, and light: of a picture alone both are in its smooth regions.
-    let regions = if albedo.is_none() { Some(regions(scope)) } else { None };
-    let lit = diffuse.or(regions).unwrap_or(color);
-    let normal = scope.input(NORMAL.id);
-    let layers = toon_light::Layers { color, lit, albedo, specular, normal, is_diffuse: diffuse.is_some() };
-    let usual = if albedo.is_some() { 1.0 } else { 1.0 / USUAL };
-    let gain = usual * scope.float("exposure").exp2();
-    let light = toon_light::pass(scope.plan, &layers, gain);
-    let shading = shading(scope, albedo.is_some());
-    let rest = albedo.map(|albedo| {
-        let reflected = diffuse.zip(specular).map(|(diffuse, specular)| [diffuse, specular]);
-        toon_rest::pass(scope.plan, &toon_rest::Layers { color, albedo, reflected })
-    });
-    let surface = albedo.or(regions).unwrap_or(color);
-    toon_ramp::pass(scope.plan, [light, surface], rest, &shading)
+    let surface = match layers.albedo {
+        Some(albedo) => albedo,
+        None => regions(scope),
+    };
+    let shading = shading(scope);
+    let exposure = scope.float(light_steps::EXPOSURE.id);
+    layers.shaded(scope.plan, surface, exposure, scope.int("steps") as usize, shading)
 }
 
 /// The picture without small differences, of smooth borders.
@@ -254,7 +211,7 @@ fn regions(scope: &mut Scope<'_>) -> ImageId {
 }
 
 /// The parameters as the kernel takes them.
-fn shading(scope: &Scope<'_>, has_albedo: bool) -> Shading {
+fn shading(scope: &Scope<'_>) -> Shading {
     let count = scope.int("steps") as usize;
     let all = scope.float("softness");
     let mut steps = [Step { tint: [0.0; 3], from: 0.0, softness: 0.0 }; STEPS];
@@ -264,12 +221,6 @@ fn shading(scope: &Scope<'_>, has_albedo: bool) -> Shading {
         if let Some(border) = at.checked_sub(1) {
             step.from = if at < count { scope.float(FROM[border].id) } else { NOWHERE };
             step.softness = all + scope.float(SOFTNESS[border].id);
-        }
-    }
-    if !has_albedo {
-        let tones = tones(&steps, count);
-        for (step, tone) in steps.iter_mut().zip(tones) {
-            step.tint = step.tint.map(|v| v * tone);
         }
     }
     let area = |id: &str, amount: &str, from: f32, softness: &str| {
@@ -283,25 +234,4 @@ fn shading(scope: &Scope<'_>, has_albedo: bool) -> Shading {
         rim: area("rim_color", "rim", rim_from, "rim_softness"),
         highlight: area("highlight_color", "highlight", highlight_from, "highlight_softness"),
     }
-}
-
-/// Light that no step is reached by.
-const NOWHERE: f32 = 1e6;
-
-/// Share of the light that a usual surface reflects, by which light is told where colours of surfaces are not known, and its
-/// cube root, by which lightness goes.
-const USUAL: f32 = 0.45;
-const USUAL_LIGHTNESS: f32 = 0.766;
-
-/// Tones of steps on a picture whose light is all that tells its surfaces apart, gamma-encoded: the middle of each
-/// step, to the power of 3/4.
-fn tones(steps: &[Step; STEPS], count: usize) -> [f32; STEPS] {
-    let end = |at: usize| if at + 1 < count { steps[at + 1].from } else { 1.0 / USUAL_LIGHTNESS };
-    let mut tones = [1.0; STEPS];
-    for (at, tone) in tones.iter_mut().enumerate().take(count) {
-        let middle = 0.5 * USUAL_LIGHTNESS * (steps[at].from + end(at)).clamp(0.0, 4.0);
-        // Tints are darker than white, so that tones are lighter than the picture's.
-        *tone = (middle * middle.sqrt()).sqrt();
-    }
-    tones
 }

@@ -7,17 +7,18 @@ use crate::declare::value::Value;
 use crate::kernels::colour::{lab_to_rgb, lightness, rgb_to_lab};
 use crate::kernels::smoothing::line_integral_convolution::{self, Options as Lic};
 use crate::stages::abstraction::{self, Abstraction};
+use crate::stages::cel_light::Tones;
 use crate::stages::control::Control;
 use crate::stages::line_on_dark::{LINE_ON_DARK, OnDark};
 use crate::stages::line_sets::{self, Inked};
 use crate::stages::steady::{Agreement, COLOUR_AGREEMENT, steadied};
 use crate::stages::tensor_options::Guides;
 use crate::stages::{
-    ADVANCED, LOOK, difference_of_gaussians as dog, flow_dog, line_context, line_integral_convolution as lic,
-    line_on_dark, line_wobble, lines, quantization as levels, quantize_luminance as quantization, tone,
-    warp_sharpen,
+    ADVANCED, LOOK, ben_day, cel_light, difference_of_gaussians as dog, flow_dog, light_steps, line_context,
+    line_integral_convolution as lic, line_on_dark, line_wobble, lines, quantization as levels,
+    quantize_luminance as quantization, tone, warp_sharpen,
 };
-use isophote_engine::ImageId;
+use isophote_engine::{ImageId, PlanBuilder};
 
 /// The node.
 pub static NODE: NodeSpec = NodeSpec {
@@ -29,7 +30,7 @@ pub static NODE: NodeSpec = NodeSpec {
           structure, lines by the flow-based difference of Gaussians, soft quantization of lightness. \
           Defaults are those of Fig. 4.8, but for `tau`, and for steps of lightness, which are crisp and lie \
           only where tones change. Normals, depth and object ids, where given, draw lines of \
-          their own.",
+          their own; albedo, diffuse and mirrored light can be cut into steps of light in the place of lightness.",
     section: "4.6",
     inputs: &[
         ports::COLOR,
@@ -37,6 +38,9 @@ pub static NODE: NodeSpec = NodeSpec {
         flow_dog::DEPTH,
         flow_dog::OBJECT_ID,
         line_wobble::REST_POSITION,
+        light_steps::ALBEDO,
+        light_steps::DIFFUSE,
+        light_steps::SPECULAR,
     ],
     output: ports::color_output("The cartoon."),
     own_params: &[
@@ -61,6 +65,14 @@ pub static NODE: NodeSpec = NodeSpec {
         tone::SATURATION,
         tone::LIGHTS,
         tone::DARKS,
+        ben_day::DOTS,
+        ben_day::DOT_SPACING,
+        cel_light::SHADING,
+        cel_light::LIGHT_STEPS,
+        cel_light::LIGHT,
+        cel_light::SHADOW_COLOR,
+        cel_light::MIDDLE_COLOR,
+        cel_light::LIGHT_COLOR,
         abstraction::ABSTRACTION,
         LINE_FILTER,
         lines::N_E,
@@ -168,7 +180,13 @@ fn build(scope: &mut Scope<'_>) -> ImageId {
             }
             LineFilter::Isotropic => flow.isotropic(scope.plan, lightness),
         };
-        [smooth, edges, flattened(scope, smooth)]
+        let flat = match scope.option(cel_light::SHADING.id) {
+            Tones::Lightness => flattened(scope, smooth),
+            Tones::Light => {
+                lit(scope, smooth, |plan, lab| abstraction.apply(plan, [lab, tensor], control, n_a))
+            }
+        };
+        [smooth, edges, flat]
     });
 
     let saturation = scope.float("saturation");
@@ -184,15 +202,16 @@ fn build(scope: &mut Scope<'_>) -> ImageId {
     let line = scope.color("line_color");
     let inked = Inked::new(scope, &flow, edges, line);
     let drawn = lined(scope, [rgb, smooth], inked, flow.guide_weight);
-    let drawn = lines::shown(scope, [drawn, rgb, inked.edges], inked.line[3]);
+    let mut drawn = lines::shown(scope, [drawn, rgb, inked.edges], inked.line[3]);
     let sigma_a = scope.float("sigma_a");
     if sigma_a > 0.0 {
         let smooth = Lic { sigma: sigma_a, ..lic::unadapted() };
         // That of the frame itself, which is there: averages of neighbours would lead the smoothing hardly elsewhere.
         let tensor = lines::oriented(scope, guide_weight);
-        return line_integral_convolution::pass_unadapted(scope.plan, drawn, tensor, &smooth);
+        drawn = line_integral_convolution::pass_unadapted(scope.plan, drawn, tensor, &smooth);
     }
-    drawn
+    // Last: smoothing along the edges would draw the dots out. Lines are kept out of them.
+    ben_day::printed(scope, drawn, inked.edges, inked.line[3])
 }
 
 /// A smoothed picture in few flat tones, in Lab.
@@ -202,6 +221,16 @@ fn flattened(scope: &mut Scope<'_>, smooth: ImageId) -> ImageId {
         0 => toned,
         bins => levels::flattened(scope, toned, bins, levels::steepness(scope, bins)),
     }
+}
+
+/// A smoothed picture in steps of light, in Lab; `smoothed` smooths the colours of surfaces alike.
+fn lit(
+    scope: &mut Scope<'_>,
+    smooth: ImageId,
+    smoothed: impl FnOnce(&mut PlanBuilder, ImageId) -> ImageId,
+) -> ImageId {
+    let lit = cel_light::shaded(scope, smooth, smoothed);
+    tone::curve(scope, lit)
 }
 
 /// A picture with its lines, of which those turn light that lie on dark tones, as `smooth` in Lab has them before they are
