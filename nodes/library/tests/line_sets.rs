@@ -208,11 +208,11 @@ fn lines_behind_end_before_what_is_in_front() {
 
 #[test]
 fn ends_run_out_and_closed_lines_keep_their_width() {
-    // A border of two tones that comes to nothing, and a disc.
+    // A stroke, and a disc.
     let color = picture(SIZE, |x, y| {
-        let disc = ((x - 190) as f32).hypot((y - 50) as f32) < 36.0;
-        let faint = 0.35 * (1.0 - x as f32 / 150.0).max(0.0);
-        let v = if disc { 0.35 } else { 0.7 - if y > 120 { faint } else { 0.0 } };
+        let stroke = (20..110).contains(&x) && (120..124).contains(&y);
+        let disc = ((x - 180) as f32).hypot((y - 60) as f32) < 36.0;
+        let v = if disc || stroke { 0.35 } else { 0.7 };
         [v, v, v, 1.0]
     });
     let drawn = |style: &str, taper: &str| {
@@ -224,10 +224,13 @@ fn ends_run_out_and_closed_lines_keep_their_width() {
     };
     for style in ["cartoon", "blueprint"] {
         let [plain, tapered] = ["0", "16"].map(|taper| drawn(style, taper));
-        let end = (40..150).rev().find(|x| ink(&plain, [*x, 105, x + 1, 136]) > 0.5).unwrap();
-        // The end of the border, its middle, and the disc.
-        let parts = [[end - 14, 105, end + 8, 136], [20, 105, 40, 136], [140, 0, 240, 100]];
+        // Both ends of the stroke, its middle, and the disc.
+        let parts = [[10, 105, 30, 140], [100, 105, 120, 140], [55, 105, 75, 140], [130, 0, 240, 104]];
         let shares = parts.map(|part| ink(&tapered, part) / ink(&plain, part));
-        assert!(shares[0] < 0.75 && shares[1] > 0.93 && shares[2] > 0.93, "{style}: {end}, {shares:?}");
+        let [first, last, middle, disc] = shares;
+        assert!(first < 0.75 && last < 0.75 && middle > 0.97 && disc > 0.97, "{style}: {shares:?}");
+        // Narrower and narrower.
+        let widths: Vec<f32> = (92..110).map(|x| ink(&tapered, [x, 105, x + 1, 140])).collect();
+        assert!(widths.windows(2).all(|pair| pair[1] < pair[0] + 0.1), "{style}: {widths:?}");
     }
 }

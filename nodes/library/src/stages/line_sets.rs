@@ -6,12 +6,12 @@ use crate::declare::spec::{Param, Scope};
 use crate::kernels::colour::composite_lines::{self, Params as Composite};
 use crate::kernels::colour::line_paint::{self, Params as Colours};
 use crate::kernels::colour::painted_lines;
-use crate::kernels::lines::{line_fade, line_gap, line_kinds, line_taper, occluders};
+use crate::kernels::lines::line_taper::{self, Lines};
+use crate::kernels::lines::{line_fade, line_gap, line_kinds, occluders};
 use crate::kernels::smoothing::disc_extremum::{self, Extremum};
 use crate::kernels::smoothing::gaussian_blur;
-use crate::kernels::smoothing::line_integral_convolution::{self, Options as Lic};
+use crate::kernels::structure::orientation_field;
 use crate::stages::flow_dog::{self, FlowDog};
-use crate::stages::line_integral_convolution as lic;
 use crate::stages::line_wobble::WOBBLE;
 use crate::stages::tensor_options::Guides;
 use crate::stages::{ADVANCED, LOOK};
@@ -45,7 +45,10 @@ pub(crate) const TAPER: Param = Param::length("taper", "Taper", 0.0, [0.0, 60.0]
     .structural()
     .group(ADVANCED)
     .hint("How long the ends of lines are that run out into a point; 0 for one width to the end. It is seen on wide lines.")
-    .doc("Standard deviation along the flow over which lines are looked at for their ends.");
+    .doc(
+        "Standard deviation, along the direction at each pixel, over which lines are looked at for their ends: places from \
+         where they go on to one side alone.",
+    );
 
 choice! {
     /// Colours of lines.
@@ -140,10 +143,9 @@ pub(crate) fn tapered(
     let drawn = composite_lines::pass(scope.plan, color, edges, &black);
     let half = (HALF_LINE * flow.widest()).max(1.0);
     let soft = gaussian_blur::pass(scope.plan, drawn, half, Class::Colour);
-    let options = Lic { sigma, ..lic::unadapted() };
-    let along = line_integral_convolution::pass_unadapted(scope.plan, soft, tensor, &options);
     let darkest = disc_extremum::pass(scope.plan, soft, 1.5 * half, Extremum::Least);
-    line_taper::pass(scope.plan, [edges, soft, along, darkest])
+    let field = orientation_field::pass(scope.plan, tensor);
+    line_taper::pass(scope.plan, &Lines { edges, soft, darkest, field }, sigma)
 }
 
 /// The edges, of which those of things behind others end where the gap before the outlines of these begins.
@@ -151,7 +153,7 @@ pub(crate) fn gapped(scope: &mut Scope<'_>, flow: &FlowDog, edges: ImageId) -> I
     let gap = scope.float(LINE_GAP.id);
     let Some(depth) = scope.input(flow_dog::DEPTH.id).filter(|_| gap > 0.0) else { return edges };
     let outline = HALF_OUTLINE[0] * flow.outline() + HALF_OUTLINE[1] * scope.scale();
-    let outline = (outline - occluders::BAND).max(0.0);
+    let outline = (outline - occluders::BAND).max(1.0);
     let occluders = occluders::pass(scope.plan, depth);
     let [beside, around] = [outline, outline + gap]
         .map(|radius| disc_extremum::pass(scope.plan, occluders, radius, Extremum::Greatest));
