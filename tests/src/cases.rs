@@ -236,6 +236,18 @@ pub fn by_distance(spec: &NodeSpec) -> Option<Setting> {
     Some(Setting { label: "by distance".into(), values: vec![("far_width", Value::Float(2.5))] })
 }
 
+/// For nodes that draw kinds of lines in colours of their own: values by which they do, light on dark ground.
+pub fn in_sets(spec: &NodeSpec) -> Option<Setting> {
+    spec.param("line_colors")?;
+    let mut values = vec![
+        ("line_colors", Value::Choice(1)),
+        ("line_gap", Value::Float(4.0)),
+        ("taper", Value::Float(6.0)),
+    ];
+    values.extend(spec.param("line_on_dark").map(|_| ("line_on_dark", Value::Choice(1))));
+    Some(Setting { label: "in sets".into(), values })
+}
+
 /// For nodes that print with dots: values by which they do, of colours with lines.
 pub fn dotted(spec: &NodeSpec) -> Option<Setting> {
     spec.param("dots")?;

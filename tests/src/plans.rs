@@ -84,11 +84,12 @@ fn variants(spec: &'static NodeSpec) -> Vec<Variant> {
     for kind in Kind::ALL {
         add(default, false, kind, false, 0.5);
     }
-    let others: [(_, FullRequest); 5] = [
+    let others: [(_, FullRequest); 6] = [
         (cases::carrying(spec), cases::request_without_rest),
         (cases::fading(spec), with_guides),
         (cases::by_distance(spec), with_guides),
         (cases::dotted(spec), with_guides),
+        (cases::in_sets(spec), with_guides),
         (cases::on_materials(spec), cases::request_on_materials),
     ];
     for (setting, request) in others {

@@ -28,11 +28,16 @@ def blueprint(
     line_amount: float = 0.5,
     suppress_small: float = 0.0,
     outline_width: float = 1.0,
+    border_width: float = 1.0,
     crease_width: float = 1.0,
     far_width: float = 1.0,
     texture_lines: float = 1.0,
     wobble: float = 0.0,
     line_color: Color = (0.92, 0.96, 1.0, 1.0),
+    line_colors: Literal['one', 'kinds'] = 'one',
+    outline_color: Color = (1.0, 1.0, 1.0, 1.0),
+    border_color: Color = (0.75, 0.86, 0.98, 1.0),
+    crease_color: Color = (0.5, 0.68, 0.92, 1.0),
     paper_color: Color = (0.0706, 0.251, 0.4824, 1.0),
     grid: float = 32.0,
     paper_texture: float = 0.12,
@@ -53,6 +58,8 @@ def blueprint(
     guide_weight: float = 1.0,
     near: float = 2.0,
     far: float = 20.0,
+    taper: float = 0.0,
+    line_gap: float = 0.0,
     steadiness: float = 0.0,
     window: int = 2,
     hold: int = 0,
@@ -102,6 +109,8 @@ def blueprint(
             lowers `epsilon` by up to 0.75. 0 to 1.
         outline_width: Width of outlines of objects against other lines; 0 draws none. Needs depth,
             object ids or normals. 0 to 8.
+        border_width: Width of borders between things that touch against outlines; 0 draws none.
+            Needs depth and object ids. 0 to 8.
         crease_width: Width of lines where a surface folds against other lines; 0 draws none. Needs
             normals. 0 to 8.
         far_width: Width of lines far from the camera against near ones; 1 for the same everywhere.
@@ -114,6 +123,13 @@ def blueprint(
             lines high, and in longer ones where they waver by more than 4, so that none folds. The
             waves belong to things where rest positions are known, else to the screen. 0 to 6 px.
         line_color: Colour and opacity of the lines and the grid.
+        line_colors: One colour for all lines, or one each for outlines, borders, creases and the
+            rest. Needs depth, object ids or normals. By kind, `line_color` is that of lines that
+            come from the picture itself. A line has the colour of the densest breaks around it.
+        outline_color: Colour and opacity of outlines, where line colours are by kind.
+        border_color: Colour and opacity of borders between things that touch, where line colours
+            are by kind.
+        crease_color: Colour and opacity of creases, where line colours are by kind.
         paper_color: Colour of the paper.
         grid: Spacing of the grid, whose every fifth line is stronger; 0 for none. 0 to 4096 px.
         paper_texture: How rough the paper looks. 0 to 1.
@@ -156,6 +172,12 @@ def blueprint(
             to 1e+06.
         far: Distance from the camera from which on lines have their width of far away, in units of
             the scene. 0 to 1e+06.
+        taper: How long the ends of lines are that run out into a point; 0 for one width to the end.
+            It is seen on wide lines. Standard deviation, along the direction at each pixel, over
+            which lines are looked at for their ends: places from where they go on to one side
+            alone. 0 to 60 px.
+        line_gap: How far before the outline of a nearer thing the lines behind it end; 0 for not at
+            all. Needs depth. 0 to 32 px.
         steadiness: How calm moving pictures are: neighbouring frames are averaged along the motion.
             0 is off, 0.5 suits most shots. How much neighbouring frames count, carried here along
             the motion of things: 0 leaves each frame alone, 0.5 is for sequences, 1 lets all frames
@@ -197,6 +219,9 @@ def cartoon(
     depth: Any = None,
     object_id: Any = None,
     rest_position: Any = None,
+    albedo: Any = None,
+    diffuse: Any = None,
+    specular: Any = None,
     mask: Any = None,
     flow: Any = None,
     motion: Any = None,
@@ -206,11 +231,16 @@ def cartoon(
     line_amount: float = 0.5,
     suppress_small: float = 0.0,
     outline_width: float = 1.0,
+    border_width: float = 1.0,
     crease_width: float = 1.0,
     far_width: float = 1.0,
     texture_lines: float = 1.0,
     wobble: float = 0.0,
     line_color: Color = (0.0, 0.0, 0.0, 1.0),
+    line_colors: Literal['one', 'kinds'] = 'one',
+    outline_color: Color = (0.0, 0.0, 0.0, 1.0),
+    border_color: Color = (0.36, 0.2, 0.16, 1.0),
+    crease_color: Color = (0.5, 0.25, 0.18, 1.0),
     detail: float = 0.5,
     posterize: int = 8,
     posterize_smooth: float = 0.0,
@@ -218,6 +248,14 @@ def cartoon(
     saturation: float = 1.0,
     lights: float = 0.0,
     darks: float = 0.0,
+    dots: float = 0.0,
+    dot_spacing: float = 9.0,
+    shading: Literal['lightness', 'light'] = 'lightness',
+    light_steps: int = 2,
+    exposure: float = 0.0,
+    shadow_color: Color = (0.54, 0.54, 0.69, 1.0),
+    middle_color: Color = (0.8, 0.78, 0.81, 1.0),
+    light_color: Color = (1.0, 0.985, 0.94, 1.0),
     abstraction: Literal['oriented', 'flow', 'full', 'xy'] = 'oriented',
     line_filter: Literal['flow', 'isotropic'] = 'flow',
     n_e: int = 1,
@@ -234,6 +272,8 @@ def cartoon(
     guide_weight: float = 1.0,
     near: float = 2.0,
     far: float = 20.0,
+    taper: float = 0.0,
+    line_gap: float = 0.0,
     phi_q: float = 8.0,
     adaptive: bool = False,
     lambda_delta: float = 0.0,
@@ -262,7 +302,8 @@ def cartoon(
     lines: bilateral filtering in CIELAB along the local structure, lines by the flow-based
     difference of Gaussians, soft quantization of lightness. Defaults are those of Fig. 4.8, but for
     `tau`, and for steps of lightness, which are crisp and lie only where tones change. Normals,
-    depth and object ids, where given, draw lines of their own. (thesis § 4.6)
+    depth and object ids, where given, draw lines of their own; albedo, diffuse and mirrored light
+    can be cut into steps of light in the place of lightness. (thesis § 4.6)
 
     Inputs:
         image: The picture.
@@ -272,6 +313,11 @@ def cartoon(
         object_id: Object numbers; borders between objects draw lines.
         rest_position: Points of the undeformed objects, in any unit and 32 bits a channel: the
             wobble of lines moves with things. It is read where `wobble` is above 0.
+        albedo: Colours of surfaces without light, in the picture's space.
+        diffuse: Light that surfaces reflect in all directions, in their colours: a pass without
+            colour, such as Blender's DiffDir, is to be multiplied by that of the albedo.
+        specular: Light that surfaces mirror, by which highlights are shaped; by all light when
+            open.
         mask: How much of the result is used, 0..=1, times `mix`; all of it when open.
         flow: A flow map (see `flow_map`) that bends the orientation which the node follows, if it
             follows any.
@@ -293,6 +339,8 @@ def cartoon(
             lowers `epsilon` by up to 0.75. 0 to 1.
         outline_width: Width of outlines of objects against other lines; 0 draws none. Needs depth,
             object ids or normals. 0 to 8.
+        border_width: Width of borders between things that touch against outlines; 0 draws none.
+            Needs depth and object ids. 0 to 8.
         crease_width: Width of lines where a surface folds against other lines; 0 draws none. Needs
             normals. 0 to 8.
         far_width: Width of lines far from the camera against near ones; 1 for the same everywhere.
@@ -305,6 +353,13 @@ def cartoon(
             lines high, and in longer ones where they waver by more than 4, so that none folds. The
             waves belong to things where rest positions are known, else to the screen. 0 to 6 px.
         line_color: Colour and opacity of the lines.
+        line_colors: One colour for all lines, or one each for outlines, borders, creases and the
+            rest. Needs depth, object ids or normals. By kind, `line_color` is that of lines that
+            come from the picture itself. A line has the colour of the densest breaks around it.
+        outline_color: Colour and opacity of outlines, where line colours are by kind.
+        border_color: Colour and opacity of borders between things that touch, where line colours
+            are by kind.
+        crease_color: Colour and opacity of creases, where line colours are by kind.
         detail: How much of the picture's detail stays: low values give flat areas, high ones keep
             small things. Scales `sigma_r` from 3 to 1/3 times and `sigma_d` from 2 to 1/2. 0 to 1.
         posterize: Number of tones from black to white; 0 leaves tones smooth. 0 to 64.
@@ -318,6 +373,26 @@ def cartoon(
             colour axes of CIELAB. 0 to 4.
         lights: Brightens the light tones above 0, and darkens them below. -1 to 1.
         darks: Brightens the dark tones above 0, and darkens them below. -1 to 1.
+        dots: Prints light and mid colours as dots of ink on white paper, as in old comics; 0 prints
+            none and costs nothing. Seen from afar the dots have the colours of the picture; darks
+            and pure colours are solid. Lines are not printed, and neither is the picture where they
+            are shown alone. 0 to 1.
+        dot_spacing: Distance from one Ben-Day dot to the next. Where the rendered size leaves it
+            less than two pixels, dots fade to flat tones. 2 to 256 px.
+        shading: What tones are cut from: the picture's lightness, or the light on things, as cels
+            are painted. Light in steps is that of `toon_shading`: by `diffuse` and `albedo` where
+            they are given, and otherwise by the smoothed picture. `posterize` then has no effect,
+            and lines are those of the picture as it is.
+        light_steps: Number of steps of light: shadow and light, or a middle tone between them, too.
+            2 to 3.
+        exposure: Brightens or dims the light before it is cut into steps, in stops: more light
+            moves shadows back. -16 to 16.
+        shadow_color: Colour that surfaces have in the shadow; white leaves them as they are. For
+            steps of light. Its opacity is not used.
+        middle_color: Colour that surfaces have in the middle of three steps of light; white leaves
+            them as they are. Its opacity is not used.
+        light_color: Colour that surfaces have in the light; white leaves them as they are. For
+            steps of light. Its opacity is not used.
         abstraction: How colours are flattened: along the edges, along flowing lines, or in all
             directions alike. Bilateral filter: across and along the local orientation (3.4), or
             along stream lines (3.5), whose own scales then grow with `sigma_d` / 3 and `sigma_r` /
@@ -359,6 +434,12 @@ def cartoon(
             to 1e+06.
         far: Distance from the camera from which on lines have their width of far away, in units of
             the scene. 0 to 1e+06.
+        taper: How long the ends of lines are that run out into a point; 0 for one width to the end.
+            It is seen on wide lines. Standard deviation, along the direction at each pixel, over
+            which lines are looked at for their ends: places from where they go on to one side
+            alone. 0 to 60 px.
+        line_gap: How far before the outline of a nearer thing the lines behind it end; 0 for not at
+            all. Needs depth. 0 to 32 px.
         phi_q: How suddenly one tone changes to the next. Does not count with adaptive steps.
             Steepness of the steps, per unit of L. 0 to 1000.
         adaptive: Softer steps in flat areas and steeper ones at edges, so that moving pictures
@@ -855,6 +936,7 @@ def ink(
     line_amount: float = 0.5,
     suppress_small: float = 0.0,
     outline_width: float = 1.0,
+    border_width: float = 1.0,
     crease_width: float = 1.0,
     far_width: float = 1.0,
     texture_lines: float = 1.0,
@@ -862,6 +944,10 @@ def ink(
     grain: float = 0.5,
     detail: float = 0.5,
     line_color: Color = (0.09, 0.085, 0.1, 1.0),
+    line_colors: Literal['one', 'kinds'] = 'one',
+    outline_color: Color = (0.09, 0.085, 0.1, 1.0),
+    border_color: Color = (0.36, 0.2, 0.16, 1.0),
+    crease_color: Color = (0.5, 0.25, 0.18, 1.0),
     paper_color: Color = (0.965, 0.955, 0.93, 1.0),
     saturation: float = 1.0,
     cover: bool = False,
@@ -884,6 +970,8 @@ def ink(
     guide_weight: float = 1.0,
     near: float = 2.0,
     far: float = 20.0,
+    taper: float = 0.0,
+    line_gap: float = 0.0,
     steadiness: float = 0.0,
     window: int = 2,
     hold: int = 0,
@@ -943,6 +1031,8 @@ def ink(
             to 0.8 of it and halves p. 0 to 1.
         outline_width: Width of outlines of objects against other lines; 0 draws none. Needs depth,
             object ids or normals. 0 to 8.
+        border_width: Width of borders between things that touch against outlines; 0 draws none.
+            Needs depth and object ids. 0 to 8.
         crease_width: Width of lines where a surface folds against other lines; 0 draws none. Needs
             normals. 0 to 8.
         far_width: Width of lines far from the camera against near ones; 1 for the same everywhere.
@@ -957,6 +1047,13 @@ def ink(
         detail: How much of the picture's detail stays: low values give flat areas, high ones keep
             small things. Scales `sigma_r` from 3 to 1/3 times and `sigma_d` from 2 to 1/2. 0 to 1.
         line_color: Colour and opacity of what is drawn with.
+        line_colors: One colour for all lines, or one each for outlines, borders, creases and the
+            rest. Needs depth, object ids or normals. By kind, `line_color` is that of lines that
+            come from the picture itself. A line has the colour of the densest breaks around it.
+        outline_color: Colour and opacity of outlines, where line colours are by kind.
+        border_color: Colour and opacity of borders between things that touch, where line colours
+            are by kind.
+        crease_color: Colour and opacity of creases, where line colours are by kind.
         paper_color: Colour of the paper.
         saturation: Strength of the picture's own colours, as far as the medium shows them: 0 is
             grey. Factor on the colour axes of CIELAB. 0 to 4.
@@ -999,6 +1096,12 @@ def ink(
             to 1e+06.
         far: Distance from the camera from which on lines have their width of far away, in units of
             the scene. 0 to 1e+06.
+        taper: How long the ends of lines are that run out into a point; 0 for one width to the end.
+            It is seen on wide lines. Standard deviation, along the direction at each pixel, over
+            which lines are looked at for their ends: places from where they go on to one side
+            alone. 0 to 60 px.
+        line_gap: How far before the outline of a nearer thing the lines behind it end; 0 for not at
+            all. Needs depth. 0 to 32 px.
         steadiness: How calm moving pictures are: neighbouring frames are averaged along the motion.
             0 is off, 0.5 suits most shots. How much neighbouring frames count, carried here along
             the motion of things: 0 leaves each frame alone, 0.5 is for sequences, 1 lets all frames
@@ -1076,6 +1179,7 @@ def halftone(
     line_amount: float = 0.0,
     suppress_small: float = 0.0,
     outline_width: float = 1.0,
+    border_width: float = 1.0,
     crease_width: float = 1.0,
     far_width: float = 1.0,
     texture_lines: float = 1.0,
@@ -1098,6 +1202,8 @@ def halftone(
     guide_weight: float = 1.0,
     near: float = 2.0,
     far: float = 20.0,
+    taper: float = 0.0,
+    line_gap: float = 0.0,
     local_contrast: float = 1.0,
     inhibition: float = 1.0,
     colour_edges: float = 0.5,
@@ -1177,6 +1283,8 @@ def halftone(
             lowers `epsilon` by up to 0.75. 0 to 1.
         outline_width: Width of outlines of objects against other lines; 0 draws none. Needs depth,
             object ids or normals. 0 to 8.
+        border_width: Width of borders between things that touch against outlines; 0 draws none.
+            Needs depth and object ids. 0 to 8.
         crease_width: Width of lines where a surface folds against other lines; 0 draws none. Needs
             normals. 0 to 8.
         far_width: Width of lines far from the camera against near ones; 1 for the same everywhere.
@@ -1227,6 +1335,12 @@ def halftone(
             to 1e+06.
         far: Distance from the camera from which on lines have their width of far away, in units of
             the scene. 0 to 1e+06.
+        taper: How long the ends of lines are that run out into a point; 0 for one width to the end.
+            It is seen on wide lines. Standard deviation, along the direction at each pixel, over
+            which lines are looked at for their ends: places from where they go on to one side
+            alone. 0 to 60 px.
+        line_gap: How far before the outline of a nearer thing the lines behind it end; 0 for not at
+            all. Needs depth. 0 to 32 px.
         local_contrast: Judges edges against what is around them, so that soft light has lines and
             hard light is not black. Share by which the response is divided by the local deviation
             of lightness, in a window of about 16 pixels with a floor (Heeger 1992); 0 leaves it as

@@ -73,6 +73,9 @@ const HALF_LINE: f32 = 1.2;
 /// Half the width of an outline, in its standard deviations, and in pixels of the full-size picture beside that.
 const HALF_OUTLINE: [f32; 2] = [2.0, 1.0];
 
+/// Most pixels around a line that any of this looks at for its width.
+const WIDEST: f32 = 48.0;
+
 /// Standard deviation of the smoothing of the ends at gaps, pixels.
 const SOFT_ENDS: f32 = 0.6;
 
@@ -116,6 +119,7 @@ pub(crate) fn paint(scope: &mut Scope<'_>, flow: &FlowDog, opacity: f32, line: [
     let kinds = line_kinds::pass(scope.plan, [normal, depth, object_id])?;
     let wobble = scope.spec.param(WOBBLE.id).map_or(0.0, |_| scope.float(WOBBLE.id));
     let sigma = SPREAD[0] * flow.widest() + SPREAD[1] * scope.scale() + 0.5 * wobble;
+    let sigma = sigma.min(WIDEST);
     let around = gaussian_blur::pass(scope.plan, kinds, sigma, Class::Field);
     let [crease, outline, border] = [CREASE_COLOR, OUTLINE_COLOR, BORDER_COLOR].map(|param| {
         let [r, g, b, a] = scope.color(param.id);
@@ -141,7 +145,7 @@ pub(crate) fn tapered(
     let (tensor, color) = (tensor(scope), scope.required("color"));
     let black = Composite { line: [0.0, 0.0, 0.0, 1.0], paper: [1.0; 4] };
     let drawn = composite_lines::pass(scope.plan, color, edges, &black);
-    let half = (HALF_LINE * flow.widest()).max(1.0);
+    let half = (HALF_LINE * flow.widest()).clamp(1.0, WIDEST);
     let soft = gaussian_blur::pass(scope.plan, drawn, half, Class::Colour);
     let darkest = disc_extremum::pass(scope.plan, soft, 1.5 * half, Extremum::Least);
     let field = orientation_field::pass(scope.plan, tensor);
@@ -153,7 +157,7 @@ pub(crate) fn gapped(scope: &mut Scope<'_>, flow: &FlowDog, edges: ImageId) -> I
     let gap = scope.float(LINE_GAP.id);
     let Some(depth) = scope.input(flow_dog::DEPTH.id).filter(|_| gap > 0.0) else { return edges };
     let outline = HALF_OUTLINE[0] * flow.outline() + HALF_OUTLINE[1] * scope.scale();
-    let outline = (outline - occluders::BAND).max(1.0);
+    let outline = (outline - occluders::BAND).clamp(1.0, WIDEST);
     let occluders = occluders::pass(scope.plan, depth);
     let [beside, around] = [outline, outline + gap]
         .map(|radius| disc_extremum::pass(scope.plan, occluders, radius, Extremum::Greatest));

@@ -29,7 +29,7 @@ pub(crate) const CREASE_WIDTH: Param = Param::float("crease_width", "Crease widt
     .group(LOOK)
     .hint("Width of lines where a surface folds against other lines; 0 draws none. Needs normals.");
 pub(crate) const BORDER_WIDTH: Param =
-    Param::float("border_width", "Border width", 1.0, [0.0, 8.0]).slider(0.0, 3.0).group(LOOK).hint(
+    Param::float("border_width", "Border width", 1.0, [0.0, 8.0]).slider(0.0, 4.0).group(LOOK).hint(
         "Width of borders between things that touch against outlines; 0 draws none. Needs depth and object ids.",
     );
 pub(crate) const FAR_WIDTH: Param = Param::float("far_width", "Width far away", 1.0, [0.0, 4.0])
@@ -172,7 +172,8 @@ pub(crate) fn distance(scope: &Scope<'_>) -> Distance {
 pub(crate) fn guided(scope: &Scope<'_>, sigma_e: f32) -> [Guided; 3] {
     let [crease, outline, border] =
         [CREASE_WIDTH, OUTLINE_WIDTH, BORDER_WIDTH].map(|width| scope.float(width.id));
-    [crease, outline, outline * border].map(|width| Guided::new(sigma_e * width))
+    let border = (outline * border).min(BORDER_WIDTH.range[1]);
+    [crease, outline, border].map(|width| Guided::new(sigma_e * width))
 }
 
 /// Factor on the scale of edges for lines `width` pixels of the full picture wide.

@@ -22,13 +22,15 @@ const RUNNER: [&str; 3] = ["qemu-aarch64", "-L", "/usr/aarch64-linux-gnu"];
 const PACKAGES: [&str; 4] = ["isophote-engine", "isophote", "isophote-plugin", "isophote-tests"];
 
 /// Files of tests beside the packages' own.
-const FILES: [&str; 13] = [
+const FILES: [&str; 15] = [
     "plan",
+    "cel_light",
     "control",
     "cpu",
     "shader_directives",
     "graph",
     "importance",
+    "line_sets",
     "line_wobble",
     "lines",
     "materials",
