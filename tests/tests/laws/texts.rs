@@ -53,9 +53,11 @@ fn the_address_of_the_project_stands_in_one_place() {
     assert!(own_addresses("isophote.html, libisophote.so, https://example.org").is_empty());
 }
 
-/// Text of a page in Markdown as people read it: without code, and without the addresses of links.
+/// Text of a page in Markdown as people read it: without code and comments, and without the addresses of links.
 fn prose(page: &str) -> String {
-    let unfenced: Vec<&str> = page.split("```").step_by(2).collect();
+    let parts = page.split("<!--").map(|part| part.split_once("-->").map_or(part, |(_, rest)| rest));
+    let shown: String = parts.collect();
+    let unfenced: Vec<&str> = shown.split("```").step_by(2).collect();
     let unmarked: Vec<String> =
         unfenced.iter().map(|text| text.split('`').step_by(2).collect::<Vec<_>>().join(" ")).collect();
     let text = unmarked.join(" ");

@@ -91,8 +91,9 @@ pub(crate) struct Inked {
 }
 
 impl Inked {
-    /// The edges in the colours that the parameters say, `line` where they have one for all.
-    pub(crate) fn new(scope: &mut Scope<'_>, flow: &FlowDog, edges: ImageId, line: [f32; 4]) -> Self {
+    /// The edges in the colours that the parameters say.
+    pub(crate) fn new(scope: &mut Scope<'_>, flow: &FlowDog, edges: ImageId) -> Self {
+        let line = scope.color("line_color");
         let Some(paint) = paint(scope, flow, 1.0, line) else { return Self { edges, paint: None, line } };
         let [r, g, b, _] = line;
         Self { edges: line_fade::pass(scope.plan, edges, paint), paint: Some(paint), line: [r, g, b, 1.0] }

@@ -138,12 +138,7 @@ fn sheet<S: Simd>(simd: S, pass: &CpuPass<'_>, params: &Params, band: &mut Band<
             let [stroke, ..]: [f32x8<S>; 4] = block.read(simd, strokes);
             let height = mix(tooth, stroke.within(zero, one), zero + params.follow);
 
-            let [mut edge, mut bare, blue, share]: [f32x8<S>; 4] = block.read(simd, lines);
-            let paint = [edge, bare, blue];
-            if params.painted != 0 {
-                (edge, bare) = (one - share, one + share);
-            }
-            let line = one - edge.within(zero, one);
+            let ([line, kept], paint) = pen(params, block.read(simd, lines));
             let [mark] = block.read(simd, marks);
             let lightness = tone_lightness(block.read(simd, tones));
             let grained = rise((zero + params.smooth_from - lightness) * params.inverse_fade);
@@ -151,17 +146,9 @@ fn sheet<S: Simd>(simd: S, pass: &CpuPass<'_>, params: &Params, band: &mut Band<
             let dry = (height - 0.55).at_least(zero) * params.dryness;
             let pressed = catches(line, height, zero + params.dryness * params.grain) * (one - dry);
             let grain = grained * params.grain;
-            let kept = one - (one - bare.within(zero, one)) * params.cut;
             let toned = catches(mark, height, grain) * (one - dry * grained) * kept;
-            let mut ink = one - (one - pressed) * (one - toned);
-            let mut of_lines = zero;
-            if params.painted != 0 {
-                ink = one - (one - pressed) * (one - toned * params.line[3]);
-                of_lines = pressed / ink.at_least(LEAST_COVERAGE);
-            } else {
-                ink *= params.line[3];
-            }
-            ink *= alpha;
+            let (ink, of_lines) = inked(params, pressed, toned);
+            let ink = ink * alpha;
 
             // Chalk: the picture's own colours, a little lighter, where the paper catches them.
             let chalk = catches(zero + params.ground, height, grain) * params.colour * alpha;
@@ -186,6 +173,26 @@ fn sheet<S: Simd>(simd: S, pass: &CpuPass<'_>, params: &Params, band: &mut Band<
             write([r, g, b, if params.bare != 0 { covered } else { sheet }], target);
         },
     );
+}
+
+/// Lines of a pixel: how much of it they cover, how much of marks they leave, and their RGB where they have one at each pixel.
+#[inline(always)]
+fn pen<S: Simd>(params: &Params, [r, g, b, share]: [f32x8<S>; 4]) -> ([f32x8<S>; 2], [f32x8<S>; 3]) {
+    let (zero, one) = (f32x8::splat(r.simd, 0.0), f32x8::splat(r.simd, 1.0));
+    let [edge, bare] = if params.painted != 0 { [one - share, one + share] } else { [r, g] };
+    let kept = one - (one - bare.within(zero, one)) * params.cut;
+    ([one - edge.within(zero, one), kept], [r, g, b])
+}
+
+/// Ink of lines and of marks together, and the part of it that is lines where these have a colour at each pixel.
+#[inline(always)]
+fn inked<S: Simd>(params: &Params, lines: f32x8<S>, marks: f32x8<S>) -> (f32x8<S>, f32x8<S>) {
+    let one = f32x8::splat(lines.simd, 1.0);
+    if params.painted == 0 {
+        return ((one - (one - lines) * (one - marks)) * params.line[3], one * 0.0);
+    }
+    let ink = one - (one - lines) * (one - marks * params.line[3]);
+    (ink, lines / ink.at_least(LEAST_COVERAGE))
 }
 
 /// The sheet's own paper: its light, and the depth of its grain, at a place in cells of it.

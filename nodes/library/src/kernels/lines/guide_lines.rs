@@ -147,12 +147,7 @@ fn strength<S: Simd>(
 ) -> f32x8<S> {
     let (zero, one) = (f32x8::splat(simd, 0.0), f32x8::splat(simd, 1.0));
     let has = |bit: u32| params.guides & bit != 0;
-    let steps = if params.scaled == 0 {
-        params.steps
-    } else {
-        // Beyond the cut-off of a pixel weights are 0.
-        ((factor.reduce_max() * widest(&params.halfwidth) + 0.5) as i32).min(params.steps)
-    };
+    let steps = steps(params, factor);
     // Of a step, against the width that is asked for.
     let length = line.step / factor;
     let first = -steps;
@@ -201,13 +196,28 @@ fn strength<S: Simd>(
     }
     // A lone break is the fainter the wider it is smoothed.
     let evened = factor.simd_ge(1.0).select(factor, factor.sqrt());
+    strongest(&sums, params) * evened
+}
+
+/// Steps on each side, beyond which no pixel of the eight has a weight.
+#[inline(always)]
+fn steps<S: Simd>(params: &Params, factor: f32x8<S>) -> i32 {
+    if params.scaled == 0 {
+        return params.steps;
+    }
+    ((factor.reduce_max() * widest(&params.halfwidth) + 0.5) as i32).min(params.steps)
+}
+
+/// Amount of the strongest of the kinds.
+#[inline(always)]
+fn strongest<S: Simd>(sums: &[GuideSums<S>; KINDS], params: &Params) -> f32x8<S> {
     let creases = sums[CREASE].ridge() * params.amount[CREASE];
     let outlines = sums[OUTLINE].ridge() * params.amount[OUTLINE];
-    let mut strongest = creases.at_least(outlines);
-    if has(TELLS) {
-        strongest = strongest.at_least(sums[BORDER].ridge() * params.amount[BORDER]);
+    let strongest = creases.at_least(outlines);
+    if params.guides & TELLS == 0 {
+        return strongest;
     }
-    strongest * evened
+    strongest.at_least(sums[BORDER].ridge() * params.amount[BORDER])
 }
 
 /// 1 where the surfaces at two successive pixels of the line touch, and 0 elsewhere.

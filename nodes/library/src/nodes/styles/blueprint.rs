@@ -115,7 +115,7 @@ fn build(scope: &mut Scope<'_>) -> ImageId {
     let edges = line_sets::gapped(scope, &flow, edges);
     let edges = line_wobble::wavering(scope, edges);
     let line = scope.color("line_color");
-    let inked = Inked::new(scope, &flow, edges, line);
+    let inked = Inked::new(scope, &flow, edges);
     if scope.option::<Show>(SHOW.id) == Show::Lines {
         let source = scope.required("color");
         let drawn = inked.over(scope, source);

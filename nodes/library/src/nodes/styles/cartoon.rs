@@ -189,8 +189,7 @@ fn build(scope: &mut Scope<'_>) -> ImageId {
         [smooth, edges, flat]
     });
 
-    let saturation = scope.float("saturation");
-    let mut rgb = lab_to_rgb::pass(scope.plan, flat, saturation);
+    let mut rgb = lab_to_rgb::pass(scope.plan, flat, scope.float("saturation"));
     let warp = scope.float("warp");
     if warp > 0.0 {
         let sigma = warp_sharpen::SIGMA_W.default_float() * scope.scale();
@@ -199,8 +198,7 @@ fn build(scope: &mut Scope<'_>) -> ImageId {
     let edges = line_sets::tapered(scope, &flow, edges, |scope| lines::oriented(scope, guide_weight));
     let edges = line_sets::gapped(scope, &flow, edges);
     let edges = line_wobble::wavering(scope, edges);
-    let line = scope.color("line_color");
-    let inked = Inked::new(scope, &flow, edges, line);
+    let inked = Inked::new(scope, &flow, edges);
     let drawn = lined(scope, [rgb, smooth], inked, flow.guide_weight);
     let mut drawn = lines::shown(scope, [drawn, rgb, inked.edges], inked.line[3]);
     let sigma_a = scope.float("sigma_a");
