@@ -189,6 +189,9 @@ fn lines_of_things_have_colours_of_their_own() {
     assert!(red(&near, &|_| true) > SIZE.1, "the line between has the colour of the nearer");
     assert_eq!(red(&far, &|at| at % SIZE.0 <= SIZE.0 / 2), 0, "and not that of the farther");
     let without = r##"{"match": "id:1", "line_color": "#ff0000"}"##;
+    let kinds = ["in.exr", "out.exr", "--set", "line_colors=kinds"];
+    succeeds(&mut apply(folder.path(), ("cartoon", without), &kinds));
+    assert!(red(&rgb(&at("out.exr")), &|_| true) > SIZE.1, "all kinds of its lines have it");
     fails(&mut apply(folder.path(), ("watercolor", without), &["in.exr", "out.exr"]), 2, &["line_color"]);
     let none = r#"{"match": "id:1", "line_color": "reddish"}"#;
     fails(

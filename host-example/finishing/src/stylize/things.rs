@@ -14,6 +14,10 @@ const LOOK: &str = "look";
 /// Key of a rule for the colour of lines, and the parameter of styles that it sets.
 const LINE_COLOR: &str = "line_color";
 
+/// Parameter of styles that may draw kinds of lines in colours of their own, and its value where all have one.
+const LINE_COLORS: &str = "line_colors";
+const ONE: &str = "one";
+
 /// True where a rule gives its things a look of their own.
 pub fn has_look(rule: &ObjectRule) -> bool {
     rule.rule.contains_key(LOOK)
@@ -31,6 +35,9 @@ pub fn has_lines(rule: &ObjectRule) -> bool {
 pub fn in_colour(style: Style, rule: &ObjectRule) -> Result<Style> {
     let Some(Value::String(color)) = rule.rule.get(LINE_COLOR) else { return Ok(style) };
     style.set(&Setting { node: None, param: LINE_COLOR.into(), value: color.clone() })?;
+    if style.params().iter().any(|param| param == LINE_COLORS) {
+        style.set(&Setting { node: None, param: LINE_COLORS.into(), value: ONE.into() })?;
+    }
     Ok(style)
 }
 
