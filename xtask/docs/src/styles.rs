@@ -8,7 +8,7 @@ use isophote::value::Value;
 use std::fmt::Write as _;
 
 /// Parameter that is set as well where a control does nothing by itself: node and control, then parameter and value.
-const TOGETHER: [(&str, &str, &str, &str); 31] = [
+const TOGETHER: [(&str, &str, &str, &str); 32] = [
     ("cartoon", "posterize_smooth", "posterize", "6"),
     ("cartoon", "dot_spacing", "dots", "1"),
     // Tones are steps of lightness.
@@ -16,6 +16,7 @@ const TOGETHER: [(&str, &str, &str, &str); 31] = [
     ("cartoon", "exposure", "shading", "light"),
     ("cartoon", "shadow_color", "shading", "light"),
     ("cartoon", "middle_color", "shading", "light"),
+    ("cartoon", "middle_color", "light_steps", "3"),
     ("cartoon", "light_color", "shading", "light"),
     ("coherent", "posterize_smooth", "posterize", "6"),
     ("coherent", "steps", "posterize", "6"),
@@ -93,12 +94,11 @@ pub fn shown(param: &Param) -> String {
     }
 }
 
-/// Parameter and value that are set beside a control.
-fn together(node: &NodeSpec, param: &Param) -> Option<(&'static str, &'static str)> {
-    let (.., other, value) =
-        TOGETHER.iter().find(|(id, control, ..)| (*id, *control) == (node.id, param.id))?;
-    let (_, other) = node.param(other)?;
-    (shown(other) != *value).then_some((other.id, *value))
+/// Parameters and values that are set beside a control.
+fn together(node: &NodeSpec, param: &Param) -> Vec<(&'static str, &'static str)> {
+    let of_control = TOGETHER.iter().filter(|(id, control, ..)| (*id, *control) == (node.id, param.id));
+    let others = of_control.filter_map(|(.., other, value)| Some((node.param(other)?.1, *value)));
+    others.filter(|(other, value)| shown(other) != *value).map(|(other, value)| (other.id, value)).collect()
 }
 
 fn picture(node: &NodeSpec, param: &Param, number: usize) -> String {
@@ -109,7 +109,7 @@ fn picture(node: &NodeSpec, param: &Param, number: usize) -> String {
 pub fn picture_at(node: &NodeSpec, param: &Param, value: &str) -> Option<String> {
     let is_shown = is_style(node) && controls(node).any(|control| control.id == param.id);
     let number = values(param).iter().position(|(known, _)| known == value)?;
-    (is_shown && together(node, param).is_none()).then(|| picture(node, param, number))
+    (is_shown && together(node, param).is_empty()).then(|| picture(node, param, number))
 }
 
 /// The pictures of the page.
@@ -117,7 +117,7 @@ pub fn shots(node: &NodeSpec) -> Vec<Shot> {
     let of_control = |param: &'static Param| {
         values(param).into_iter().enumerate().map(move |(number, (value, _))| {
             let mut set = vec![(param.id, value)];
-            set.extend(together(node, param).map(|(id, value)| (id, value.to_owned())));
+            set.extend(together(node, param).into_iter().map(|(id, value)| (id, value.to_owned())));
             let (name, style) = (picture(node, param, number), Style::Named(node.id.to_owned()));
             Shot { name, subject: Subject::Scene, style, set }
         })
@@ -158,7 +158,7 @@ fn control(text: &mut String, node: &NodeSpec, param: &Param) {
         param.id
     );
     let _ = write!(text, "`{}` unless it is set.", shown(param));
-    if let Some((other, value)) = together(node, param) {
+    for (other, value) in together(node, param) {
         let _ = write!(text, " Shown with `{other}={value}`.");
     }
     text.push_str("\n\n<div class=\"row\">");
