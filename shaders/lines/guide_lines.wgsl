@@ -101,10 +101,11 @@ fn main(@builtin(global_invocation_id) id: vec3u) {
     // Of creases, which lie between two normals, and of outlines: borders of normals, depth and object id.
     var narrow = vec4f(0.0);
     var wide = vec4f(0.0);
-    // Of borders of object ids alone, and weights of the three kinds.
+    var narrow_weights = vec2f(0.0);
+    var wide_weights = vec2f(0.0);
+    // Of borders of object ids alone (narrow, wide), and their weights.
     var touching = vec2f(0.0);
-    var narrow_weights = vec3f(0.0);
-    var wide_weights = vec3f(0.0);
+    var touching_weights = vec2f(0.0);
     for (var k = first; k < steps; k++) {
         let next = place(p, upright, k + 1, slope);
         var found = vec4f(0.0);
@@ -123,31 +124,35 @@ fn main(@builtin(global_invocation_id) id: vec3u) {
             depth_next = after;
             bend_here = bend_next;
         }
-        var border = 0.0;
+        let d = (f32(k) + 0.5) * ds;
         if (params.guides & 4u) != 0u {
             let id_next = id_at(next);
             found.w = select(0.0, 1.0, id_next != id_here);
             id_here = id_next;
-            if (params.guides & 8u) != 0u && found.w > 0.0 && touches(p, upright, k, slope) {
-                // A border is no crease as well.
-                border = found.w;
-                found.w = 0.0;
-                found.x *= 1.0 - border;
+            if (params.guides & 8u) != 0u {
+                let falloff = exp(vec2f(params.narrow.z, params.wide.z) * d * d);
+                let weights = select(vec2f(0.0), falloff, abs(d) <= params.halfwidth.z);
+                touching_weights += weights;
+                if found.w > 0.0 && touches(p, upright, k, slope) {
+                    // A border is neither an outline nor a crease as well.
+                    touching += weights;
+                    found.w = 0.0;
+                    found.x = 0.0;
+                }
             }
         }
-        let d = (f32(k) + 0.5) * ds;
-        let near = abs(vec3f(d)) <= params.halfwidth.xyz;
-        let n = select(vec3f(0.0), exp(params.narrow.xyz * d * d), near);
-        let w = select(vec3f(0.0), exp(params.wide.xyz * d * d), near);
+        let near = abs(vec2f(d)) <= params.halfwidth.xy;
+        let n = select(vec2f(0.0), exp(params.narrow.xy * d * d), near);
+        let w = select(vec2f(0.0), exp(params.wide.xy * d * d), near);
         narrow += n.xyyy * found;
         wide += w.xyyy * found;
-        touching += vec2f(n.z, w.z) * border;
         narrow_weights += n;
         wide_weights += w;
     }
     let ridge = max(narrow / narrow_weights.xyyy - wide / wide_weights.xyyy, vec4f(0.0));
     let outline = max(max(ridge.y, ridge.z), ridge.w);
-    let border = max(touching.x / narrow_weights.z - touching.y / wide_weights.z, 0.0);
+    let densities = touching / max(touching_weights, vec2f(1e-20));
+    let border = max(densities.x - densities.y, 0.0);
     // A lone break is the fainter the wider it is smoothed.
     let evened = select(sqrt(factor), factor, factor >= 1.0);
     let sharp = max(params.amount.x * ridge.x, params.amount.y * outline);
