@@ -247,6 +247,24 @@ fn support_bounds_every_region() {
 }
 
 #[test]
+fn what_is_handed_of_another_level_is_read_as_far_as_from_its_level() {
+    let mut b = PlanBuilder::new(4096, 4096).unwrap();
+    let source = b.input("source", 4, Class::Colour);
+    let coarse = rescale(&mut b, source, 2);
+    let params = BoxParams { radius: 3, gain: 1.0 };
+    let mean = b.pass(&BOX, &[coarse], &params, Class::Colour, Support::Pixels(3));
+    let back = rescale(&mut b, mean, 0);
+    b.output("mean", back);
+    let whole = b.finish().unwrap();
+    let (Support::Pixels(all), Support::Pixels(handed)) =
+        (whole.support(), whole.with_handed(&[coarse]).support())
+    else {
+        panic!("nothing reads everything")
+    };
+    assert!((12..=all).contains(&handed), "{handed} of {all}");
+}
+
+#[test]
 fn an_edit_writes_in_place() {
     let mut plan = plan(40, 30, 1.0);
     let place = plan.passes()[0].params.as_ptr();

@@ -82,6 +82,8 @@ impl Plan {
             if window.x0 <= 0 {
                 return Support::Global;
             }
+            // What was handed to a plan may be of another level.
+            let window = rescale(window, wide.desc(port.image).level, 0);
             halo = halo.max(region.x0 - window.x0).max(window.x1 - region.x1);
             halo = halo.max(region.y0 - window.y0).max(window.y1 - region.y1);
         }
