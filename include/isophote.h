@@ -299,6 +299,9 @@ extern "C" {
 // in alpha: 1 is paper, 0 is ink.
 #define ISOPHOTE_GUIDE_HATCHING 8192
 
+// Bit of `IsophoteRequest::guides` for `line_paint`: colours of lines: that of the line here, as far as it is opaque.
+#define ISOPHOTE_GUIDE_LINE_PAINT 16384
+
 // The host binds its own texture, which shows the window of the picture that the plan names.
 #define ISOPHOTE_ROLE_INPUT 0
 

@@ -164,6 +164,8 @@ pub const ISOPHOTE_GUIDE_PAPER: u32 = 4096;
 /// Bit of `IsophoteRequest::guides` for `hatching`: hatching in up to four tones, the lightest in red and the darkest
 /// in alpha: 1 is paper, 0 is ink.
 pub const ISOPHOTE_GUIDE_HATCHING: u32 = 8192;
+/// Bit of `IsophoteRequest::guides` for `line_paint`: colours of lines: that of the line here, as far as it is opaque.
+pub const ISOPHOTE_GUIDE_LINE_PAINT: u32 = 16384;
 // end of guides
 
 /// Purpose of a texture of a plan. One of `ISOPHOTE_ROLE_...`.

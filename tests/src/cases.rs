@@ -260,7 +260,7 @@ pub fn request_without_rest(kind: Kind, width: u32, height: u32) -> Request {
     Request { guides: Guides { rest_position: false, ..request.guides }, frame: 3, ..request }
 }
 
-/// For nodes that draw on paper or with hatching: their defaults.
+/// For nodes that draw on paper, with hatching or in painted colours: their defaults.
 pub fn on_materials(spec: &NodeSpec) -> Option<Setting> {
     let takes = spec.inputs.iter().any(|port| GraphInput::from_id(port.id).is_some_and(is_material));
     takes.then(|| Setting { label: "on materials".into(), values: Vec::new() })
@@ -272,7 +272,7 @@ pub fn request_on_materials(kind: Kind, width: u32, height: u32) -> Request {
 }
 
 fn is_material(guide: GraphInput) -> bool {
-    matches!(guide, GraphInput::Paper | GraphInput::Hatching)
+    matches!(guide, GraphInput::Paper | GraphInput::Hatching | GraphInput::LinePaint)
 }
 
 /// True when the node has an optional input that is not a picture of the graph's own.

@@ -113,7 +113,9 @@ fn constants(guides: &[Guide]) -> String {
 
 /// The guides that files hold beside the colour: those that renderers draw, then those that people paint.
 fn of_files(guides: &[Guide]) -> String {
-    let is_painted = |guide: &&Guide| matches!(guide.id.as_str(), "flow" | "control" | "paper" | "hatching");
+    let is_painted = |guide: &&Guide| {
+        matches!(guide.id.as_str(), "flow" | "control" | "paper" | "hatching" | "line_paint")
+    };
     let drawn = guides.iter().filter(|guide| !is_painted(guide));
     let mut text = String::new();
     for guide in drawn.chain(guides.iter().filter(is_painted)).filter(|guide| guide.id != "mask") {

@@ -132,7 +132,7 @@ fn drawn(guide: Guide, targets: &Targets) -> Option<&Target> {
         Guide::Motion => Some(&targets.motion),
         Guide::RestPosition => targets.rest.as_ref(),
         Guide::Control => targets.control.as_ref(),
-        Guide::MotionForward | Guide::Flow | Guide::Paper | Guide::Hatching => None,
+        Guide::MotionForward | Guide::Flow | Guide::Paper | Guide::Hatching | Guide::LinePaint => None,
         // They are scene-referred, which pictures of a style are not always.
         Guide::Albedo | Guide::Diffuse | Guide::Specular => None,
     }

@@ -17,6 +17,7 @@ mod farms;
 mod guides;
 mod info;
 mod limits;
+mod line_paint;
 mod looks;
 mod masks;
 mod materials;

@@ -132,6 +132,8 @@ guides! {
     Paper paper ("Paper", Color, 12, Some(11)),
     /// Hatching in up to four tones, the lightest in red and the darkest in alpha: 1 is paper, 0 is ink.
     Hatching hatching ("Hatching", Hatching, 13, Some(12)),
+    /// Colours of lines: that of the line here, as far as it is opaque.
+    LinePaint line_paint ("Line paint", Color, 14, Some(13)),
 }
 
 impl GraphInput {

@@ -88,12 +88,18 @@ impl Scene {
 
     /// The lines of a style alone.
     fn lines(&self, style: &str, settings: &[(&str, &str)]) -> Image {
-        let inputs = [
+        self.painted(style, settings, None)
+    }
+
+    /// The same in the colours that are painted.
+    fn painted(&self, style: &str, settings: &[(&str, &str)], paint: Option<&Image>) -> Image {
+        let known = [
             ("color", &self.color),
             ("normal", &self.normal),
             ("depth", &self.depth),
             ("object_id", &self.id),
         ];
+        let inputs: Vec<_> = known.into_iter().chain(paint.map(|paint| ("line_paint", paint))).collect();
         let plain: &[(&str, &str)] = match style {
             "cartoon" => &[("posterize", "0"), ("sigma_a", "0")],
             "ink" => &[("tone", "0"), ("grain", "0")],
@@ -131,6 +137,34 @@ fn each_kind_has_its_colour_however_smooth_depth_is() {
                 let off = [r, g, b].iter().zip(wanted).map(|(v, w)| (v - w).abs()).fold(0.0, f32::max);
                 assert!(a > 0.3 && off < 0.06, "{style} {param}: {:?}", [r, g, b, a]);
             }
+        }
+    }
+}
+
+#[test]
+fn lines_have_the_colours_that_are_painted_as_far_as_those_are_opaque() {
+    let scene = Scene::new(1);
+    let (green, first) = ([0.0, 0.6, 0.2], 150);
+    // Nothing to the left, then paint, and thin paint over the crease. Colours are multiplied by alpha.
+    let weight = |x: i32| [0.0, 1.0, 0.5][usize::from(x >= first) + usize::from(x >= first + 15)];
+    let paint = picture(SIZE, |x, _| [green[0], green[1], green[2], 1.0].map(|v: f32| v * weight(x)));
+    let nothing = picture(SIZE, |_, _| [0.0; 4]);
+    let kinds = by_kind();
+    for style in STYLES {
+        for settings in [&[][..], &kinds] {
+            let (plain, painted) =
+                (scene.lines(style, settings), scene.painted(style, settings, Some(&paint)));
+            for (param, _, place, upright) in KINDS {
+                let [own, found] = [&plain, &painted].map(|lines| strongest(lines, place, upright));
+                let share = weight(place[0]);
+                let off = (0..3).map(|c| (found[c] - (own[c] + share * (green[c] - own[c]))).abs());
+                let off = off.fold((found[3] - own[3]).abs(), f32::max);
+                assert!(own[3] > 0.3 && off < 0.02, "{style} {param}: {found:?}, and {own:?} by itself");
+            }
+            let unpainted = scene.painted(style, settings, Some(&nothing));
+            let off = plain.data().iter().zip(unpainted.data()).map(|(a, b)| (a - b).abs());
+            let off = off.fold(0.0, f32::max);
+            assert!(off < 1e-5, "{style}: what nobody painted changes by {off}");
         }
     }
 }

@@ -19,6 +19,7 @@ def blueprint(
     object_id: Any = None,
     rest_position: Any = None,
     paper: Any = None,
+    line_paint: Any = None,
     mask: Any = None,
     flow: Any = None,
     motion: Any = None,
@@ -88,6 +89,8 @@ def blueprint(
             wobble of lines moves with things. It is read where `wobble` is above 0.
         paper: A sheet of paper in the place of the style's own: its colours, and its grain, which
             is deep where it is darker than what is around it. It stays on the screen.
+        line_paint: Colours of lines: a line has the colour that is painted where it lies, as far as
+            that is opaque, and its own where nothing is painted.
         mask: How much of the result is used, 0..=1, times `mix`; all of it when open.
         flow: A flow map (see `flow_map`) that bends the orientation which the node follows, if it
             follows any.
@@ -222,6 +225,7 @@ def cartoon(
     albedo: Any = None,
     diffuse: Any = None,
     specular: Any = None,
+    line_paint: Any = None,
     mask: Any = None,
     flow: Any = None,
     motion: Any = None,
@@ -318,6 +322,8 @@ def cartoon(
             colour, such as Blender's DiffDir, is to be multiplied by that of the albedo.
         specular: Light that surfaces mirror, by which highlights are shaped; by all light when
             open.
+        line_paint: Colours of lines: a line has the colour that is painted where it lies, as far as
+            that is opaque, and its own where nothing is painted.
         mask: How much of the result is used, 0..=1, times `mix`; all of it when open.
         flow: A flow map (see `flow_map`) that bends the orientation which the node follows, if it
             follows any.
@@ -926,6 +932,7 @@ def ink(
     rest_position: Any = None,
     paper: Any = None,
     hatching: Any = None,
+    line_paint: Any = None,
     mask: Any = None,
     flow: Any = None,
     motion: Any = None,
@@ -1009,6 +1016,8 @@ def ink(
         hatching: Hatching in the place of the style's own, in up to four tones: the lightest in
             red, then green, blue and alpha; 1 is paper, 0 is ink. A channel that is no darker than
             the one before is no tone. It stays on the screen.
+        line_paint: Colours of lines: a line has the colour that is painted where it lies, as far as
+            that is opaque, and its own where nothing is painted.
         mask: How much of the result is used, 0..=1, times `mix`; all of it when open.
         flow: A flow map (see `flow_map`) that bends the orientation which the node follows, if it
             follows any.

@@ -262,6 +262,7 @@ def apply(
     control: Any = None,
     paper: Any = None,
     hatching: Any = None,
+    line_paint: Any = None,
     out: Any = None,
     frame: int = 0,
     color_space: str = "srgb",
@@ -304,6 +305,7 @@ def apply(
     - `paper`: a sheet of paper: its colours, and its grain, which is deep where it is darker than around; white where
       it is transparent.
     - `hatching`: hatching in up to four tones, the lightest in red and the darkest in alpha: 1 is paper, 0 is ink.
+    - `line_paint`: colours of lines: that of the line here, as far as it is opaque.
 
     Normals have 3 or 4 channels of floats, rest positions 32 bits a channel, and motion goes x right and y down. Paper and
     hatching of another size than the picture's are tiled over it.
@@ -353,6 +355,7 @@ def apply(
         control=control,
         paper=paper,
         hatching=hatching,
+        line_paint=line_paint,
     )
 
 

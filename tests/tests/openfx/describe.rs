@@ -84,12 +84,13 @@ pub fn clips_are_source_and_output_and_in_general_a_mask_and_guides(binary: &Bin
         ("control", "Control"),
         ("paper", "Paper"),
         ("hatching", "Hatching"),
+        ("line_paint", "LinePaint"),
     ] {
         general.extend(takes(port).then_some(clip));
     }
     // What an effect came to take later is its last input: projects store the numbers of the others.
     if ["cartoon", "blueprint"].contains(&node.id) {
-        const LATER: [&str; 5] = ["RestPosition", "Paper", "Albedo", "Diffuse", "Specular"];
+        const LATER: [&str; 6] = ["RestPosition", "Paper", "Albedo", "Diffuse", "Specular", "LinePaint"];
         general.sort_by_key(|clip| LATER.iter().position(|later| later == clip));
     }
     assert_eq!(described.in_context(CONTEXTS[1]).clip_names(), general, "{}", node.id);

@@ -261,7 +261,7 @@ fn sorted(labels: &[String]) -> Vec<&String> {
 }
 
 /// Clips of the effect for looks in the general context.
-const CLIPS: [&str; 16] = [
+const CLIPS: [&str; 17] = [
     "Source",
     "Output",
     "Mask",
@@ -278,6 +278,7 @@ const CLIPS: [&str; 16] = [
     "Control",
     "Paper",
     "Hatching",
+    "LinePaint",
 ];
 
 pub fn the_effect_for_looks_shows_all_that_ships(binary: &Binary) {

@@ -8,15 +8,18 @@ use std::sync::{Mutex, PoisonError};
 
 use isophote_exr_edit::Window;
 
-use super::materials::Laid;
+use super::materials::{Laid, of_guides};
 use super::objects::{self, Covered, Rule};
 use super::painted::Painted;
 use super::tasks::Tasks;
 use isophote_files::error::{Error, Result};
 use isophote_files::frames::{self, Pattern};
+use isophote_pictures::convert::Conversion;
 use isophote_pictures::exr::{self, Guide, MaskSource, OnUnknown, Picture, Selection};
+use isophote_pictures::meaning::Meaning;
 use isophote_pictures::pixels::{Pixels, Samples};
 use isophote_pictures::read::{self, Source, Unread};
+use isophote_pictures::space::Space;
 
 /// Where a mask comes from, and whether what it leaves out is meant.
 #[derive(Clone, Debug)]
@@ -43,9 +46,14 @@ pub struct Masks {
 struct Map {
     kind: &'static Painted,
     place: Place,
+    /// Space that somebody names for the pictures.
+    space: Option<Space>,
     /// The map that all frames have in common.
-    kept: Mutex<Option<(Frame, Pixels)>>,
+    kept: Mutex<Option<(OfMap, Pixels)>>,
 }
+
+/// Place of a map's picture, and the meaning of its numbers where the map has colours.
+type OfMap = (Frame, Option<Meaning>);
 
 #[derive(Debug)]
 struct Mask {
@@ -101,13 +109,14 @@ impl Masks {
         })
     }
 
-    /// The same with painted maps, each of a file, or of one for each frame.
+    /// The same with painted maps, each of a file, or of one for each frame, for pictures in a space that `space` names, or
+    /// that their files say.
     ///
     /// # Errors
     /// As [`Masks::new`].
-    pub fn with_maps(self, paths: &[(&'static Painted, &Path)]) -> Result<Self> {
+    pub fn with_maps(self, paths: &[(&'static Painted, &Path)], space: Option<Space>) -> Result<Self> {
         let map = |(kind, path): &(&'static Painted, &Path)| {
-            Ok(Map { kind, place: Place::of(path)?, kept: Mutex::new(None) })
+            Ok(Map { kind, place: Place::of(path)?, space, kept: Mutex::new(None) })
         };
         Ok(Self { maps: paths.iter().map(map).collect::<Result<_>>()?, ..self })
     }
@@ -171,7 +180,7 @@ impl Masks {
             };
             for map in &self.maps {
                 let id = map.kind.guide.id();
-                match map.of_frame(number, frame) {
+                match map.of_frame(number, frame, &picture.meaning) {
                     Ok(pixels) => {
                         picture.guides.retain(|(name, _)| *name != id);
                         picture.guides.push((id, pixels));
@@ -244,7 +253,7 @@ impl Masks {
 impl Mask {
     /// The mask that a file holds for a picture of this frame.
     fn of_file(&self, path: &Path, frame: Frame) -> Result<Pixels> {
-        of_file(&self.kept, &self.place, frame, || Ok(self.finished(self.read(path, frame)?)))
+        of_file(&self.kept, &self.place, &frame, || Ok(self.finished(self.read(path, frame)?)))
     }
 
     /// Mask in a file, in the size of a picture.
@@ -292,20 +301,22 @@ impl Mask {
 }
 
 impl Map {
-    /// The map of a frame.
-    fn of_frame(&self, number: Option<i64>, frame: Frame) -> Result<Pixels> {
+    /// The map of a frame whose numbers have this meaning.
+    fn of_frame(&self, number: Option<i64>, frame: Frame, meaning: &Meaning) -> Result<Pixels> {
         let path = match &self.place {
             Place::Files(pattern) => pattern.file(number.unwrap_or_default()),
             Place::File(path) => path.clone(),
             Place::Picture => PathBuf::new(),
         };
-        of_file(&self.kept, &self.place, frame, || self.kind.read(&path, frame))
+        let meaning = self.kind.is_colour.then(|| of_guides(meaning, self.space));
+        let of = (frame, meaning);
+        of_file(&self.kept, &self.place, &of, || self.kind.read(&path, frame, of.1.as_ref()))
     }
 }
 
 impl Painted {
-    /// Map in a file, in the size of a picture.
-    fn read(&self, path: &Path, frame: Frame) -> Result<Pixels> {
+    /// Map in a file, in the size of a picture and in colours of this meaning.
+    fn read(&self, path: &Path, frame: Frame, meaning: Option<&Meaning>) -> Result<Pixels> {
         let another = format!("name another {}", self.name);
         let source = read::open(path, &Selection::default())?.decode(path)?;
         let Some(picture) = source.pictures.into_iter().next() else {
@@ -339,26 +350,28 @@ impl Painted {
                 }
             }
         }
-        Pixels::new(window.width as u32, window.height as u32, 4, Samples::F32(map))
-            .ok_or_else(|| Error::file(path, "does not hold as many pixels as it says", another))
+        let map = Pixels::new(window.width as u32, window.height as u32, 4, Samples::F32(map))
+            .ok_or_else(|| Error::file(path, "does not hold as many pixels as it says", another))?;
+        let change = meaning.and_then(|meaning| Conversion::between(&picture.meaning, meaning));
+        Ok(change.map_or_else(|| map.clone(), |change| change.apply(&map).0))
     }
 }
 
 /// Map that a file holds for a picture of this frame: as it was kept, or as it is read, and kept where all frames have it in
 /// common.
-fn of_file(
-    kept: &Mutex<Option<(Frame, Pixels)>>,
+fn of_file<Of: Clone + PartialEq>(
+    kept: &Mutex<Option<(Of, Pixels)>>,
     place: &Place,
-    frame: Frame,
+    of: &Of,
     read: impl FnOnce() -> Result<Pixels>,
 ) -> Result<Pixels> {
     let mut kept = kept.lock().unwrap_or_else(PoisonError::into_inner);
-    if let Some((_, pixels)) = kept.as_ref().filter(|(known, _)| *known == frame) {
+    if let Some((_, pixels)) = kept.as_ref().filter(|(known, _)| known == of) {
         return Ok(pixels.clone());
     }
     let pixels = read()?;
     if matches!(place, Place::File(_)) {
-        *kept = Some((frame, pixels.clone()));
+        *kept = Some((of.clone(), pixels.clone()));
     }
     Ok(pixels)
 }

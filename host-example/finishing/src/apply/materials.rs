@@ -22,6 +22,13 @@ pub fn on_frame(materials: &[Material], size: (u32, u32)) -> Vec<(&'static str, 
     materials.iter().map(over).collect()
 }
 
+/// Meaning of colours beside a picture's own, of which `space` may name the space.
+pub(super) fn of_guides(picture: &Meaning, space: Option<Space>) -> Meaning {
+    let meaning = picture.clone().named(space);
+    let alpha = if meaning.is_premultiplied() { Alpha::Premultiplied } else { Alpha::Straight };
+    Meaning { alpha, data: None, display: None, ..meaning }
+}
+
 /// Tile of the pictures before.
 #[derive(Debug)]
 struct Tile {
@@ -61,10 +68,7 @@ impl Laid {
         let display = picture.meaning.display.unwrap_or(window);
         let scale = display.height as f64 / REFERENCE;
         let scale = [scale / f64::from(picture.meaning.pixel_aspect), scale];
-        let meaning = picture.meaning.clone().named(self.space);
-        let is_premultiplied = meaning.is_premultiplied();
-        let alpha = if is_premultiplied { Alpha::Premultiplied } else { Alpha::Straight };
-        let meaning = Meaning { alpha, data: None, display: None, ..meaning };
+        let meaning = of_guides(&picture.meaning, self.space);
         let corner = [i64::from(window.x) - i64::from(display.x), i64::from(window.y) - i64::from(display.y)];
         let size = (window.width as u32, window.height as u32);
         // What lies left of the corner or above it, or frames that move, need all of the tile.

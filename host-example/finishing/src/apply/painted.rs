@@ -4,7 +4,7 @@
 use isophote_pictures::exr::Guide;
 use isophote_pictures::material::MaterialKind;
 
-/// Kind of map that an artist paints: RGBA, read as it is stored.
+/// Kind of map that an artist paints: RGBA.
 #[derive(Debug)]
 pub struct Painted {
     /// The guide that it is, which is also the option of `isophote apply` that names its files.
@@ -17,18 +17,21 @@ pub struct Painted {
     pub(super) opaque: f32,
     /// True where alpha that is 1 everywhere is that of a file in which nobody painted it.
     pub(super) is_plain_opaque: bool,
+    /// True where its numbers are colours, which it shows as the picture does; all others are read as they are stored.
+    pub(super) is_colour: bool,
     /// What a grey file cannot say.
     pub(super) wanted: &'static str,
 }
 
 /// The kinds of maps.
-pub const PAINTED: [Painted; 2] = [
+pub const PAINTED: [Painted; 3] = [
     Painted {
         guide: Guide::Flow,
         name: "flow map",
         nothing: 0.0,
         opaque: 1.0,
         is_plain_opaque: false,
+        is_colour: false,
         wanted: "is grey, and its red and green are to say where flow leads",
     },
     Painted {
@@ -37,7 +40,17 @@ pub const PAINTED: [Painted; 2] = [
         nothing: 0.5,
         opaque: 0.5,
         is_plain_opaque: true,
+        is_colour: false,
         wanted: "is grey, and its colours are to say what is wanted of detail and lines",
+    },
+    Painted {
+        guide: Guide::LinePaint,
+        name: "line paint",
+        nothing: 0.0,
+        opaque: 1.0,
+        is_plain_opaque: false,
+        is_colour: true,
+        wanted: "is grey, and its colours are to be those of lines",
     },
 ];
 

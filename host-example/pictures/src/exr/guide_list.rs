@@ -77,6 +77,8 @@ guides! {
     Paper "paper" "Paper" Color ISOPHOTE_GUIDE_PAPER,
     /// Hatching in up to four tones, the lightest in red and the darkest in alpha: 1 is paper, 0 is ink.
     Hatching "hatching" "Hatching" Hatching ISOPHOTE_GUIDE_HATCHING,
+    /// Colours of lines: that of the line here, as far as it is opaque.
+    LinePaint "line_paint" "Line paint" Color ISOPHOTE_GUIDE_LINE_PAINT,
     // end of guides
 }
 

@@ -22,6 +22,10 @@ pub struct PaintedArgs {
     /// and alpha of 1 everywhere is none.
     #[arg(long, value_name = "FILE", value_hint = ValueHint::FilePath)]
     pub control: Option<PathBuf>,
+    /// Colours of lines: a picture such as lines.png, or one for each frame (lines.####.exr). A line has the colour that is
+    /// painted where it lies, as far as that is opaque, and its own where nothing is painted.
+    #[arg(long, value_name = "FILE", value_hint = ValueHint::FilePath)]
+    pub line_paint: Option<PathBuf>,
     #[command(flatten)]
     pub materials: MaterialArgs,
 }
@@ -31,6 +35,7 @@ impl PaintedArgs {
     pub fn paths(&self) -> Vec<(&'static Painted, &Path)> {
         let path = |painted: &Painted| match painted.guide {
             Guide::Control => self.control.as_deref(),
+            Guide::LinePaint => self.line_paint.as_deref(),
             _ => self.flow.as_deref(),
         };
         PAINTED.iter().filter_map(|painted| Some((painted, path(painted)?))).collect()

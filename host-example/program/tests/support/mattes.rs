@@ -140,5 +140,5 @@ pub fn rgb(path: &Path) -> Vec<[f32; 3]> {
         channel.expect("a channel").sample_data.values_as_f32().collect()
     };
     let planes = ["R", "G", "B"].map(plane);
-    (0..PIXELS).map(|at| [planes[0][at], planes[1][at], planes[2][at]]).collect()
+    (0..planes[0].len()).map(|at| [planes[0][at], planes[1][at], planes[2][at]]).collect()
 }

@@ -49,7 +49,7 @@ pub fn read(kind: Kind, path: &Path, [file_size, size]: [(u32, u32); 2]) -> Resu
         Kind::Control => {
             let painted = PAINTED.iter().find(|painted| painted.guide == Guide::Control);
             let paths: Vec<_> = painted.map(|painted| (painted, path)).into_iter().collect();
-            Masks::default().with_maps(&paths)?
+            Masks::default().with_maps(&paths, None)?
         }
     };
     let under = Pixels::zeroed(file_size.0, file_size.1, 1, Precision::U8);

@@ -15,7 +15,7 @@ use isophote_loader::Library;
 use isophote_loader::catalogue::Node;
 
 /// Inputs that people make.
-const MADE: [&str; 4] = ["mask", "control", "paper", "hatching"];
+const MADE: [&str; 5] = ["mask", "control", "paper", "hatching", "line_paint"];
 
 /// Those that a look reads; none where it cannot be made.
 fn inputs(look: &EditedLook, library: &Library) -> Vec<&'static str> {
@@ -98,7 +98,7 @@ impl Looks {
         &self.parameters
     }
 
-    /// True where it reads an input that people make: a mask, a control map, paper or hatching.
+    /// True where it reads an input that people make: a mask, a map that they paint, paper or hatching.
     pub fn takes(&self, input: &str) -> bool {
         self.inputs.contains(&input)
     }

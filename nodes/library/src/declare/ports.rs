@@ -23,6 +23,15 @@ pub(crate) const REST_POSITION: Port = Port {
           on screen.",
 };
 
+/// Colours of lines at each pixel.
+pub(crate) const LINE_PAINT: Port = Port {
+    id: "line_paint",
+    kind: ImageKind::Color,
+    optional: true,
+    doc: "Colours of lines: a line has the colour that is painted where it lies, as far as that is opaque, and its own where \
+          nothing is painted.",
+};
+
 /// Paper on which a style draws or paints.
 pub(crate) const PAPER: Port = Port {
     id: "paper",

@@ -2,10 +2,11 @@
 //! touch, for creases and for what is within surfaces, and gaps where a line ends behind a nearer thing.
 
 use crate::declare::choice::choice;
+use crate::declare::ports::LINE_PAINT;
 use crate::declare::spec::{Param, Scope};
 use crate::kernels::colour::composite_lines::{self, Params as Composite};
 use crate::kernels::colour::line_paint::{self, Params as Colours};
-use crate::kernels::colour::painted_lines;
+use crate::kernels::colour::{given_line_paint, painted_lines};
 use crate::kernels::lines::line_taper::{self, Lines};
 use crate::kernels::lines::{line_fade, line_gap, line_kinds, occluders};
 use crate::kernels::smoothing::disc_extremum::{self, Extremum};
@@ -111,8 +112,18 @@ impl Inked {
     }
 }
 
-/// RGB and opacity of lines at each pixel, opacities of kinds times `opacity`; none where they have one colour for all.
+/// RGB and opacity of lines at each pixel, opacities of kinds times `opacity`, in the colours that a host gives where it does;
+/// none where lines have one colour for all.
 pub(crate) fn paint(scope: &mut Scope<'_>, flow: &FlowDog, opacity: f32, line: [f32; 4]) -> Option<ImageId> {
+    let kinds = by_kind(scope, flow, opacity, line);
+    match scope.input(LINE_PAINT.id) {
+        Some(given) => Some(given_line_paint::pass(scope.plan, given, kinds, line)),
+        None => kinds,
+    }
+}
+
+/// RGB and opacity of lines at each pixel by the kind of lines that geometry draws there.
+fn by_kind(scope: &mut Scope<'_>, flow: &FlowDog, opacity: f32, line: [f32; 4]) -> Option<ImageId> {
     if scope.option::<LineColors>(LINE_COLORS.id) == LineColors::One {
         return None;
     }

@@ -427,7 +427,7 @@ impl Beyond {
     pub fn of_guide(guide: GraphInput) -> Self {
         match guide {
             // Beside what they hold there is no object, and nothing is painted.
-            GraphInput::RestPosition | GraphInput::Flow => Self::Zero,
+            GraphInput::RestPosition | GraphInput::Flow | GraphInput::LinePaint => Self::Zero,
             GraphInput::Paper | GraphInput::Hatching => Self::Tiled,
             _ => Self::Edge,
         }

@@ -124,7 +124,8 @@ export type Guide =
   | "specular"
   | "control"
   | "paper"
-  | "hatching";
+  | "hatching"
+  | "line_paint";
 // end of guides
 
 /** A picture: anything that `GPUQueue.copyExternalImageToTexture` takes, or a texture of the same device. */

@@ -74,7 +74,7 @@ impl ApplyArgs {
         let rules = looks.iter().flat_map(|look| &look.style.objects);
         let rules = rules.map(|rule| Rule { control: rule.control, has_lines: things::has_lines(rule) });
         let masks = Masks::new(choices, self.mask_from.as_deref(), self.on_unknown)?;
-        Ok(masks.with_maps(&paths)?.with_materials(laid).with_rules(rules.collect()))
+        Ok(masks.with_maps(&paths, self.space)?.with_materials(laid).with_rules(rules.collect()))
     }
 
     /// The files of motion vectors.
@@ -142,6 +142,7 @@ impl ApplyArgs {
                     | Guide::Control
                     | Guide::Paper
                     | Guide::Hatching
+                    | Guide::LinePaint
                     | Guide::RestPosition
                     | Guide::MotionForward
             );

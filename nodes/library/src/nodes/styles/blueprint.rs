@@ -31,6 +31,7 @@ pub static NODE: NodeSpec = NodeSpec {
         flow_dog::OBJECT_ID,
         line_wobble::REST_POSITION,
         ports::PAPER,
+        ports::LINE_PAINT,
     ],
     output: ports::color_output("The blueprint."),
     own_params: &[

@@ -41,6 +41,7 @@ pub static NODE: NodeSpec = NodeSpec {
         light_steps::ALBEDO,
         light_steps::DIFFUSE,
         light_steps::SPECULAR,
+        ports::LINE_PAINT,
     ],
     output: ports::color_output("The cartoon."),
     own_params: &[

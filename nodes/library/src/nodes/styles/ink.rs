@@ -56,6 +56,7 @@ pub static NODE: NodeSpec = NodeSpec {
         ports::REST_POSITION,
         ports::PAPER,
         ports::HATCHING,
+        ports::LINE_PAINT,
     ],
     output: ports::color_output("The drawing."),
     own_params: &[
