@@ -4,6 +4,8 @@ use std::path::Path;
 
 use crate::support::{self, IN_PIXELS, folder, isophote, listing, succeeds};
 use exr::prelude::read_first_flat_layer_from_file;
+use isophote_files::files::Existing;
+use isophote_pictures::floats;
 
 /// Everything of a rendered frame, in the order of EXR files.
 const CHANNELS: [&str; 28] = [
@@ -283,6 +285,32 @@ fn a_cartoon_reads_the_light_of_a_file_where_it_is_asked_to() {
     let [lit, blind] = [reds("cel.exr", &light), reds("blind.exr", &[&light[..], &none].concat())];
     assert_ne!(lit, blind);
     assert_ne!(blind, plain);
+}
+
+#[test]
+fn light_of_files_of_its_own_counts_as_that_of_layers() {
+    let folder = folder();
+    render(folder.path(), "lit.exr", &["--background", "transparent", "--no-ground"]);
+    let file = folder.path().join("lit.exr");
+    let [layers, names] = [["albedo", "diffuse", "specular"], ["R", "G", "B"]];
+    for layer in layers {
+        let planes = names.map(|name| channel(&read(&file), &format!("{layer}.{name}")));
+        let data = (0..planes[0].len()).flat_map(|at| [0, 1, 2].map(|c| planes[c][at])).collect();
+        let picture = floats::Picture { width: 96, height: 64, channels: 3, data };
+        let path = folder.path().join(format!("{layer}.exr"));
+        floats::save_exr(&path, Existing::Replace, &picture, &names, floats::Precision::Float, (None, None))
+            .expect("it can be written");
+    }
+    let reds = |name: &str, more: &[&str]| {
+        let light = ["cartoon", "lit.exr", name, "--set", "shading=light"];
+        apply(folder.path(), &[&light[..], more].concat());
+        channel(&read(&folder.path().join(name)), "R")
+    };
+    let none = ["--guide", "albedo=none", "--guide", "diffuse=none", "--guide", "specular=none"];
+    let files = ["--albedo", "albedo.exr", "--diffuse", "diffuse.exr", "--specular", "specular.exr"];
+    let layered = reds("layers.exr", &[]);
+    assert_eq!(reds("files.exr", &[&none[..], &files].concat()), layered);
+    assert_ne!(reds("others.exr", &["--diffuse", "specular.exr"]), layered);
 }
 
 /// The light of a gamma-encoded number.

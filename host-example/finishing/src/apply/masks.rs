@@ -183,7 +183,7 @@ impl Masks {
                 match map.of_frame(number, frame, &picture.meaning) {
                     Ok(pixels) => {
                         picture.guides.retain(|(name, _)| *name != id);
-                        picture.guides.push((id, pixels));
+                        picture.guides.push((id, with_alpha_of(&picture.pixels, pixels)));
                     }
                     Err(error @ Error::Failure { .. }) => return Err(error),
                     Err(error) => {
@@ -326,15 +326,18 @@ impl Painted {
         let window = frame.place(own, picture.meaning.display).map_err(|problem| {
             Error::file(path, problem, format!("paint {}s of the picture's size", self.name))
         })?;
-        let channels = picture.pixels.channels() as usize;
-        if channels < 3 {
-            return Err(Error::file(path, self.wanted, "name a picture of colours"));
-        }
-        let numbers = picture.pixels.to_f32();
+        let pixels = match self.wanted {
+            Some(wanted) if picture.pixels.channels() < 3 => {
+                return Err(Error::file(path, wanted, "name a picture of colours"));
+            }
+            _ => in_colours(&picture.pixels),
+        };
+        let (channels, numbers) = (pixels.channels() as usize, pixels.to_f32());
         let is_unpainted = channels == 3
             || self.is_plain_opaque && numbers.chunks_exact(channels).all(|pixel| pixel[channels - 1] >= 1.0);
-        // Beside the map nothing is painted.
-        let mut map = vec![self.nothing; window.width * window.height * 4];
+        // Light without an alpha has that of its picture. Beside the map nothing is painted.
+        let stride = if self.guide.is_light() { channels } else { 4 };
+        let mut map = vec![self.nothing; window.width * window.height * stride];
         for y in 0..window.height {
             for x in 0..window.width {
                 let (column, row) =
@@ -342,19 +345,45 @@ impl Painted {
                 if (0..own.width as i64).contains(&column) && (0..own.height as i64).contains(&row) {
                     let from =
                         &numbers[(row as usize * own.width + column as usize) * channels..][..channels];
-                    let to = &mut map[(y * window.width + x) * 4..][..4];
+                    let to = &mut map[(y * window.width + x) * stride..][..stride];
                     to[..channels].copy_from_slice(from);
-                    if is_unpainted {
+                    if is_unpainted && stride == 4 {
                         to[3] = self.opaque;
                     }
                 }
             }
         }
-        let map = Pixels::new(window.width as u32, window.height as u32, 4, Samples::F32(map))
+        let map = Pixels::new(window.width as u32, window.height as u32, stride as u32, Samples::F32(map))
             .ok_or_else(|| Error::file(path, "does not hold as many pixels as it says", another))?;
         let change = meaning.and_then(|meaning| Conversion::between(&picture.meaning, meaning));
         Ok(change.map_or_else(|| map.clone(), |change| change.apply(&map).0))
     }
+}
+
+/// A map with the alpha of its picture, where it has none.
+fn with_alpha_of(picture: &Pixels, map: Pixels) -> Pixels {
+    let channels = picture.channels() as usize;
+    if map.channels() != 3 || channels != 4 {
+        return map;
+    }
+    let (alpha, colours) = (picture.to_f32().into_iter().skip(3).step_by(channels), map.to_f32());
+    let numbers = colours.as_chunks::<3>().0.iter().zip(alpha).flat_map(|([r, g, b], a)| [*r, *g, *b, a]);
+    // As many samples as the size says.
+    let made = Pixels::new(map.width(), map.height(), 4, Samples::F32(numbers.collect()));
+    made.unwrap_or(map)
+}
+
+/// A picture with three channels of colour, which greys have alike.
+fn in_colours(pixels: &Pixels) -> Pixels {
+    let numbers = pixels.to_f32();
+    let (channels, numbers) = match pixels.channels() {
+        1 => (3, numbers.into_iter().flat_map(|v| [v; 3]).collect()),
+        2 => (4, numbers.as_chunks::<2>().0.iter().flat_map(|[v, a]| [*v, *v, *v, *a]).collect()),
+        _ => return pixels.clone(),
+    };
+    // As many samples as the size says.
+    let made = Pixels::new(pixels.width(), pixels.height(), channels, Samples::F32(numbers));
+    made.unwrap_or_else(|| pixels.clone())
 }
 
 /// Map that a file holds for a picture of this frame: as it was kept, or as it is read, and kept where all frames have it in

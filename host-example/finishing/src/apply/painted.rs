@@ -1,10 +1,10 @@
-//! Guides that artists make: maps that they paint over pictures, with what their numbers are where nothing is painted, and
-//! materials.
+//! Guides that have files of their own: maps that artists paint over pictures, with what their numbers are where nothing is
+//! painted, colours and light of renderers, and materials.
 
 use isophote_pictures::exr::Guide;
 use isophote_pictures::material::MaterialKind;
 
-/// Kind of map that an artist paints: RGBA.
+/// Kind of map that an artist paints, or that a renderer writes: RGBA.
 #[derive(Debug)]
 pub struct Painted {
     /// The guide that it is, which is also the option of `isophote apply` that names its files.
@@ -19,12 +19,12 @@ pub struct Painted {
     pub(super) is_plain_opaque: bool,
     /// True where its numbers are colours, which it shows as the picture does; all others are read as they are stored.
     pub(super) is_colour: bool,
-    /// What a grey file cannot say.
-    pub(super) wanted: &'static str,
+    /// What a grey file cannot say; nothing where grey is a colour as others.
+    pub(super) wanted: Option<&'static str>,
 }
 
 /// The kinds of maps.
-pub const PAINTED: [Painted; 3] = [
+pub const PAINTED: [Painted; 6] = [
     Painted {
         guide: Guide::Flow,
         name: "flow map",
@@ -32,7 +32,7 @@ pub const PAINTED: [Painted; 3] = [
         opaque: 1.0,
         is_plain_opaque: false,
         is_colour: false,
-        wanted: "is grey, and its red and green are to say where flow leads",
+        wanted: Some("is grey, and its red and green are to say where flow leads"),
     },
     Painted {
         guide: Guide::Control,
@@ -41,21 +41,20 @@ pub const PAINTED: [Painted; 3] = [
         opaque: 0.5,
         is_plain_opaque: true,
         is_colour: false,
-        wanted: "is grey, and its colours are to say what is wanted of detail and lines",
+        wanted: Some("is grey, and its colours are to say what is wanted of detail and lines"),
     },
-    Painted {
-        guide: Guide::LinePaint,
-        name: "line paint",
-        nothing: 0.0,
-        opaque: 1.0,
-        is_plain_opaque: false,
-        is_colour: true,
-        wanted: "is grey, and its colours are to be those of lines",
-    },
+    of_colours(Guide::LinePaint, "line paint"),
+    of_colours(Guide::Albedo, "albedo"),
+    of_colours(Guide::Diffuse, "diffuse light"),
+    of_colours(Guide::Specular, "specular light"),
 ];
+
+const fn of_colours(guide: Guide, name: &'static str) -> Painted {
+    Painted { guide, name, nothing: 0.0, opaque: 1.0, is_plain_opaque: false, is_colour: true, wanted: None }
+}
 
 /// True for a guide that artists make, which pictures without layers have, too.
 pub fn is_made_by_hand(guide: Guide) -> bool {
-    PAINTED.iter().any(|painted| painted.guide == guide)
+    PAINTED.iter().any(|painted| painted.guide == guide && !guide.is_light())
         || MaterialKind::ALL.iter().any(|kind| kind.guide() == guide)
 }

@@ -106,7 +106,7 @@ impl Planner {
         let refused = |e: isophote_loader::Error| e.at(name, "choose another picture or style");
         let pixels = u64::from(size.0) * u64::from(size.1);
         let is_counted =
-            |guide: &&Guide| if is_made_by_hand(**guide) { self.painted.contains(guide) } else { has_layers };
+            |guide: &&Guide| self.painted.contains(guide) || has_layers && !is_made_by_hand(**guide);
         let guides = self.guides.iter().filter(is_counted).map(|guide| guide.id());
         // One look is made at a time; what it keeps of frames stays.
         let (mut kept, mut most) = (0, 0);

@@ -1,4 +1,4 @@
-//! Options of maps that artists paint, and of their materials.
+//! Options of maps that artists paint, of colours and light in files of their own, and of materials.
 
 use std::path::{Path, PathBuf};
 
@@ -10,7 +10,7 @@ use isophote_pictures::exr::Guide;
 
 use super::material_args::MaterialArgs;
 
-/// Maps that artists paint, and their materials.
+/// Maps that artists paint, colours and light in files of their own, and materials.
 #[derive(Clone, Debug, Default, Args)]
 pub struct PaintedArgs {
     /// A painted flow map, along which the style draws: a file such as flow.png, or one for each frame (flow.####.exr). Red and
@@ -26,6 +26,15 @@ pub struct PaintedArgs {
     /// painted where it lies, as far as that is opaque, and its own where nothing is painted.
     #[arg(long, value_name = "FILE", value_hint = ValueHint::FilePath)]
     pub line_paint: Option<PathBuf>,
+    /// Colours of surfaces without light, a file or one for each frame (albedo.####.exr), in the place of the layer.
+    #[arg(long, value_name = "FILE", value_hint = ValueHint::FilePath)]
+    pub albedo: Option<PathBuf>,
+    /// Light that surfaces reflect in all directions, in their colours: a file or one for each frame (diffuse.####.exr).
+    #[arg(long, value_name = "FILE", value_hint = ValueHint::FilePath)]
+    pub diffuse: Option<PathBuf>,
+    /// Light that surfaces mirror: a file or one for each frame (specular.####.exr).
+    #[arg(long, value_name = "FILE", value_hint = ValueHint::FilePath)]
+    pub specular: Option<PathBuf>,
     #[command(flatten)]
     pub materials: MaterialArgs,
 }
@@ -36,9 +45,17 @@ impl PaintedArgs {
         let path = |painted: &Painted| match painted.guide {
             Guide::Control => self.control.as_deref(),
             Guide::LinePaint => self.line_paint.as_deref(),
+            Guide::Albedo => self.albedo.as_deref(),
+            Guide::Diffuse => self.diffuse.as_deref(),
+            Guide::Specular => self.specular.as_deref(),
             _ => self.flow.as_deref(),
         };
         PAINTED.iter().filter_map(|painted| Some((painted, path(painted)?))).collect()
+    }
+
+    /// True for a guide that has files of its own.
+    pub fn has(&self, guide: Guide) -> bool {
+        self.paths().iter().any(|(painted, _)| painted.guide == guide)
     }
 
     /// The maps and materials that there are, that of rules for things included.

@@ -131,7 +131,9 @@ impl ApplyArgs {
             _ => {}
         }
         let has = |guide: Guide| {
-            (guide.is_motion() && has_files) || offers.guides.iter().any(|(other, _)| *other == guide)
+            (guide.is_motion() && has_files)
+                || self.painted.has(guide)
+                || offers.guides.iter().any(|(other, _)| *other == guide)
         };
         // Other files than EXR have none; what was left out by hand is not missed, nor what few files have.
         let is_missed = |guide: &Guide| {
