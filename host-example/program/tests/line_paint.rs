@@ -105,7 +105,7 @@ fn paint_comes_by_frame() {
     fails(
         &mut apply(folder.path(), &run),
         2,
-        &["missing.0001.png", "line paints of the frames 1-2 are missing"],
+        &["missing.0001.png", "line paint files of the frames 1-2 are missing"],
     );
 }
 

@@ -139,7 +139,7 @@ impl Masks {
     /// [`Error::Input`] naming files that are missing.
     pub fn check(&self, tasks: Option<&Tasks>) -> Result<()> {
         let masks = self.masks.iter().map(|mask| (&mask.place, "masks".to_owned()));
-        let maps = self.maps.iter().map(|map| (&map.place, format!("{}s", map.kind.name)));
+        let maps = self.maps.iter().map(|map| (&map.place, map.kind.names()));
         for (place, what) in masks.chain(maps) {
             match (place, tasks) {
                 (Place::Files(pattern), Some(tasks)) if !tasks.is_sequence() => {
@@ -324,13 +324,13 @@ impl Painted {
         };
         let own = picture.window();
         let window = frame.place(own, picture.meaning.display).map_err(|problem| {
-            Error::file(path, problem, format!("paint {}s of the picture's size", self.name))
+            Error::file(path, problem, format!("make {} of the picture's size", self.names()))
         })?;
         let pixels = match self.wanted {
             Some(wanted) if picture.pixels.channels() < 3 => {
                 return Err(Error::file(path, wanted, "name a picture of colours"));
             }
-            _ => in_colours(&picture.pixels),
+            _ => in_colours(picture.pixels),
         };
         let (channels, numbers) = (pixels.channels() as usize, pixels.to_f32());
         let is_unpainted = channels == 3
@@ -355,8 +355,10 @@ impl Painted {
         }
         let map = Pixels::new(window.width as u32, window.height as u32, stride as u32, Samples::F32(map))
             .ok_or_else(|| Error::file(path, "does not hold as many pixels as it says", another))?;
-        let change = meaning.and_then(|meaning| Conversion::between(&picture.meaning, meaning));
-        Ok(change.map_or_else(|| map.clone(), |change| change.apply(&map).0))
+        Ok(match meaning.and_then(|meaning| Conversion::between(&picture.meaning, meaning)) {
+            Some(change) => change.apply(&map).0,
+            None => map,
+        })
     }
 }
 
@@ -374,16 +376,14 @@ fn with_alpha_of(picture: &Pixels, map: Pixels) -> Pixels {
 }
 
 /// A picture with three channels of colour, which greys have alike.
-fn in_colours(pixels: &Pixels) -> Pixels {
-    let numbers = pixels.to_f32();
+fn in_colours(pixels: Pixels) -> Pixels {
     let (channels, numbers) = match pixels.channels() {
-        1 => (3, numbers.into_iter().flat_map(|v| [v; 3]).collect()),
-        2 => (4, numbers.as_chunks::<2>().0.iter().flat_map(|[v, a]| [*v, *v, *v, *a]).collect()),
-        _ => return pixels.clone(),
+        1 => (3, pixels.to_f32().into_iter().flat_map(|v| [v; 3]).collect()),
+        2 => (4, pixels.to_f32().as_chunks::<2>().0.iter().flat_map(|[v, a]| [*v, *v, *v, *a]).collect()),
+        _ => return pixels,
     };
     // As many samples as the size says.
-    let made = Pixels::new(pixels.width(), pixels.height(), channels, Samples::F32(numbers));
-    made.unwrap_or_else(|| pixels.clone())
+    Pixels::new(pixels.width(), pixels.height(), channels, Samples::F32(numbers)).unwrap_or(pixels)
 }
 
 /// Map that a file holds for a picture of this frame: as it was kept, or as it is read, and kept where all frames have it in

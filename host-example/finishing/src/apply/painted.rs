@@ -49,6 +49,14 @@ pub const PAINTED: [Painted; 6] = [
     of_colours(Guide::Specular, "specular light"),
 ];
 
+impl Painted {
+    /// For people: several.
+    pub(super) fn names(&self) -> String {
+        let ending = if self.is_colour { " files" } else { "s" };
+        format!("{}{ending}", self.name)
+    }
+}
+
 const fn of_colours(guide: Guide, name: &'static str) -> Painted {
     Painted { guide, name, nothing: 0.0, opaque: 1.0, is_plain_opaque: false, is_colour: true, wanted: None }
 }
