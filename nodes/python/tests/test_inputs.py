@@ -219,6 +219,17 @@ def test_materials_of_any_size_are_tiled(small):
         isophote.apply("watercolor", small, control=paper)
 
 
+def test_lines_have_the_colours_that_are_painted(small):
+    plain = isophote.apply("blueprint", small, grid=0)
+    clear = np.zeros((*small.shape[:2], 4), np.float32)
+    assert np.allclose(isophote.apply("blueprint", small, grid=0, line_paint=clear), plain, atol=1e-5)
+    green = np.zeros(small.shape, np.float32)
+    green[..., 1] = 1
+    painted = isophote.apply("blueprint", small, grid=0, line_paint=green)
+    # Lines were white: red goes where they are, and nothing comes.
+    assert (painted[..., 0] <= plain[..., 0] + 1e-5).all() and (plain[..., 0] - painted[..., 0]).max() > 0.2
+
+
 def test_a_control_map_without_alpha_leaves_the_medium_alone(small):
     """Its alpha is the strength of the medium, and what is missing there changes nothing."""
     plain = isophote.apply("ink", small)

@@ -15,8 +15,8 @@ import isophote
 def stylized(style: Any, params: dict[str, Any], image: Any, guides: dict[str, Any]) -> Any:
     """The result of a style on a batch, a tensor where the batch is.
 
-    Guides are `mask`, pictures without channels, and `control`, `paper` and `hatching`, pictures; None where they are not
-    connected.
+    Guides are `mask`, pictures without channels, and `control`, `paper`, `hatching` and `line_paint`, pictures; None where they
+    are not connected.
     """
     # Arrays in the memory of the tensors: what DLPack hands over is read-only in some versions.
     pictures, result = image.cpu().numpy(), image.cpu().new_empty(image.shape)

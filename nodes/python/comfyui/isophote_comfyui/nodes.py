@@ -22,6 +22,7 @@ _GUIDES = {
         "IMAGE",
         {"tooltip": "Hatching to draw tones with, of any size, dark on white; of several tones, one in each channel."},
     ),
+    "line_paint": ("IMAGE", {"tooltip": "Colours that lines have where they lie: a painting, or the picture itself."}),
 }
 """Inputs beside the pictures, by the names of the library's ports."""
 

@@ -150,6 +150,8 @@ def test_masks_and_control_maps_are_for_all_or_for_each(pack, batch):
     small = tensor(np.tile(np.linspace(0.2, 1, 8)[None, None, :, None], (1, 3, 1, 3)))
     for material in ("paper", "hatching"):
         assert np.abs(run(pack, "isophote_ink", batch, **{material: small}) - plain).mean() > 0.01
+    green = tensor(np.tile(np.array([0.0, 1.0, 0.0]), (1, *shape[1:], 1)))
+    assert np.abs(run(pack, "isophote_ink", batch, line_paint=green) - plain).mean() > 0.01
     assert "optional" in pack.NODE_CLASS_MAPPINGS["isophote_ink"].INPUT_TYPES()
     assert "control" not in pack.NODE_CLASS_MAPPINGS["isophote_gaussian"].INPUT_TYPES()["optional"]
     with pytest.raises(ValueError, match="the mask is 64x32, and the pictures are 120x64"):
