@@ -54,7 +54,9 @@ fn lines_are_red_where_red_is_painted_and_their_own_elsewhere() {
     paint(255).save(at("paint.png")).expect("it can be written");
     for style in ["cartoon", "ink", "blueprint"] {
         succeeds(&mut apply(folder.path(), &[style, "in.png", "plain.png"]));
-        succeeds(&mut apply(folder.path(), &[style, "in.png", "out.png", "--line-paint", "paint.png"]));
+        let run = [style, "in.png", "out.png", "--line-paint", "paint.png"];
+        let (told, _) = succeeds(&mut apply(folder.path(), &run));
+        assert!(told.contains("guides: line_paint from paint.png"), "{told}");
         let (plain, out) = (read(&at("plain.png")), read(&at("out.png")));
         let [own, left, right] = [red(&plain, 20), red(&out, 20), red(&out, 76)];
         assert!(left > own + 60 && right <= own + 8, "{style}: {own}, then {left} and {right}");

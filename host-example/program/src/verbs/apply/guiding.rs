@@ -121,20 +121,18 @@ impl ApplyArgs {
         let is_steady = planner.span(tasks.ready[0].frame)? > 1;
         let is_used = |guide: &Guide| selection.wanted.contains(guide) && (is_steady || !guide.is_motion());
         let has_files = self.motion.is_some();
-        let found =
-            offers.guides.iter().filter(|(guide, _)| is_used(guide) && !(has_files && guide.is_motion()));
+        let is_of_file = |guide: &Guide| (has_files && guide.is_motion()) || self.painted.has(*guide);
+        let found = offers.guides.iter().filter(|(guide, _)| is_used(guide) && !is_of_file(guide));
         let mut parts: Vec<String> =
             found.map(|(guide, channels)| format!("{} from {}", guide.id(), channels.join(", "))).collect();
+        let files = self.painted.paths().into_iter();
+        parts.extend(files.map(|(painted, path)| format!("{} from {}", painted.guide.id(), path.display())));
         match &self.motion {
             Some(_) if self.estimates_motion() => parts.push("motion estimated".into()),
             Some(files) if is_steady => parts.push(format!("motion from {}", files.display())),
             _ => {}
         }
-        let has = |guide: Guide| {
-            (guide.is_motion() && has_files)
-                || self.painted.has(guide)
-                || offers.guides.iter().any(|(other, _)| *other == guide)
-        };
+        let has = |guide: Guide| is_of_file(&guide) || offers.guides.iter().any(|(other, _)| *other == guide);
         // Other files than EXR have none; what was left out by hand is not missed, nor what few files have.
         let is_missed = |guide: &Guide| {
             let is_named = selection.guides.iter().any(|choice| choice.guide == *guide);
