@@ -75,17 +75,17 @@ impl ApplyArgs {
             ("to", Part::Result, self.to.as_deref()),
             ("mask", Part::Frames, mask),
             ("mask_from", Part::Frames, self.mask_from.as_deref()),
-            ("flow", Part::Frames, self.painted.flow.as_deref()),
-            ("control", Part::Frames, self.painted.control.as_deref()),
             ("paper", Part::Style, material(MaterialKind::Paper)),
             ("hatching", Part::Style, material(MaterialKind::Hatching)),
             ("motion", Part::Frames, self.motion.as_deref().filter(|_| !self.estimates_motion())),
         ];
+        let maps = self.painted.paths().into_iter();
+        let maps = maps.map(|(painted, path)| (painted.guide.id(), Part::Frames, Some(path)));
         // Standard input and output have no path.
         let is_path = |path: &&Path| *path != Path::new("-");
         let place =
             |(id, part, path): (_, _, Option<_>)| Some(Place { id, part, path: path.filter(is_path)? });
-        Ok(inputs.chain(others).filter_map(place).collect())
+        Ok(inputs.chain(others).chain(maps).filter_map(place).collect())
     }
 
     /// True where motion is to be found in the pictures themselves.
