@@ -41,6 +41,8 @@ impl Style {
         let mut connect = || -> isophote::Result<()> {
             let node = self.graph.node(0)?;
             let flow = self.graph.add("flow", "optical_flow")?;
+            // As hosts estimate it.
+            self.graph.set_text(flow, "quality", "fast")?;
             self.graph.connect_input(GraphInput::Color, flow, "color")?;
             self.graph.connect(flow, node, "motion")
         };

@@ -73,6 +73,7 @@ pub fn through_the_library(effect: &Expected, window: i32, estimated: bool, time
         for (port, direction) in [("motion", "backward"), ("motion_forward", "forward")] {
             let flow = graph.add(port, "optical_flow").unwrap();
             graph.set_text(flow, "direction", direction).unwrap();
+            graph.set_text(flow, "quality", "fast").unwrap();
             graph.connect_input(GraphInput::Color, flow, "color").unwrap();
             graph.connect(flow, node, port).unwrap();
         }

@@ -15,7 +15,7 @@ use isophote_engine::{ImageId, PlanBuilder};
 crate::declare::choice::choice! {
     /// Effort that is made for precision.
     pub enum Quality {
-        /// At half the resolution, with few steps.
+        /// At half the resolution, with fewer steps.
         Fast ("fast", "Fast"),
         /// At half the resolution.
         Medium ("medium", "Medium"),
@@ -30,16 +30,18 @@ struct Effort {
     finest: i8,
     /// Gauss-Newton steps of a patch.
     search: u32,
-    /// Steps of the refinement at each level.
+    /// Steps of the refinement at each level but the finest.
     refine: u32,
+    /// Steps of the refinement at the finest level, which takes longer than all others.
+    refine_finest: u32,
 }
 
 impl Quality {
     const fn effort(self) -> Effort {
         match self {
-            Self::Fast => Effort { finest: 1, search: 4, refine: 8 },
-            Self::Medium => Effort { finest: 1, search: 8, refine: 24 },
-            Self::Fine => Effort { finest: 0, search: 8, refine: 32 },
+            Self::Fast => Effort { finest: 1, search: 2, refine: 16, refine_finest: 12 },
+            Self::Medium => Effort { finest: 1, search: 8, refine: 24, refine_finest: 24 },
+            Self::Fine => Effort { finest: 0, search: 8, refine: 32, refine_finest: 32 },
         }
     }
 }
@@ -73,7 +75,7 @@ pub fn estimate(plan: &mut PlanBuilder, pictures: [ImageId; 2], quality: Quality
     motion
 }
 
-/// The motion at one level, from that of the next coarser one.
+/// The motion at the level of the pictures, from that at the next coarser one.
 fn at_level(
     plan: &mut PlanBuilder,
     pictures: [ImageId; 2],
@@ -81,11 +83,13 @@ fn at_level(
     effort: &Effort,
     reach: u32,
 ) -> ImageId {
+    let is_finest = plan.desc(pictures[0]).level == effort.finest;
+    let steps = if is_finest { effort.refine_finest } else { effort.refine };
     let start = coarser.map_or(Start::Rest, Start::Field);
     let options = inverse_search::Options { start, steps: effort.search, reach };
     let patches = inverse_search::pass(plan, pictures, &options);
     let motion = patch_vote::pass(plan, pictures, patches, reach);
     let warped = brightness_warp::pass(plan, pictures, motion, reach);
     let derivatives = brightness_derivatives::pass(plan, warped);
-    motion_refine::pass(plan, &motion_refine::Options { motion, derivatives, steps: effort.refine })
+    motion_refine::pass(plan, &motion_refine::Options { motion, derivatives, steps })
 }

@@ -53,6 +53,8 @@ pub fn estimate(graph: &mut Graph) -> isophote::Result<()> {
         }
         let flow = graph.add(&format!("estimated {}", input.id()), "optical_flow")?;
         graph.set_text(flow, "direction", direction)?;
+        // Better vectors make nothing steadier that can be measured.
+        graph.set_text(flow, "quality", "fast")?;
         graph.connect_input(GraphInput::Color, flow, "color")?;
         for reader in readers {
             graph.connect(flow, reader, input.id())?;

@@ -71,7 +71,7 @@ def _with_estimated_motion(style: isophote.Style) -> str:
         for node in readers:
             node.setdefault("inputs", {})[name] = flow
         if readers:
-            inputs, params = {"color": "@color"}, {"direction": direction}
+            inputs, params = {"color": "@color"}, {"direction": direction, "quality": "fast"}
             graph["nodes"].append({"name": flow, "node": "optical_flow", "inputs": inputs, "params": params})
     return json.dumps(graph)
 
