@@ -164,6 +164,21 @@ fn colours_of_a_picture_are_printed_and_kept() {
 }
 
 #[test]
+fn palettes_that_ship_are_named_by_their_ids_for_every_style() {
+    let folder = folder();
+    let folder = folder.path();
+    succeeds(&mut program(folder, &["apply", "palette", "in.png", "set.png", "--set", "palette=terminal"]));
+    succeeds(&mut program(folder, &["apply", "palette", "in.png", "named.png", "--palette", "terminal"]));
+    assert!(fs::read(folder.join("set.png")).unwrap() == fs::read(folder.join("named.png")).unwrap());
+    succeeds(&mut program(folder, &["apply", "cartoon", "in.png", "cartoon.png", "--palette", "blueprint"]));
+    assert_eq!(colours(folder, "cartoon.png").len(), 2);
+    // A file of that name comes first.
+    fs::copy(folder.join("three.gpl"), folder.join("terminal")).unwrap();
+    succeeds(&mut program(folder, &["apply", "palette", "in.png", "file.png", "--palette", "terminal"]));
+    assert_eq!(colours(folder, "file.png"), BTreeSet::from(THREE));
+}
+
+#[test]
 fn larger_palettes_are_reduced_with_a_sentence() {
     let folder = folder();
     let folder = folder.path();
@@ -182,12 +197,22 @@ fn what_cannot_be_is_refused_with_advice() {
     let folder = folder();
     let folder = folder.path();
     fs::write(folder.join("words.txt"), "red and blue").unwrap();
-    let cases: [(&[&str], &[&str]); 8] = [
+    let cases: [(&[&str], &[&str]); 9] = [
         (
             &["apply", "flow_dog", "in.png", "out.png", "--palette", "three.gpl"],
             &["--palette: the style flow_dog draws with no palette", "choose the style palette"],
         ),
-        (&["apply", "palette", "in.png", "out.png", "--palette", "handheld"], &["--set palette=handheld"]),
+        (
+            &["apply", "palette", "in.png", "out.png", "--palette", "greens"],
+            &[
+                "--palette greens: is no file and no palette that ships",
+                "choose from comic, gouache, handheld",
+            ],
+        ),
+        (
+            &["apply", "palette", "in.png", "out.png", "--palette", "handheld", "--palette-count", "3"],
+            &["--palette-count 3: handheld is a palette that ships", "leave it out"],
+        ),
         (&["apply", "palette", "in.png", "out.png", "--palette", "none.gpl"], &["none.gpl: cannot be read"]),
         (&["apply", "palette", "in.png", "out.png", "--palette", "words.txt"], &["line 1, 'red'"]),
         (

@@ -19,11 +19,38 @@ const COLOUR: &str = "color_";
 /// Way to find a style that draws with them.
 const FIX: &str = "choose the style palette, or one that has a node of it";
 
-/// Colours of a file, as many as the node takes.
+/// Colours that nodes `palette` draw in.
+#[derive(Clone, Debug)]
+pub enum Colours {
+    /// Those of a file.
+    Own(Palette),
+    /// Those of a palette that ships, by its id.
+    Shipped(String),
+}
+
+impl Colours {
+    /// Their name.
+    pub fn name(&self) -> &str {
+        match self {
+            Self::Own(palette) => &palette.name,
+            Self::Shipped(id) => id,
+        }
+    }
+
+    /// What is to be said of them.
+    pub fn notes(&self) -> &[String] {
+        match self {
+            Self::Own(palette) => &palette.notes,
+            Self::Shipped(_) => &[],
+        }
+    }
+}
+
+/// Colours of a file, as many as the node takes, or those of a palette that ships, where there is no file of its id.
 ///
 /// # Errors
-/// As [`palette::read`]; [`Error::Input`] for a `count` that the node does not take, and for the id of a palette that ships.
-pub fn read(library: &Library, path: &Path, count: Option<usize>) -> Result<Palette> {
+/// As [`palette::read`]; [`Error::Input`] for a `count` that the node does not take, or of a palette that ships.
+pub fn read(library: &Library, path: &Path, count: Option<usize>) -> Result<Colours> {
     let node = library.find_node(NODE).map_err(|e| e.at("--palette", "use the library of this program"))?;
     let most = node.params.iter().filter(|param| param.id.starts_with(COLOUR)).count();
     if let Some(count) = count.filter(|count| *count > most) {
@@ -34,12 +61,28 @@ pub fn read(library: &Library, path: &Path, count: Option<usize>) -> Result<Pale
             format!("give a number from 2 to {most}"),
         ));
     }
-    if !path.exists() && ships(&node, path) {
-        let (place, id) = (format!("--palette {}", path.display()), path.display());
-        let fix = format!("write `--set {NODE}={id}`");
-        return Err(Error::input(place, "is a palette that ships, and no file", fix));
+    if path.exists() {
+        return palette::read(path, Wanted { count, most }).map(Colours::Own);
     }
-    palette::read(path, Wanted { count, most })
+    let ids = shipped(&node);
+    if let Some(id) = ids.iter().find(|id| path.as_os_str() == id.as_str()) {
+        return match count {
+            None => Ok(Colours::Shipped(id.clone())),
+            Some(count) => {
+                let problem = format!("{id} is a palette that ships, whose number of colours is its own");
+                Err(Error::input(format!("--palette-count {count}"), problem, "leave it out, or name a file"))
+            }
+        };
+    }
+    if path.components().count() == 1 && path.extension().is_none() {
+        let fix = format!("name a file, or choose from {}", ids.join(", "));
+        return Err(Error::input(
+            format!("--palette {}", path.display()),
+            "is no file and no palette that ships",
+            fix,
+        ));
+    }
+    palette::read(path, Wanted { count, most }).map(Colours::Own)
 }
 
 /// True for the parameter by which the node chooses a palette, and colours of one's own as well.
@@ -48,11 +91,14 @@ pub fn chooses(param: &Param) -> bool {
     param.id == NODE && matches!(&param.kind, ParamKind::Choice { options, .. } if has_own(options))
 }
 
-/// True where a path is the id of a palette that ships.
-fn ships(node: &Node, path: &Path) -> bool {
-    let is_meant = |options: &[Choice]| options.iter().any(|option| path.as_os_str() == option.id);
-    let mut choices = node.params.iter().filter(|param| param.id == NODE);
-    choices.any(|param| matches!(&param.kind, ParamKind::Choice { options, .. } if is_meant(options)))
+/// Ids of the palettes that ship.
+fn shipped(node: &Node) -> Vec<String> {
+    let choices = node.params.iter().filter(|param| param.id == NODE);
+    let options = choices.filter_map(|param| match &param.kind {
+        ParamKind::Choice { options, .. } => Some(options),
+        _ => None,
+    });
+    options.flatten().map(|option| option.id.to_string()).filter(|id| id != OWN).collect()
 }
 
 impl Style {
@@ -64,7 +110,7 @@ impl Style {
     pub fn load_in(
         library: &Library,
         name: &Path,
-        palette: Option<&Palette>,
+        palette: Option<&Colours>,
         settings: &[Setting],
     ) -> Result<Self> {
         let Some(palette) = palette else { return Self::load(library, name, settings) };
@@ -78,7 +124,7 @@ impl Style {
     ///
     /// # Errors
     /// As [`Style::colour_by`].
-    pub fn end_in(&mut self, palette: &Palette) -> Result<()> {
+    pub fn end_in(&mut self, palette: &Colours) -> Result<()> {
         let is_masked = self.takes("mask")?;
         let Self { graph, name, kind, .. } = self;
         end_in_palette(graph, *kind, is_masked).map_err(|e| e.at(name, FIX))?;
@@ -89,7 +135,7 @@ impl Style {
     ///
     /// # Errors
     /// [`Error::Input`] where it has no such node.
-    pub fn colour_by(&self, palette: &Palette) -> Result<()> {
+    pub fn colour_by(&self, palette: &Colours) -> Result<()> {
         self.palette_settings(palette)?.iter().try_for_each(|setting| self.set(setting))
     }
 
@@ -97,7 +143,7 @@ impl Style {
     ///
     /// # Errors
     /// [`Error::Input`] where it has no such node.
-    pub fn palette_settings(&self, palette: &Palette) -> Result<Vec<Setting>> {
+    pub fn palette_settings(&self, palette: &Colours) -> Result<Vec<Setting>> {
         let refused = |e: isophote_loader::Error| e.at(&self.name, FIX);
         let mut settings = Vec::new();
         for node in 0..self.graph.count() {
@@ -111,10 +157,15 @@ impl Style {
             let mut set = |param: String, value: String| {
                 settings.push(Setting { node: name.clone(), param, value });
             };
-            set(NODE.into(), OWN.into());
-            set("count".into(), palette.colours.len().to_string());
-            for (number, colour) in (1..).zip(&palette.colours) {
-                set(format!("{COLOUR}{number}"), hex(*colour));
+            match palette {
+                Colours::Own(palette) => {
+                    set(NODE.into(), OWN.into());
+                    set("count".into(), palette.colours.len().to_string());
+                    for (number, colour) in (1..).zip(&palette.colours) {
+                        set(format!("{COLOUR}{number}"), hex(*colour));
+                    }
+                }
+                Colours::Shipped(id) => set(NODE.into(), id.clone()),
             }
         }
         if settings.is_empty() {

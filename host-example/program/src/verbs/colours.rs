@@ -44,7 +44,7 @@ pub fn run(args: &ColoursArgs) -> Result<()> {
         files::check_writable(to, args.force.existing())?;
     }
     let palette = palette::read(&args.file, Wanted { count: args.count.map(usize::from), most: MOST })?;
-    warn_of(&args.file, &palette);
+    warn_of(&args.file, &palette.notes);
     if let Some(to) = &args.output {
         palette::write(to, args.force.existing(), &palette)?;
     }

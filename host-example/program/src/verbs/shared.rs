@@ -10,12 +10,11 @@ use isophote_files::files::Existing;
 use isophote_files::output;
 use isophote_files::replacing::Consent;
 use isophote_finishing::staging::ReadingArgs;
-use isophote_finishing::stylize::palette;
+use isophote_finishing::stylize::palette::{self, Colours};
 use isophote_finishing::stylize::precision::Precision;
 use isophote_finishing::stylize::preset::Lengths;
 use isophote_finishing::stylize::style::Style;
 use isophote_loader::Library;
-use isophote_pictures::palette::Palette;
 use isophote_pictures::pixels::MOST_PIXELS;
 use isophote_scene::Scene;
 
@@ -81,8 +80,8 @@ pub struct PrecisionArgs {
 #[derive(Args, Clone, Debug)]
 pub struct PaletteArgs {
     /// A file whose colours the result has and no others: a palette (.gpl of GIMP, .hex, .ase, .aco, .pal or .json), or a
-    /// picture, such as a strip of colours or a photograph. A style without the node palette gets one at its end; --set
-    /// palette.dither=bayer and the like say how it draws.
+    /// picture, such as a strip of colours or a photograph; or the id of a palette that ships, such as gouache. A style without
+    /// the node palette gets one at its end; --set palette.dither=bayer and the like say how it draws.
     #[arg(long, value_name = "FILE", value_hint = ValueHint::FilePath)]
     pub palette: Option<PathBuf>,
     /// Number of colours that are taken from the palette or found in the picture [default: all of a palette, 8 of a photograph].
@@ -91,21 +90,21 @@ pub struct PaletteArgs {
 }
 
 impl PaletteArgs {
-    /// Reads the colours, where a file is named, and warns of what is to be said of them.
+    /// Reads the colours, where some are named, and warns of what is to be said of them.
     ///
     /// # Errors
     /// As [`palette::read`].
-    pub fn read(&self, library: &Library) -> Result<Option<Palette>> {
+    pub fn read(&self, library: &Library) -> Result<Option<Colours>> {
         let Some(path) = &self.palette else { return Ok(None) };
         let palette = palette::read(library, path, self.palette_count.map(usize::from))?;
-        warn_of(path, &palette);
+        warn_of(path, palette.notes());
         Ok(Some(palette))
     }
 }
 
 /// Warns of what is to be said of a palette.
-pub fn warn_of(path: &Path, palette: &Palette) {
-    for note in &palette.notes {
+pub fn warn_of(path: &Path, notes: &[String]) {
+    for note in notes {
         output::warn(format_args!("{}: {note}", path.display()));
     }
 }

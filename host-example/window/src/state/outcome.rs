@@ -16,9 +16,9 @@ use super::playback::Playback;
 use super::preview::order::Done;
 use super::progress::Progress;
 use isophote_files::error::{Error, Result};
+use isophote_finishing::stylize::palette::Colours;
 use isophote_loader::abi::IsophoteRequest;
 use isophote_pictures::material::MaterialKind;
-use isophote_pictures::palette::Palette;
 use isophote_render::background::Background;
 use isophote_scene::Scene;
 
@@ -67,7 +67,7 @@ pub enum Opened {
     /// Surroundings of a scene with their file.
     Surroundings(Background, PathBuf),
     /// Colours for the look.
-    Palette(Palette),
+    Palette(Colours),
     /// A painted map of a file.
     Map(Kind, PathBuf, Arc<Maps>),
     /// A painted map was saved in a file.

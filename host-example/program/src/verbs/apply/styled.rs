@@ -6,17 +6,17 @@ use super::ApplyArgs;
 use isophote_files::error::{Error, Result};
 use isophote_finishing::apply::filter::MaskedStyle;
 use isophote_finishing::apply::looks::{self, Entry};
+use isophote_finishing::stylize::palette::Colours;
 use isophote_finishing::stylize::style::Style;
 use isophote_finishing::stylize::things;
 use isophote_loader::Library;
-use isophote_pictures::palette::Palette;
 
 /// What files say of the looks. They are read once, since looks are made several times.
 pub(super) struct Written {
     /// The looks of a file; none where there is a style.
     pub entries: Vec<Entry>,
     /// Colours to draw with.
-    palette: Option<Palette>,
+    palette: Option<Colours>,
 }
 
 impl ApplyArgs {
@@ -75,7 +75,7 @@ impl ApplyArgs {
         &self,
         library: &Library,
         name: &Path,
-        palette: Option<&Palette>,
+        palette: Option<&Colours>,
         style: &Style,
     ) -> Result<Vec<MaskedStyle>> {
         let mut own = style.own_looks(library)?;

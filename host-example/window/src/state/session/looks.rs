@@ -10,9 +10,9 @@ use crate::state::looks::Looks;
 use crate::state::notes::Subject;
 use crate::state::resetting::Goal;
 use isophote_files::error::Result;
+use isophote_finishing::stylize::palette::Colours;
 use isophote_finishing::stylize::value::Value;
 use isophote_loader::Library;
-use isophote_pictures::palette::Palette;
 
 impl Session {
     /// The look was saved.
@@ -74,7 +74,7 @@ impl Session {
     }
 
     /// Gives the look the colours of a palette, as one step.
-    pub fn colour_by(&mut self, palette: &Palette) {
+    pub fn colour_by(&mut self, palette: &Colours) {
         let settings = match self.look().style(&self.library) {
             Ok(Some(style)) => style.palette_settings(palette),
             Ok(None) => return,
@@ -88,8 +88,8 @@ impl Session {
                     settings.iter().for_each(|setting| look.take(&parameters, setting));
                 });
                 self.let_go();
-                for note in &palette.notes {
-                    self.notes.say(format!("{} {note}", palette.name));
+                for note in palette.notes() {
+                    self.notes.say(format!("{} {note}", palette.name()));
                 }
             }
             Err(error) => self.notes.complain_of(Subject::Look, &error),
