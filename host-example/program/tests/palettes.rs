@@ -172,10 +172,17 @@ fn palettes_that_ship_are_named_by_their_ids_for_every_style() {
     assert!(fs::read(folder.join("set.png")).unwrap() == fs::read(folder.join("named.png")).unwrap());
     succeeds(&mut program(folder, &["apply", "cartoon", "in.png", "cartoon.png", "--palette", "blueprint"]));
     assert_eq!(colours(folder, "cartoon.png").len(), 2);
-    // A file of that name comes first.
+    // Of a file of that name it is the one that counts, in this folder and on a farm.
     fs::copy(folder.join("three.gpl"), folder.join("terminal")).unwrap();
-    succeeds(&mut program(folder, &["apply", "palette", "in.png", "file.png", "--palette", "terminal"]));
-    assert_eq!(colours(folder, "file.png"), BTreeSet::from(THREE));
+    for (name, is_own) in [("terminal", false), ("./terminal", true)] {
+        succeeds(&mut program(folder, &["apply", "palette", "in.png", "file.png", "--palette", name]));
+        assert_eq!(colours(folder, "file.png") == BTreeSet::from(THREE), is_own, "{name}");
+        fs::copy(folder.join("in.png"), folder.join("in.0001.png")).unwrap();
+        let job =
+            ["farm", "openjd", "--", "apply", "palette", "in.####.png", "out.####.png", "--palette", name];
+        let (job, _) = succeeds(&mut program(folder, &job));
+        assert_eq!(job.contains("--palette=terminal\""), !is_own, "{job}");
+    }
 }
 
 #[test]

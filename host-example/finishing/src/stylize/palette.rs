@@ -46,7 +46,7 @@ impl Colours {
     }
 }
 
-/// Colours of a file, as many as the node takes, or those of a palette that ships, where there is no file of its id.
+/// Colours of a file, as many as the node takes, or those of a palette that ships. Of the two of one name the latter counts.
 ///
 /// # Errors
 /// As [`palette::read`]; [`Error::Input`] for a `count` that the node does not take, or of a palette that ships.
@@ -61,9 +61,6 @@ pub fn read(library: &Library, path: &Path, count: Option<usize>) -> Result<Colo
             format!("give a number from 2 to {most}"),
         ));
     }
-    if path.exists() {
-        return palette::read(path, Wanted { count, most }).map(Colours::Own);
-    }
     let ids = shipped(&node);
     if let Some(id) = ids.iter().find(|id| path.as_os_str() == id.as_str()) {
         return match count {
@@ -74,7 +71,7 @@ pub fn read(library: &Library, path: &Path, count: Option<usize>) -> Result<Colo
             }
         };
     }
-    if path.components().count() == 1 && path.extension().is_none() {
+    if may_be_id(path) && !path.exists() {
         let fix = format!("name a file, or choose from {}", ids.join(", "));
         return Err(Error::input(
             format!("--palette {}", path.display()),
@@ -83,6 +80,18 @@ pub fn read(library: &Library, path: &Path, count: Option<usize>) -> Result<Colo
         ));
     }
     palette::read(path, Wanted { count, most }).map(Colours::Own)
+}
+
+/// True where a name is that of a file, and of no palette that ships.
+pub fn is_file(name: &Path) -> bool {
+    let ids = |library: Library| library.find_node(NODE).map(|node| shipped(&node));
+    let ships = |ids: Vec<String>| ids.iter().any(|id| name.as_os_str() == id.as_str());
+    !may_be_id(name) || !Library::open().is_ok_and(|library| ids(library).is_ok_and(ships))
+}
+
+/// True for a path of one part without an extension.
+fn may_be_id(path: &Path) -> bool {
+    path.components().count() == 1 && path.extension().is_none()
 }
 
 /// True for the parameter by which the node chooses a palette, and colours of one's own as well.

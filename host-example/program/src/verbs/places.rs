@@ -70,7 +70,7 @@ impl ApplyArgs {
                 Some(named.style).filter(|style| self.layered.is_none() && style::is_file(style)),
             ),
             ("layered", Part::Style, self.layered.as_deref()),
-            ("palette", Part::Style, self.palette.palette.as_deref()),
+            ("palette", Part::Style, self.palette.file()),
             (second, Part::Result, named.output.or(named.folder.filter(|_| self.to.is_none()))),
             ("to", Part::Result, self.to.as_deref()),
             ("mask", Part::Frames, mask),

@@ -120,7 +120,7 @@ pub fn run(args: &PresetArgs) -> Result<()> {
     match &args.command {
         PresetCommand::List(args) => list(args),
         PresetCommand::Save(args) => {
-            args.consent().check(&[made(args)], false, || Ok(Inputs::of(&args.palette.palette)))?;
+            args.consent().check(&[made(args)], false, || Ok(Inputs::of(args.palette.file())))?;
             save(&Library::open()?, args)
         }
         PresetCommand::Show { file, frame } => show(&Library::open()?, file, *frame),

@@ -239,7 +239,8 @@ impl RenderArgs {
         let made: Vec<Made<'_>> = results.iter().map(|(_, file)| Made { from: None, to: file }).collect();
         let read = || {
             let named = [Some(self.scene.scene.clone()), self.scene.reading.texture.clone()];
-            let more = [self.staging.surroundings(), Some(self.style.clone()), self.palette.palette.clone()];
+            let palette = self.palette.file().map(Path::to_owned);
+            let more = [self.staging.surroundings(), Some(self.style.clone()), palette];
             let materials = self.materials.files().map(|(_, file)| file.to_owned());
             Ok(Inputs::of(named.into_iter().chain(more).flatten().chain(materials)))
         };

@@ -80,9 +80,9 @@ pub struct PrecisionArgs {
 #[derive(Args, Clone, Debug)]
 pub struct PaletteArgs {
     /// A file whose colours the result has and no others: a palette (.gpl of GIMP, .hex, .ase, .aco, .pal or .json), or a
-    /// picture, such as a strip of colours or a photograph; or the id of a palette that ships, such as gouache. A style without
+    /// picture, such as a strip of colours or a photograph; or one that ships, by its id, such as gouache. A style without
     /// the node palette gets one at its end; --set palette.dither=bayer and the like say how it draws.
-    #[arg(long, value_name = "FILE", value_hint = ValueHint::FilePath)]
+    #[arg(long, value_name = "FILE|NAME", value_hint = ValueHint::FilePath)]
     pub palette: Option<PathBuf>,
     /// Number of colours that are taken from the palette or found in the picture [default: all of a palette, 8 of a photograph].
     #[arg(long, value_name = "N", requires = "palette", value_parser = clap::value_parser!(u16).range(2..))]
@@ -90,6 +90,11 @@ pub struct PaletteArgs {
 }
 
 impl PaletteArgs {
+    /// The file, if one is named: a palette that ships is none.
+    pub fn file(&self) -> Option<&Path> {
+        self.palette.as_deref().filter(|name| palette::is_file(name))
+    }
+
     /// Reads the colours, where some are named, and warns of what is to be said of them.
     ///
     /// # Errors
