@@ -7,6 +7,7 @@ use isophote_example::plan_runner::ALL;
 use isophote_files::error::{AtPlace, Result};
 use isophote_loader::Library;
 use isophote_loader::abi::IsophoteRequest;
+use isophote_pictures::meaning::ImageState;
 use isophote_render::gpu::Gpu;
 use isophote_render::lighting::Lighting;
 use isophote_render::renderer::Renderer;
@@ -18,6 +19,9 @@ use crate::style::Style;
 
 /// Lines of the picture whose pixels are the lengths of a style: pictures of all sizes get the same look.
 const REFERENCE_HEIGHT: u32 = 1080;
+
+/// What styles read and windows show is what was tone-mapped.
+const STATE: ImageState = ImageState::DisplayReferred;
 
 /// A style with what runs it.
 struct Stylized {
@@ -56,7 +60,7 @@ impl Painter {
             renderer.add_control(&scene)?;
             let request = guides::request(&library, size, REFERENCE_HEIGHT)
                 .map_err(|e| e.at("--size", "choose another size"))?;
-            let request = IsophoteRequest { guides: guides::known(renderer.targets()), ..request };
+            let request = IsophoteRequest { guides: guides::known(renderer.targets(), STATE), ..request };
             let kernels = Kernels::new(gpu.device.clone(), gpu.queue.clone());
             let frames = FrameRunner::new(&kernels, &library, style.named(), request)?;
             stylized = Some(Stylized { style, frames });
@@ -91,7 +95,7 @@ impl Painter {
     fn bind(&mut self) -> Result<()> {
         let targets = self.renderer.targets();
         match &mut self.stylized {
-            Some(Stylized { frames, .. }) => frames.bind(&guides::inputs(&targets.color, targets)),
+            Some(Stylized { frames, .. }) => frames.bind(&guides::inputs(targets, STATE)),
             None => Ok(()),
         }
     }

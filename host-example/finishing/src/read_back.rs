@@ -10,6 +10,7 @@ use isophote_loader::catalogue::Kind;
 use isophote_loader::{AsImage, Control, Library};
 use isophote_pictures::exr::Guide;
 use isophote_pictures::floats::Picture;
+use isophote_pictures::meaning::ImageState;
 use isophote_pictures::pixels::{Pixels, Samples};
 use isophote_render::gpu::Gpu;
 use isophote_render::readback::Readback;
@@ -71,8 +72,7 @@ impl ReadBack {
         self.frames.clear();
     }
 
-    /// Reads the frame of a number from the device, as far as the style can use it. `color` is one of the two targets that
-    /// hold colour.
+    /// Reads the frame of a number from the device, with its colour in this state, as far as the style can use it.
     ///
     /// # Errors
     /// [`Error::Failure`] when the device fails.
@@ -80,8 +80,7 @@ impl ReadBack {
         &mut self,
         gpu: &Gpu,
         readback: &mut Readback,
-        color: &Target,
-        targets: &Targets,
+        (targets, state): (&Targets, ImageState),
         number: i64,
     ) -> Result<()> {
         let mut read = |name, target: &Target| {
@@ -90,9 +89,9 @@ impl ReadBack {
             let unequal = || Error::failure("a picture of the renderer has too few pixels", "start again");
             pixels.map(|pixels| (name, pixels)).ok_or_else(unequal)
         };
-        let mut images = vec![read("color", color)?];
+        let mut images = vec![read("color", targets.color_in(state))?];
         for guide in self.processor.guides() {
-            if let Some(target) = drawn(*guide, targets) {
+            if let Some(target) = drawn(*guide, targets, state) {
                 images.push(read(guide.id(), target)?);
             }
         }
@@ -123,8 +122,9 @@ impl ReadBack {
     }
 }
 
-/// The target that holds a guide, if the renderer draws it.
-fn drawn(guide: Guide, targets: &Targets) -> Option<&Target> {
+/// The target that holds a guide beside the colour in this state, if the renderer draws it.
+fn drawn(guide: Guide, targets: &Targets, state: ImageState) -> Option<&Target> {
+    let [albedo, diffuse, specular] = targets.layers_in(state).map_or([None; 3], |layers| layers.map(Some));
     match guide {
         Guide::Normal => Some(&targets.normal),
         Guide::Depth => Some(&targets.depth),
@@ -133,7 +133,8 @@ fn drawn(guide: Guide, targets: &Targets) -> Option<&Target> {
         Guide::RestPosition => targets.rest.as_ref(),
         Guide::Control => targets.control.as_ref(),
         Guide::MotionForward | Guide::Flow | Guide::Paper | Guide::Hatching | Guide::LinePaint => None,
-        // They are scene-referred, which pictures of a style are not always.
-        Guide::Albedo | Guide::Diffuse | Guide::Specular => None,
+        Guide::Albedo => albedo,
+        Guide::Diffuse => diffuse,
+        Guide::Specular => specular,
     }
 }

@@ -15,6 +15,7 @@ use isophote_loader::catalogue::Kind;
 use isophote_pictures::exr::MadeMatte;
 use isophote_pictures::floats::Picture;
 use isophote_pictures::material::Material;
+use isophote_pictures::meaning::ImageState;
 use isophote_pictures::pixels::Pixels;
 use isophote_render::background::Background;
 use isophote_render::gpu::Gpu;
@@ -69,6 +70,13 @@ pub struct Options {
     pub backend: Backend,
     /// Paper and hatching of the style.
     pub materials: Vec<Material>,
+}
+
+impl Options {
+    /// State of the pictures.
+    fn state(&self) -> ImageState {
+        if self.scene_referred { ImageState::SceneReferred } else { ImageState::DisplayReferred }
+    }
 }
 
 /// A scene on a graphics device of its own.
@@ -142,6 +150,11 @@ impl Shot {
         if options.control || reads_control == Some(true) {
             renderer.add_control(&scene)?;
         }
+        let reads_light = style.as_ref().map(|(library, style)| style.reads_light(library)).transpose()?;
+        // What is shown as it is has none, and styles then take it from the picture.
+        if options.layers || reads_light == Some(true) && scene.is_lit() {
+            renderer.add_layers(options.state());
+        }
         let finish = match style {
             None => Finish::Plain,
             Some((library, style)) if options.backend.is_cpu(gpu.is_software()) => {
@@ -153,16 +166,13 @@ impl Shot {
                 let materials = materials::on_frame(&options.materials, options.size);
                 let materials =
                     materials.iter().map(|(name, pixels)| (*name, uploaded(&gpu, pixels))).collect();
-                let stylizer =
-                    Stylizer::on_materials(&kernels, library, style, renderer.targets(), materials)?;
+                let targets = (renderer.targets(), options.state());
+                let stylizer = Stylizer::on_materials(&kernels, library, style, targets, materials)?;
                 Finish::Device(Box::new(stylizer))
             }
         };
         if options.rest_positions || finish.wants_rest_positions()? {
             renderer.add_rest_positions();
-        }
-        if options.layers {
-            renderer.add_layers();
         }
         gpu.check()?;
         let pose = Pose::at_rest(&scene);
@@ -187,11 +197,10 @@ impl Shot {
         Ok(shot)
     }
 
-    /// Lets the style read the colour that is asked for.
+    /// Lets the style read what is rendered.
     fn bind(&mut self) -> Result<()> {
         let targets = self.renderer.targets();
         match &mut self.finish {
-            Finish::Device(stylizer) if self.options.scene_referred => stylizer.bind_scene_referred(targets),
             Finish::Device(stylizer) => stylizer.bind(targets),
             Finish::Plain | Finish::Cpu(_) => Ok(()),
         }
@@ -228,7 +237,7 @@ impl Shot {
         }
         self.encode(number)?;
         let texture = match &mut self.finish {
-            Finish::Plain => &color(self.renderer.targets(), &self.options).texture,
+            Finish::Plain => &self.renderer.targets().color_in(self.options.state()).texture,
             Finish::Device(stylizer) => stylizer.output().texture(),
             Finish::Cpu(style) => return style.picture(progress),
         };
@@ -263,10 +272,9 @@ impl Shot {
             stylizer.encode(&mut encoder, ALL)?;
         }
         self.gpu.queue.submit([encoder.finish()]);
-        let targets = self.renderer.targets();
-        let color = color(targets, &self.options);
+        let targets = (self.renderer.targets(), self.options.state());
         match &mut self.finish {
-            Finish::Cpu(style) => style.take(&self.gpu, &mut self.readback, color, targets, number),
+            Finish::Cpu(style) => style.take(&self.gpu, &mut self.readback, targets, number),
             Finish::Plain | Finish::Device(_) => Ok(()),
         }
     }
@@ -327,11 +335,6 @@ impl Shot {
         self.gpu.queue.submit([encoder.finish()]);
         self.read(|targets| Some(&targets.motion))
     }
-}
-
-/// The colour that is asked for.
-fn color<'t>(targets: &'t Targets, options: &Options) -> &'t Target {
-    if options.scene_referred { &targets.radiance } else { &targets.color }
 }
 
 /// Camera that the pictures are taken from.

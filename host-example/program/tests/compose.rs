@@ -288,6 +288,34 @@ fn a_cartoon_reads_the_light_of_a_file_where_it_is_asked_to() {
 }
 
 #[test]
+fn scenes_are_shaded_by_their_own_light_while_they_are_rendered() {
+    let folder = folder();
+    let scene = ["--background", "transparent", "--no-ground"];
+    let light = ["--style", "toon_shading", "--set", "color_1=#400000", "--set", "highlight=0.5"];
+    render(folder.path(), "lit.exr", &scene);
+    render(folder.path(), "rendered.exr", &[&scene[..], &light, &["--backend", "cpu"]].concat());
+    apply(folder.path(), &[&["toon_shading", "lit.exr", "applied.exr"], &light[2..]].concat());
+    let [rendered, applied] = ["rendered.exr", "applied.exr"].map(|name| read(&folder.path().join(name)));
+    for channel_name in ["R", "G", "B", "A"] {
+        assert_eq!(channel(&rendered, channel_name), channel(&applied, channel_name), "{channel_name}");
+    }
+
+    // What is tone-mapped has the light of what is: sides in the dark have the colour of the first step alone.
+    let shown = |backend: &str| {
+        let name = format!("{backend}.png");
+        render(folder.path(), &name, &[&scene[..], &light, &["--backend", backend, "--no-light"]].concat());
+        image::open(folder.path().join(name)).expect("a picture").to_rgb8().into_raw()
+    };
+    let (cpu, gpu) = (shown("cpu"), shown("gpu"));
+    let apart = cpu.iter().zip(&gpu).filter(|(a, b)| a.abs_diff(**b) > 1).count();
+    assert!(apart * 1000 < cpu.len(), "{apart} of {} differ", cpu.len());
+    let dark = |pixels: &[u8]| {
+        pixels.as_chunks::<3>().0.iter().filter(|[r, g, b]| *r > 20 && *g == 0 && *b == 0).count()
+    };
+    assert!(dark(&cpu) > 100, "{} pixels are in the first step", dark(&cpu));
+}
+
+#[test]
 fn light_of_files_of_its_own_counts_as_that_of_layers() {
     let folder = folder();
     render(folder.path(), "lit.exr", &["--background", "transparent", "--no-ground"]);

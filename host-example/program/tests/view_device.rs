@@ -13,6 +13,7 @@ use std::time::{Duration, Instant};
 use isophote_finishing::apply::backend::Backend;
 use isophote_finishing::stylize::value::Value;
 use isophote_loader::Library;
+use isophote_pictures::transfer::srgb_decode;
 use isophote_render::gpu::Gpu;
 use isophote_scene::Scene;
 use isophote_window::app::{App, Event};
@@ -270,6 +271,38 @@ fn point(x: f32, y: f32) -> impl FnMut(&mut App) -> bool {
     }
 }
 
+/// What is shown at rest, and then what is found under the pointer.
+fn pointed(is_found: impl FnMut(&mut App) -> bool + 'static) -> Vec<(&'static str, Step)> {
+    vec![
+        ("the picture", Box::new(is_at_rest)),
+        ("a moment", Box::new(pause(Duration::from_millis(500)))),
+        ("the pointer on it", Box::new(point(176.0, 200.0))),
+        ("the pixel", Box::new(is_found)),
+    ]
+}
+
+#[test]
+fn a_scene_is_shaded_by_its_own_light() {
+    alone("a_scene_is_shaded_by_its_own_light", |folder| {
+        let mut session = session(folder, &["toon_shading"], SIZE);
+        let scene = Scene::load(&support::cube(folder), None).unwrap();
+        session.show_scene(Scenery::new(scene, Staging::default(), 1.0), None, "scene".into());
+        let steps = session.looks.parameters().iter().find(|parameter| parameter.name == "steps").cloned();
+        session.set(&steps.unwrap(), &Value::Int(1));
+        let is_shaded = |app: &mut App| {
+            let Some(probed) = app.session().probed else { return false };
+            // Its colours times that of the only step, #8a8ab0.
+            let expected =
+                [(0.9, 138), (0.3, 138), (0.1, 176)].map(|(v, b)| v * srgb_decode(b as f32 / 255.0));
+            let shown = probed.shown.expect("the pixel of the look");
+            assert!((0..3).all(|k| (shown[k] - expected[k]).abs() < 0.002), "{shown:?}, not {expected:?}");
+            true
+        };
+        let app = Script::run(session, SIZE, pointed(is_shaded));
+        assert!(app.failure.is_none(), "{:?}", app.failure);
+    });
+}
+
 #[test]
 fn the_pixel_under_the_pointer_is_that_of_the_file_and_there_is_none_beside_the_picture() {
     let name = "the_pixel_under_the_pointer_is_that_of_the_file_and_there_is_none_beside_the_picture";
@@ -291,14 +324,9 @@ fn the_pixel_under_the_pointer_is_that_of_the_file_and_there_is_none_beside_the_
             assert!(probed.lines(true)[0].starts_with(&start), "{}", probed.lines(true)[0]);
             true
         };
-        let steps: Vec<(&'static str, Step)> = vec![
-            ("the picture", Box::new(is_at_rest)),
-            ("a moment", Box::new(pause(Duration::from_millis(500)))),
-            ("the pointer on it", Box::new(point(176.0, 200.0))),
-            ("the pixel", Box::new(is_probed)),
-            ("the pointer above the picture", Box::new(point(176.0, 50.0))),
-            ("no pixel", Box::new(|app| app.session().probed.is_none())),
-        ];
+        let mut steps = pointed(is_probed);
+        steps.push(("the pointer above the picture", Box::new(point(176.0, 50.0))));
+        steps.push(("no pixel", Box::new(|app| app.session().probed.is_none())));
         let app = Script::run(session, SIZE, steps);
         assert!(app.failure.is_none(), "{:?}", app.failure);
     });

@@ -9,12 +9,18 @@ struct Settings {
     behind: vec4f,
 }
 
-@group(0) @binding(0) var radiance: texture_2d<f32>;
-@group(0) @binding(1) var<uniform> settings: Settings;
+@group(0) @binding(0) var<uniform> settings: Settings;
+@group(0) @binding(1) var radiance: texture_2d<f32>;
+@group(0) @binding(2) var diffuse: texture_2d<f32>;
+@group(0) @binding(3) var specular: texture_2d<f32>;
+
+fn corner(index: u32) -> vec4f {
+    return vec4f(vec2f(f32(index & 1u), f32(index >> 1u)) * 4.0 - 1.0, 0.0, 1.0);
+}
 
 @vertex
 fn tone_map_vertex(@builtin(vertex_index) index: u32) -> @builtin(position) vec4f {
-    return vec4f(vec2f(f32(index & 1u), f32(index >> 1u)) * 4.0 - 1.0, 0.0, 1.0);
+    return corner(index);
 }
 
 const COMPRESSION_START = 0.76;
@@ -43,4 +49,28 @@ fn tone_map_fragment(@builtin(position) position: vec4f) -> @location(0) vec4f {
     let alpha = saturate(texel.a);
     let color = max(texel.rgb, vec3f(0.0)) / max(alpha, 1e-4);
     return vec4f(neutral(color * settings.exposure.x) * alpha, alpha) + (1.0 - alpha) * settings.behind;
+}
+
+@vertex
+fn tone_map_light_vertex(@builtin(vertex_index) index: u32) -> @builtin(position) vec4f {
+    return corner(index);
+}
+
+struct Light {
+    @location(0) diffuse: vec4f,
+    @location(1) specular: vec4f,
+}
+
+// Light of surfaces in the share that tone mapping leaves of all light: layers that add up to the radiance add up
+// to its colour.
+@fragment
+fn tone_map_light_fragment(@builtin(position) position: vec4f) -> Light {
+    let place = vec2u(position.xy);
+    let texel = textureLoad(radiance, place, 0);
+    let alpha = select(1.0, max(saturate(texel.a), 1e-4), settings.exposure.y >= 0.5);
+    let whole = max(texel.rgb, vec3f(0.0)) / alpha * settings.exposure.x;
+    let share = select(vec3f(0.0), neutral(whole) / whole, whole > vec3f(0.0)) * settings.exposure.x;
+    let spread = textureLoad(diffuse, place, 0);
+    let mirrored = textureLoad(specular, place, 0);
+    return Light(vec4f(spread.rgb * share, spread.a), vec4f(mirrored.rgb * share, mirrored.a));
 }

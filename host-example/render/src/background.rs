@@ -130,7 +130,7 @@ fn surroundings(
     let module = module(device, "environment", &parts);
     let depth = Some(behind_everything());
     let pipeline =
-        full_screen(device, &pipeline_layout, &module, "environment", COLOR_FORMAT, depth, SAMPLES);
+        full_screen(device, &pipeline_layout, &module, "environment", &[COLOR_FORMAT], depth, SAMPLES);
     let sampler = device.create_sampler(&wgpu::SamplerDescriptor {
         label: Some("environment"),
         // The left edge meets the right one.

@@ -155,7 +155,7 @@ impl Pipelines {
                 &background_layout,
                 &background,
                 "background",
-                COLOR_FORMAT,
+                &[COLOR_FORMAT],
                 Some(behind_everything()),
                 SAMPLES,
             ),
@@ -294,10 +294,11 @@ pub fn full_screen(
     layout: &wgpu::PipelineLayout,
     module: &wgpu::ShaderModule,
     name: &str,
-    format: wgpu::TextureFormat,
+    formats: &[wgpu::TextureFormat],
     depth_stencil: Option<wgpu::DepthStencilState>,
     samples: u32,
 ) -> wgpu::RenderPipeline {
+    let targets: Vec<_> = formats.iter().map(|format| Some((*format).into())).collect();
     device.create_render_pipeline(&wgpu::RenderPipelineDescriptor {
         label: Some(name),
         layout: Some(layout),
@@ -314,7 +315,7 @@ pub fn full_screen(
             module,
             entry_point: Some(&format!("{name}_fragment")),
             compilation_options: Default::default(),
-            targets: &[Some(format.into())],
+            targets: &targets,
         }),
         multiview_mask: None,
         cache: None,

@@ -28,7 +28,8 @@ impl Present {
             bind_group_layouts: &[Some(&layout)],
             immediate_size: 0,
         });
-        let pipeline = pipelines::full_screen(device, &pipeline_layout, &module, "present", format, None, 1);
+        let pipeline =
+            pipelines::full_screen(device, &pipeline_layout, &module, "present", &[format], None, 1);
         Self { layout, pipeline, bound: None }
     }
 

@@ -24,6 +24,7 @@ use crate::upload::GpuPrimitive;
 use crate::visible::Visible;
 use crate::{ground, layouts, lighting, rest, uniforms, upload};
 use isophote_files::error::Result;
+use isophote_pictures::meaning::ImageState;
 use isophote_scene::camera::View;
 use isophote_scene::pose::Pose;
 use isophote_scene::{AlphaMode, Scene};
@@ -142,13 +143,18 @@ impl Renderer {
     /// As [`Renderer::new`]; the old targets then stay.
     pub fn resize(&mut self, size: (u32, u32)) -> Result<()> {
         if size != (self.targets.width, self.targets.height) {
-            let (has_rest, has_layers) = (self.targets.rest.is_some(), self.targets.layers.is_some());
-            self.targets = Targets::new(&self.device, size.0, size.1)?;
-            if has_rest {
+            let new = Targets::new(&self.device, size.0, size.1)?;
+            let old = std::mem::replace(&mut self.targets, new);
+            if old.rest.is_some() {
                 self.add_rest_positions();
             }
-            if has_layers {
-                self.add_layers();
+            if let Some(layers) = old.layers {
+                let is_displayed = layers.displayed.is_some();
+                self.add_layers(if is_displayed {
+                    ImageState::DisplayReferred
+                } else {
+                    ImageState::SceneReferred
+                });
             }
             self.add_control_target();
             if let Some(ground) = &mut self.ground {
@@ -188,10 +194,15 @@ impl Renderer {
         self.targets.control = self.control.as_ref().map(|_| make());
     }
 
-    /// Renders colours of surfaces and their light too from now on, in a pass of their own.
-    pub fn add_layers(&mut self) {
+    /// Renders colours of surfaces and their light too from now on, in a pass of their own, and makes of them those that go with
+    /// the colour in this state.
+    pub fn add_layers(&mut self, state: ImageState) {
         let size = (self.targets.width, self.targets.height);
-        self.targets.layers.get_or_insert_with(|| Layers::new(&self.device, size));
+        let layers = self.targets.layers.get_or_insert_with(|| Layers::new(&self.device, size));
+        if state == ImageState::DisplayReferred {
+            layers.add_displayed(&self.device);
+            self.tone_map.bind(&self.device, &self.targets);
+        }
     }
 
     /// Takes another background from now on. `scene_referred` says that colours are wanted before tone mapping.

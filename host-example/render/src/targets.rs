@@ -2,6 +2,7 @@
 
 use crate::layouts;
 use isophote_files::error::{Error, Result};
+use isophote_pictures::meaning::ImageState;
 
 /// Samples per pixel of the colour pass.
 pub const SAMPLES: u32 = 4;
@@ -71,6 +72,9 @@ pub struct Layers {
     pub diffuse: Target,
     /// Light that is mirrored: highlights and reflections.
     pub specular: Target,
+    /// Diffuse and specular light in the share that tone mapping leaves of the radiance, so that they add up to the colour as
+    /// they do to the radiance. Missing until [`crate::renderer::Renderer::add_layers`] asks for them.
+    pub displayed: Option<[Target; 2]>,
     /// The same before samples are resolved.
     pub(super) multisampled: [Target; 3],
 }
@@ -81,7 +85,15 @@ impl Layers {
         let make = |label, samples| Target::new(device, label, COLOR_FORMAT, samples, size);
         let labels = ["albedo", "diffuse", "specular"];
         let [albedo, diffuse, specular] = labels.map(|label| make(label, 1));
-        Self { albedo, diffuse, specular, multisampled: labels.map(|label| make(label, SAMPLES)) }
+        let multisampled = labels.map(|label| make(label, SAMPLES));
+        Self { albedo, diffuse, specular, displayed: None, multisampled }
+    }
+
+    /// Adds what displays show of light.
+    pub(super) fn add_displayed(&mut self, device: &wgpu::Device) {
+        let size = (self.albedo.texture.width(), self.albedo.texture.height());
+        let make = |label| Target::new(device, label, COLOR_FORMAT, 1, size);
+        self.displayed.get_or_insert_with(|| ["displayed diffuse", "displayed specular"].map(make));
     }
 
     /// Attachments in the order of the shader, which begin with nothing.
@@ -161,5 +173,23 @@ impl Targets {
             width,
             height,
         })
+    }
+
+    /// The colour in a state: before tone mapping, or after it.
+    pub fn color_in(&self, state: ImageState) -> &Target {
+        match state {
+            ImageState::SceneReferred => &self.radiance,
+            ImageState::DisplayReferred => &self.color,
+        }
+    }
+
+    /// Albedo, diffuse and specular light that go with the colour in this state, where they are rendered.
+    pub fn layers_in(&self, state: ImageState) -> Option<[&Target; 3]> {
+        let Layers { albedo, diffuse, specular, displayed, .. } = self.layers.as_ref()?;
+        match (state, displayed) {
+            (ImageState::SceneReferred, _) => Some([albedo, diffuse, specular]),
+            (ImageState::DisplayReferred, Some([diffuse, specular])) => Some([albedo, diffuse, specular]),
+            (ImageState::DisplayReferred, None) => None,
+        }
     }
 }

@@ -3,12 +3,14 @@
 
 use glam::{Mat4, Quat, Vec2, Vec3};
 
+use crate::background::Background;
 use crate::gpu::Gpu;
 use crate::lighting::Lighting;
 use crate::readback::Readback;
 use crate::renderer::Renderer;
 use crate::targets::Target;
 use isophote_pictures::floats::Picture;
+use isophote_pictures::meaning::ImageState;
 use isophote_scene::animation::{Animation, Channel, Interpolation, Property};
 use isophote_scene::camera::View;
 use isophote_scene::model::Projection;
@@ -383,6 +385,39 @@ fn unlit_blended_and_emissive_surfaces_have_their_radiance() {
     });
     assert_eq!(behind, dark);
     assert!(close(&glass, [0, 1, 2].map(|i| 0.25 + 0.75 * empty[i])), "{glass:?} {empty:?}");
+}
+
+#[test]
+fn light_that_is_displayed_adds_up_to_the_colour() {
+    let Some(gpu) = gpu() else { return };
+    let mut scene = scene(vec![square()], vec![Node { mesh: Some(0), ..Node::default() }], vec![]);
+    scene.materials[0].base_color = Vec3::new(0.9, 0.4, 0.02).extend(1.0);
+    for (background, exposure) in [(Background::Sky, 1.0), (Background::Transparent, 6.0)] {
+        let mut renderer = Renderer::new(&gpu.device, &gpu.queue, &scene, (8, 8)).unwrap();
+        renderer.set_background(&background, false).unwrap();
+        renderer.add_layers(ImageState::SceneReferred);
+        assert!(renderer.targets().layers_in(ImageState::DisplayReferred).is_none(), "nobody asked for it");
+        renderer.add_layers(ImageState::DisplayReferred);
+        renderer.resize(SIZE).unwrap();
+        let lighting = Lighting { exposure, ..Lighting::default() };
+        let mut encoder = gpu.device.create_command_encoder(&Default::default());
+        renderer.encode(&mut encoder, &scene, &Pose::at_rest(&scene), &view(), &lighting);
+        gpu.queue.submit([encoder.finish()]);
+        let read = |target: &Target| Readback::default().read(&gpu, &target.texture).unwrap();
+        for state in [ImageState::SceneReferred, ImageState::DisplayReferred] {
+            let [albedo, diffuse, specular] = renderer.targets().layers_in(state).unwrap().map(read);
+            let color = read(renderer.targets().color_in(state));
+            let at = |picture: &Picture, x, y| Vec3::from_slice(&pixel(picture, x, y)[..3]);
+            let (sum, whole) = (at(&diffuse, 32, 24) + at(&specular, 32, 24), at(&color, 32, 24));
+            assert!(
+                (sum - whole).abs().max_element() < 3e-3 * whole.max_element(),
+                "{sum} instead of {whole}"
+            );
+            assert!((at(&albedo, 32, 24) - Vec3::new(0.9, 0.4, 0.02)).abs().max_element() < 1e-3);
+            assert!(whole.min_element() > 0.0 && at(&specular, 32, 24).min_element() > 0.0);
+            assert_eq!((at(&diffuse, 1, 1), at(&albedo, 1, 1)), (Vec3::ZERO, Vec3::ZERO), "the background");
+        }
+    }
 }
 
 #[test]

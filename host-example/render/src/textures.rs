@@ -112,7 +112,7 @@ impl Mipmaps {
             immediate_size: 0,
         });
         let pipeline = |format| {
-            super::pipelines::full_screen(device, &pipeline_layout, &module, "mipmap", format, None, 1)
+            super::pipelines::full_screen(device, &pipeline_layout, &module, "mipmap", &[format], None, 1)
         };
         Self {
             srgb: pipeline(wgpu::TextureFormat::Rgba8UnormSrgb),

@@ -341,6 +341,11 @@ impl Scene {
         self.draws.iter().any(|draw| !self.primitive(draw).control.is_empty())
     }
 
+    /// True where light falls on anything that is visible: all else is shown as it is.
+    pub fn is_lit(&self) -> bool {
+        self.draws.iter().any(|draw| !self.materials[self.primitive(draw).material].unlit)
+    }
+
     /// Index of the animation with this name (case ignored) or number (from 0).
     pub fn find_animation(&self, name: &str) -> Option<usize> {
         self.animations

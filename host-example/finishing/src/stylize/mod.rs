@@ -25,7 +25,8 @@ use isophote_files::error::{AtPlace, Result};
 use isophote_loader::abi::IsophoteRequest;
 use isophote_loader::catalogue::Kind;
 use isophote_loader::{Library, Plan};
-use isophote_render::targets::{Target, Targets};
+use isophote_pictures::meaning::ImageState;
+use isophote_render::targets::Targets;
 
 /// A style for frames of one size, ready to be recorded.
 #[derive(Debug)]
@@ -35,16 +36,19 @@ pub struct Stylizer {
     edited: bool,
     /// Paper and hatching beside what the renderer has.
     materials: Vec<(&'static str, wgpu::TextureView)>,
+    /// State of the renderer's colours that it reads.
+    state: ImageState,
 }
 
 impl Stylizer {
-    /// Makes `style` ready for frames as large as `targets`, with all guides that the renderer has there. `kernels` are
+    /// Makes `style` ready for display-referred frames as large as `targets`, with all guides that the renderer has there. `kernels` are
     /// those of its device.
     ///
     /// # Errors
     /// [`isophote_files::error::Error::Input`] when an input that the style needs is open, [`isophote_files::error::Error::Failure`] when the device refuses.
     pub fn new(kernels: &Arc<Kernels>, library: &Library, style: Style, targets: &Targets) -> Result<Self> {
-        Self::on_materials(kernels, library, style, targets, Vec::new())
+        let state = ImageState::DisplayReferred;
+        Self::on_materials(kernels, library, style, (targets, state), Vec::new())
     }
 
     /// Makes `style` ready for pictures as `request` says. `kernels` are those of the device that they are on.
@@ -58,10 +62,11 @@ impl Stylizer {
         request: IsophoteRequest,
     ) -> Result<Self> {
         let frames = FrameRunner::new(kernels, library, style.named(), request)?;
-        Ok(Self { style, frames, edited: false, materials: Vec::new() })
+        let state = ImageState::DisplayReferred;
+        Ok(Self { style, frames, edited: false, materials: Vec::new(), state })
     }
 
-    /// As [`Stylizer::new`], on materials of the frames' size.
+    /// As [`Stylizer::new`], for frames in one of the two states, on materials of their size. Results are in the same state.
     ///
     /// # Errors
     /// As [`Stylizer::new`].
@@ -69,13 +74,13 @@ impl Stylizer {
         kernels: &Arc<Kernels>,
         library: &Library,
         style: Style,
-        targets: &Targets,
+        (targets, state): (&Targets, ImageState),
         materials: Vec<(&'static str, wgpu::TextureView)>,
     ) -> Result<Self> {
         let usual = frame_request(library, &style, (targets.width, targets.height))?;
         let bits = library.guide_bits(materials.iter().map(|(name, _)| *name)).map_err(refused)?;
-        let request = IsophoteRequest { guides: guides::known(targets) | bits, ..usual };
-        Ok(Self { materials, ..Self::with_request(kernels, library, style, request)? })
+        let request = IsophoteRequest { guides: guides::known(targets, state) | bits, ..usual };
+        Ok(Self { materials, state, ..Self::with_request(kernels, library, style, request)? })
     }
 
     /// Frames before its own that a frame depends on.
@@ -188,21 +193,14 @@ impl Stylizer {
         Ok(())
     }
 
-    /// Reads these targets from now on, with the colour that is display-referred, which must have the size given
-    /// to [`Stylizer::new`]. The same ones again cost nothing.
+    /// Reads these targets from now on, which must have the size given to [`Stylizer::new`]. The same ones again cost nothing.
     ///
     /// # Errors
     /// [`isophote_files::error::Error::Failure`] when they are too small or the device refuses.
     pub fn bind(&mut self, targets: &Targets) -> Result<()> {
-        self.bind_with(&targets.color, targets)
-    }
-
-    /// As [`Stylizer::bind`], with the colour that is scene-referred; so is the result then.
-    ///
-    /// # Errors
-    /// As [`Stylizer::bind`].
-    pub fn bind_scene_referred(&mut self, targets: &Targets) -> Result<()> {
-        self.bind_with(&targets.radiance, targets)
+        let mut inputs = guides::inputs(targets, self.state);
+        inputs.extend(self.materials.iter().map(|(name, view)| (*name, view)));
+        self.frames.bind(&inputs)
     }
 
     /// Reads pictures of these names, as large as was asked for or larger.
@@ -211,12 +209,6 @@ impl Stylizer {
     /// As [`Stylizer::bind`].
     pub fn bind_inputs(&mut self, inputs: &[(&str, &wgpu::TextureView)]) -> Result<()> {
         self.frames.bind(inputs)
-    }
-
-    fn bind_with(&mut self, color: &Target, targets: &Targets) -> Result<()> {
-        let mut inputs = guides::inputs(color, targets);
-        inputs.extend(self.materials.iter().map(|(name, view)| (*name, view)));
-        self.frames.bind(&inputs)
     }
 
     /// Records passes of the style on a frame, [all](isophote_example::plan_runner::ALL) or some; says whether the last is

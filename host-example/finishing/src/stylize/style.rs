@@ -303,6 +303,14 @@ impl Style {
         Ok(guides)
     }
 
+    /// True where it reads colours of surfaces or their light.
+    ///
+    /// # Errors
+    /// As [`Style::usable_guides`].
+    pub fn reads_light(&self, library: &Library) -> Result<bool> {
+        Ok(self.usable_guides(library)?.into_iter().any(Guide::is_light))
+    }
+
     /// False where a node that could shade light in steps is not set to.
     fn shades_light(&self, node: u32, spec: &Node) -> Result<bool> {
         const SHADING: &str = "shading";

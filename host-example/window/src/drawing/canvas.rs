@@ -96,7 +96,8 @@ impl Canvas {
             bind_group_layouts: &[Some(&layout)],
             immediate_size: 0,
         });
-        let pipeline = pipelines::full_screen(device, &pipeline_layout, &module, "canvas", format, None, 1);
+        let pipeline =
+            pipelines::full_screen(device, &pipeline_layout, &module, "canvas", &[format], None, 1);
         let usage = wgpu::BufferUsages::UNIFORM;
         let settings = buffers::filled_buffer(device, "canvas", &[0; 24 * 4], usage);
         Self { layout, pipeline, settings, bound: None, encode: u32::from(!format.is_srgb()) }

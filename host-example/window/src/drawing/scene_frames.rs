@@ -40,6 +40,8 @@ pub struct SceneFrames {
 pub struct Needs {
     /// True where they read rest positions.
     pub rest_positions: bool,
+    /// True where they read colours of surfaces or their light.
+    pub light: bool,
     /// True where they read frames before.
     pub past: bool,
 }
@@ -105,6 +107,7 @@ impl SceneFrames {
         let styles = looks.into_iter().flatten().filter_map(|look| look.style(library).ok().flatten());
         for style in styles {
             needs.past |= library.frames(&style.graph).is_ok_and(|frames| frames != [0, 0]);
+            needs.light |= style.reads_light(library).is_ok_and(|reads| reads);
             needs.rest_positions |= style.can_use(Kind::Position).is_ok_and(|can| can);
         }
         self.needs = Some((looks.map(Option::<&EditedLook>::cloned), needs));

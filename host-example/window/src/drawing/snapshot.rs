@@ -8,6 +8,7 @@ use crate::state::document::frame::{Frame, GuideImage};
 use isophote_files::error::{Error, Result};
 use isophote_finishing::apply::picture_request::PictureRequest;
 use isophote_pictures::exr::Guide;
+use isophote_pictures::meaning::ImageState;
 use isophote_pictures::space::Space;
 use isophote_render::gpu::Gpu;
 use isophote_render::readback::decode;
@@ -64,6 +65,9 @@ impl<F: PartialEq> Snapshots<F> {
         ];
         guides.extend(targets.rest.iter().map(|rest| (Guide::RestPosition, copied(rest))));
         guides.extend(targets.control.iter().map(|control| (Guide::Control, copied(control))));
+        let light = targets.layers_in(ImageState::DisplayReferred).into_iter().flatten();
+        let names = [Guide::Albedo, Guide::Diffuse, Guide::Specular];
+        guides.extend(names.into_iter().zip(light).map(|(guide, target)| (guide, copied(target))));
         let color = copied(&targets.color);
         gpu.queue.submit([encoder.finish()]);
         for buffer in guides.iter().map(|(_, buffer)| buffer).chain([&color]) {

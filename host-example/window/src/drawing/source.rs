@@ -9,6 +9,7 @@ use isophote_example::guides;
 use isophote_files::error::Result;
 use isophote_finishing::stylize::Stylizer;
 use isophote_loader::abi::{ISOPHOTE_SPACE_LINEAR, IsophoteRequest};
+use isophote_pictures::meaning::ImageState;
 use isophote_render::background::Background;
 use isophote_render::gpu::Gpu;
 use isophote_render::lighting::Lighting as Light;
@@ -107,7 +108,7 @@ impl SceneSource {
             width: targets.width,
             height: targets.height,
             space: ISOPHOTE_SPACE_LINEAR,
-            guides: guides::known(targets),
+            guides: guides::known(targets, ImageState::DisplayReferred),
             ..self.usual
         }
     }
@@ -116,6 +117,16 @@ impl SceneSource {
     pub fn add_rest_positions(&mut self) -> bool {
         let is_new = self.renderer.targets().rest.is_none();
         self.renderer.add_rest_positions();
+        is_new
+    }
+
+    /// Renders colours of surfaces and their light too from now on, where there is any; says whether they are new, and requests
+    /// others then.
+    pub fn add_light(&mut self) -> bool {
+        let is_new = self.renderer.targets().layers.is_none() && self.scene.is_lit();
+        if is_new {
+            self.renderer.add_layers(ImageState::DisplayReferred);
+        }
         is_new
     }
 

@@ -207,6 +207,12 @@ impl Stage {
             Ok(true) => self.looks.iter_mut().for_each(LiveLook::unbind),
             Err(problem) => problems.push((Subject::Other, problem)),
         }
+        if self.needs.light
+            && let Some(LookInput::Scene(source)) = self.sources.present_mut()
+            && source.add_light()
+        {
+            self.looks.iter_mut().for_each(LiveLook::unbind);
+        }
         if on_cpu {
             problems.extend(self.follow_on_cpu(session)?);
             self.gpu.check()?;

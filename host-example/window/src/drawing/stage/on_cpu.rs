@@ -42,7 +42,7 @@ impl Stage {
 
     /// Finds what looks need of a scene.
     pub(super) fn follow_needs(&mut self, session: &Session) -> Result<()> {
-        if self.processed.is_some() && session.open.scenery().is_some() {
+        if session.open.scenery().is_some() {
             let looks = looks(session)?;
             self.needs = self.frames.needs(&session.library, looks.each_ref().map(Option::as_ref));
         }
