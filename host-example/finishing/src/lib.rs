@@ -8,6 +8,7 @@
 //! | [`sheet`] | contact sheets |
 //! | [`processor`] | styles on frames in main memory, computed on the CPU |
 //! | [`read_back`] | the same on frames that are read back from a renderer |
+//! | [`directed`] | rules of a preset for the things of a scene, on such frames |
 //! | [`shot`] | frames of a scene, rendered and stylized |
 //! | [`staging`] | options of scenes, as command lines have them |
 //! | [`writing`] | options of files that are written, as command lines have them |
@@ -18,6 +19,7 @@
 
 pub mod apply;
 pub mod carry;
+pub mod directed;
 pub mod naming;
 mod options;
 pub mod processor;

@@ -2,6 +2,7 @@
 
 use std::collections::VecDeque;
 
+use crate::directed::{Directed, Followed};
 use crate::processor::Processor;
 use crate::stylize::frame_request;
 use crate::stylize::style::Style;
@@ -21,6 +22,8 @@ use isophote_render::targets::{Target, Targets};
 pub struct ReadBack {
     library: Library,
     processor: Processor,
+    /// Rules for things of the scene, if there are any.
+    directed: Option<Directed>,
     /// The last frame that was drawn at the end, and those before that it depends on.
     frames: VecDeque<Drawn>,
     /// Paper and hatching that all frames lie on.
@@ -33,16 +36,18 @@ struct Drawn {
     number: i64,
     size: (u32, u32),
     images: Vec<(&'static str, Pixels)>,
+    /// By rule for things, where its look is.
+    masks: Vec<Pixels>,
 }
 
 impl ReadBack {
-    /// A style on frames of one shot.
+    /// A style on frames of one shot, with rules for its things.
     ///
     /// # Errors
     /// As [`Processor::new`].
-    pub fn new(library: &Library, style: Style) -> Result<Self> {
-        let processor = Processor::new(library, style)?;
-        Ok(Self { library: library.clone(), processor, frames: VecDeque::new(), materials: Vec::new() })
+    pub fn new(library: &Library, style: Style, directed: Option<Directed>) -> Result<Self> {
+        let (library, processor) = (library.clone(), Processor::new(library, style)?);
+        Ok(Self { library, processor, directed, frames: VecDeque::new(), materials: Vec::new() })
     }
 
     /// The same on materials of the frames' size.
@@ -56,7 +61,17 @@ impl ReadBack {
     /// # Errors
     /// As [`Processor::depth`].
     pub fn depth(&self) -> Result<usize> {
-        self.processor.depth()
+        self.processors().try_fold(0, |depth, processor| Ok(processor.depth()?.max(depth)))
+    }
+
+    /// The style, and looks that rules give to things.
+    fn processors(&self) -> impl Iterator<Item = &Processor> {
+        std::iter::once(&self.processor).chain(self.directed.iter().flat_map(Directed::looks))
+    }
+
+    /// Rules for things of the scene, which [follow](Self::follow) each frame that is taken.
+    pub fn directed(&self) -> Option<&Directed> {
+        self.directed.as_ref()
     }
 
     /// True where the renderer must [add rest positions](isophote_render::renderer::Renderer::add_rest_positions).
@@ -64,7 +79,8 @@ impl ReadBack {
     /// # Errors
     /// As [`Style::can_use`].
     pub fn wants_rest_positions(&self) -> Result<bool> {
-        self.processor.style().can_use(Kind::Position)
+        self.processors()
+            .try_fold(false, |wants, processor| Ok(wants | processor.style().can_use(Kind::Position)?))
     }
 
     /// Takes the next frame for the first: those before are of another shot.
@@ -90,15 +106,36 @@ impl ReadBack {
             pixels.map(|pixels| (name, pixels)).ok_or_else(unequal)
         };
         let mut images = vec![read("color", targets.color_in(state))?];
-        for guide in self.processor.guides() {
-            if let Some(target) = drawn(*guide, targets, state) {
+        for guide in Guide::ALL {
+            // Lines between things follow the nearer one.
+            let is_wanted = guide == Guide::Depth && self.directed.is_some()
+                || self.processors().any(|processor| processor.guides().contains(&guide));
+            if let Some(target) = drawn(guide, targets, state).filter(|_| is_wanted) {
                 images.push(read(guide.id(), target)?);
             }
         }
-        self.frames.push_back(Drawn { number, size: (targets.width, targets.height), images });
+        let size = (targets.width, targets.height);
+        self.frames.push_back(Drawn { number, size, images, masks: Vec::new() });
         let most = self.depth()? + 1;
         self.frames.drain(..self.frames.len().saturating_sub(most));
         Ok(())
+    }
+
+    /// Lets the rules direct the frame that was taken last, whose things they are for cover so much of it.
+    pub fn follow(&mut self, coverage: &[Vec<f32>]) {
+        let (Some(directed), Some(own)) = (&self.directed, self.frames.back_mut()) else { return };
+        let numbers = |guide: Guide| {
+            let image = own.images.iter().find(|(name, _)| *name == guide.id());
+            image.map(|(_, pixels)| pixels.to_f32())
+        };
+        let (painted, depth) = (numbers(Guide::Control), numbers(Guide::Depth));
+        let Followed { control, masks } =
+            directed.follow(coverage, own.size, painted.as_deref(), depth.as_deref());
+        own.masks = masks;
+        if let Some(control) = control {
+            own.images.retain(|(name, _)| *name != Guide::Control.id());
+            own.images.push((Guide::Control.id(), control));
+        }
     }
 
     /// The frame that was taken last in the style; `progress` is told the share of it that is done.
@@ -108,15 +145,27 @@ impl ReadBack {
     pub fn picture(&mut self, progress: &mut dyn FnMut(f32)) -> Result<Picture> {
         let nothing = || Error::failure("no frame was drawn", "start again");
         let own = self.frames.back().ok_or_else(nothing)?;
-        let usual = frame_request(&self.library, self.processor.style(), own.size)?;
-        let request = isophote_loader::abi::IsophoteRequest { frame: own.number, ..usual };
         let image = |name: &str, number: i64| {
             let frame = self.frames.iter().find(|frame| frame.number == number)?;
             let mut images = frame.images.iter().chain(&self.materials);
             images.find(|(known, _)| *known == name).map(|(_, pixels)| pixels.image())
         };
-        let mut control = Control { progress: Some(progress), ..Control::default() };
-        let pixels = self.processor.process(&request, &image, &mut control)?.ok_or_else(nothing)?;
+        let count = 1 + self.directed.iter().flat_map(Directed::looks).count();
+        let mut done = 0;
+        let library = &self.library;
+        let mut process = |processor: &mut Processor| {
+            let usual = frame_request(library, processor.style(), own.size)?;
+            let request = isophote_loader::abi::IsophoteRequest { frame: own.number, ..usual };
+            let mut report = |share: f32| progress((done as f32 + share) / count as f32);
+            let mut control = Control { progress: Some(&mut report), ..Control::default() };
+            let pixels = processor.process(&request, &image, &mut control)?;
+            done += 1;
+            Ok(pixels)
+        };
+        let mut pixels = process(&mut self.processor)?.ok_or_else(nothing)?;
+        if let Some(directed) = &mut self.directed {
+            pixels = directed.lay_over(pixels, &own.masks, process)?.ok_or_else(nothing)?;
+        }
         let (width, height, channels) = (pixels.width(), pixels.height(), pixels.channels() as usize);
         Ok(Picture { width, height, channels, data: pixels.to_f32() })
     }

@@ -4,6 +4,8 @@ use std::f32::consts::TAU;
 
 use crate::apply::backend::Backend;
 use crate::apply::materials;
+use crate::directed::Directed;
+use crate::processor::Processor;
 use crate::read_back::ReadBack;
 use crate::stylize::Stylizer;
 use crate::stylize::style::Style;
@@ -12,7 +14,7 @@ use isophote_example::plan_runner::ALL;
 use isophote_files::error::Result;
 use isophote_loader::Library;
 use isophote_loader::catalogue::Kind;
-use isophote_pictures::exr::MadeMatte;
+use isophote_pictures::exr::{MATERIALS, MadeMatte, OBJECTS};
 use isophote_pictures::floats::Picture;
 use isophote_pictures::material::Material;
 use isophote_pictures::meaning::ImageState;
@@ -79,6 +81,25 @@ impl Options {
     }
 }
 
+/// Style of a shot.
+#[derive(Debug)]
+pub struct Look<'l> {
+    /// The library that it is of.
+    pub library: &'l Library,
+    /// The style.
+    pub style: Style,
+    /// Rules for things of the scene, which are followed on the CPU.
+    pub directed: Option<Directed>,
+}
+
+impl Look<'_> {
+    /// The style, and those that rules give to things.
+    fn styles(&self) -> impl Iterator<Item = &Style> {
+        let own = self.directed.iter().flat_map(Directed::looks).map(Processor::style);
+        std::iter::once(&self.style).chain(own)
+    }
+}
+
 /// A scene on a graphics device of its own.
 pub struct Shot {
     options: Options,
@@ -105,6 +126,21 @@ enum Finish {
 }
 
 impl Finish {
+    /// A style on what the renderer draws.
+    fn of(look: Look<'_>, gpu: &Gpu, renderer: &Renderer, options: &Options) -> Result<Self> {
+        let Look { library, style, directed } = look;
+        let materials = materials::on_frame(&options.materials, options.size);
+        if directed.is_some() || options.backend.is_cpu(gpu.is_software()) {
+            let style = ReadBack::new(library, style, directed)?.with_materials(materials);
+            return Ok(Self::Cpu(Box::new(style)));
+        }
+        let kernels = Kernels::new(gpu.device.clone(), gpu.queue.clone());
+        let materials = materials.iter().map(|(name, pixels)| (*name, uploaded(gpu, pixels))).collect();
+        let targets = (renderer.targets(), options.state());
+        let stylizer = Stylizer::on_materials(&kernels, library, style, targets, materials)?;
+        Ok(Self::Device(Box::new(stylizer)))
+    }
+
     /// Frames before its own that a frame depends on.
     fn depth(&self) -> Result<usize> {
         match self {
@@ -138,7 +174,7 @@ impl Shot {
     /// # Errors
     /// [`isophote_files::error::Error::Input`] for scenes and styles that cannot be drawn,
     /// [`isophote_files::error::Error::Failure`] without a device or when it fails.
-    pub fn new(scene: Scene, style: Option<(&Library, Style)>, options: Options) -> Result<Self> {
+    pub fn new(scene: Scene, look: Option<Look<'_>>, options: Options) -> Result<Self> {
         let gpu = Gpu::open()?;
         let mut renderer = Renderer::new(&gpu.device, &gpu.queue, &scene, options.size)?;
         renderer.set_background(&options.background, options.scene_referred)?;
@@ -146,31 +182,20 @@ impl Shot {
             renderer.add_ground();
         }
         // Before the style, which asks for what is there.
-        let reads_control = style.as_ref().map(|(_, style)| style.can_use(Kind::Control)).transpose()?;
-        if options.control || reads_control == Some(true) {
+        let (mut reads_control, mut reads_light) = (options.control, false);
+        for (library, style) in look.iter().flat_map(|look| look.styles().map(|style| (look.library, style)))
+        {
+            reads_control |= style.can_use(Kind::Control)?;
+            reads_light |= style.reads_light(library)?;
+        }
+        if reads_control {
             renderer.add_control(&scene)?;
         }
-        let reads_light = style.as_ref().map(|(library, style)| style.reads_light(library)).transpose()?;
         // What is shown as it is has none, and styles then take it from the picture.
-        if options.layers || reads_light == Some(true) && scene.is_lit() {
+        if options.layers || reads_light && scene.is_lit() {
             renderer.add_layers(options.state());
         }
-        let finish = match style {
-            None => Finish::Plain,
-            Some((library, style)) if options.backend.is_cpu(gpu.is_software()) => {
-                let materials = materials::on_frame(&options.materials, options.size);
-                Finish::Cpu(Box::new(ReadBack::new(library, style)?.with_materials(materials)))
-            }
-            Some((library, style)) => {
-                let kernels = Kernels::new(gpu.device.clone(), gpu.queue.clone());
-                let materials = materials::on_frame(&options.materials, options.size);
-                let materials =
-                    materials.iter().map(|(name, pixels)| (*name, uploaded(&gpu, pixels))).collect();
-                let targets = (renderer.targets(), options.state());
-                let stylizer = Stylizer::on_materials(&kernels, library, style, targets, materials)?;
-                Finish::Device(Box::new(stylizer))
-            }
-        };
+        let finish = look.map_or(Ok(Finish::Plain), |look| Finish::of(look, &gpu, &renderer, &options))?;
         if options.rest_positions || finish.wants_rest_positions()? {
             renderer.add_rest_positions();
         }
@@ -274,9 +299,47 @@ impl Shot {
         self.gpu.queue.submit([encoder.finish()]);
         let targets = (self.renderer.targets(), self.options.state());
         match &mut self.finish {
-            Finish::Cpu(style) => style.take(&self.gpu, &mut self.readback, targets, number),
+            Finish::Cpu(style) => {
+                style.take(&self.gpu, &mut self.readback, targets, number)?;
+                if style.directed().is_some() { self.direct((number, view)) } else { Ok(()) }
+            }
             Finish::Plain | Finish::Device(_) => Ok(()),
         }
+    }
+
+    /// Lets rules for things direct the frame that was encoded last. What is known of its pixels is that of the frame afterwards, too.
+    fn direct(&mut self, (number, view): (i64, View)) -> Result<()> {
+        let mut coverage = Vec::new();
+        for sample in 0..SAMPLES {
+            let numbers = self.sample(sample, &view)?;
+            if let Finish::Cpu(style) = &self.finish
+                && let Some(directed) = style.directed()
+            {
+                directed.count(&mut coverage, &numbers, SAMPLES);
+            }
+        }
+        if let Finish::Cpu(style) = &mut self.finish {
+            style.follow(&coverage);
+        }
+        self.begin_before(number);
+        self.go_to(number);
+        let mut encoder = self.gpu.device.create_command_encoder(&Default::default());
+        self.renderer.encode_motion(&mut encoder, &self.scene, &self.pose, &view, &self.lighting);
+        self.gpu.queue.submit([encoder.finish()]);
+        Ok(())
+    }
+
+    /// Numbers of things that one of the samples of the frame drawn last shows.
+    fn sample(&mut self, sample: u32, view: &View) -> Result<Vec<f32>> {
+        // Places in a pixel by Hammersley: no two of them in one row or column.
+        let place = [sample, sample.reverse_bits() >> (32 - SAMPLES.ilog2())];
+        let shift = place.map(|step| (step as f32 + 0.5) / SAMPLES as f32 - 0.5);
+        let mut encoder = self.gpu.device.create_command_encoder(&Default::default());
+        let shown = (&self.scene, &self.pose, view, &self.lighting);
+        self.renderer.encode_shifted(&mut encoder, shown, shift);
+        self.gpu.queue.submit([encoder.finish()]);
+        let numbers = self.readback.read(&self.gpu, &self.renderer.targets().object_id.texture)?;
+        Ok(numbers.data)
     }
 
     /// View of the frame that was drawn last.
@@ -303,18 +366,10 @@ impl Shot {
         let Some((_, view)) = self.drawn else { return Ok(Vec::new()) };
         let mut samples = Vec::with_capacity(SAMPLES as usize);
         for sample in 0..SAMPLES {
-            // Places in a pixel by Hammersley: no two of them in one row or column.
-            let place = [sample, sample.reverse_bits() >> (32 - SAMPLES.ilog2())];
-            let shift = place.map(|step| (step as f32 + 0.5) / SAMPLES as f32 - 0.5);
-            let mut encoder = self.gpu.device.create_command_encoder(&Default::default());
-            let shown = (&self.scene, &self.pose, &view, &self.lighting);
-            self.renderer.encode_shifted(&mut encoder, shown, shift);
-            self.gpu.queue.submit([encoder.finish()]);
-            let numbers = self.read(|targets| Some(&targets.object_id))?;
-            samples.extend(numbers.map(|picture| picture.data.iter().map(|v| *v as u32).collect::<Vec<_>>()));
+            let numbers = self.sample(sample, &view)?;
+            samples.push(numbers.iter().map(|v| *v as u32).collect::<Vec<_>>());
         }
-        let things =
-            [("crypto_object", self.scene.object_names()), ("crypto_material", self.scene.material_names())];
+        let things = [(OBJECTS, self.scene.object_names()), (MATERIALS, self.scene.material_names())];
         let made =
             |(name, names): (_, Vec<String>)| MadeMatte::new(name, self.options.size, &samples, &names);
         Ok(things.map(made).into())

@@ -304,11 +304,6 @@ fn what_follows_no_rules_says_so_and_keeps_them() {
     let at = |name: &str| folder.path().join(name);
     let preset = r#"{"style": "cartoon", "objects": [{"match": "id:3", "detail": 2.0}]}"#;
     fs::write(at("rules.json"), preset).expect("the folder is writable");
-    support::cube(folder.path());
-    let mut command = isophote();
-    let render = "render cube.gltf cube.png --size 48x32 --style rules.json --backend cpu";
-    let (_, warnings) = succeeds(command.current_dir(folder.path()).args(render.split(' ')));
-    assert!(warnings.contains("its rules for objects are left out"), "{warnings}");
     let library = Library::from_file(support::library()).expect("the library");
     let open = |name: &Path| EditedLook::open(&library, name).expect("the look");
     let looks = vec![open(Path::new("none"))];

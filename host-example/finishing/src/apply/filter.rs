@@ -92,12 +92,8 @@ pub(super) fn layers(looks: Vec<MaskedStyle>) -> Result<Vec<Layer>> {
     let mut layers = Vec::with_capacity(looks.len());
     for look in looks {
         let MaskedStyle { style, mask } = &look;
-        if (mask.is_some() || !is_single) && style.kind != Kind::Color {
-            return Err(Error::input(
-                &style.name,
-                format!("yields a {}, which no mask can lay over a picture", style.kind.name()),
-                "choose a style that yields a colour",
-            ));
+        if mask.is_some() || !is_single {
+            style.must_cover()?;
         }
         let input = if is_single && style.takes("mask")? { *mask } else { None };
         let is_bare = style.draws_alone()?;

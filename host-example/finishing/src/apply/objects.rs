@@ -3,6 +3,9 @@
 //! A rule counts as much as its things cover of a pixel, and over those before it. What an artist painted is refined by it: factors
 //! of both multiply, and where there are to be no lines there are none.
 
+use crate::stylize::preset::ObjectRule;
+use crate::stylize::things;
+
 /// What a control map has where nothing is wanted.
 const NEUTRAL: f32 = 0.5;
 /// Channel of the amount of lines, of which 0 is none.
@@ -23,6 +26,12 @@ pub struct Rule {
     pub control: Control,
     /// True where lines that follow it reach beyond them.
     pub has_lines: bool,
+}
+
+impl From<&ObjectRule> for Rule {
+    fn from(rule: &ObjectRule) -> Self {
+        Self { control: rule.control, has_lines: things::has_lines(rule) }
+    }
 }
 
 impl Rule {

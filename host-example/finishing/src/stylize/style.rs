@@ -147,16 +147,6 @@ impl Style {
         }
     }
 
-    /// Warns where there are rules for things, of a run that follows none.
-    pub fn warn_of_objects(&self) {
-        if !self.objects.is_empty() {
-            let name = &self.name;
-            output::warn(format_args!(
-                "{name}: its rules for objects are left out; render EXR files without a style, and `isophote apply` follows them"
-            ));
-        }
-    }
-
     /// Gives animated parameters their values at a frame, and says whether there are any.
     ///
     /// # Errors

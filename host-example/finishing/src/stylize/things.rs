@@ -4,10 +4,13 @@ use std::path::Path;
 
 use serde_json::Value;
 
+use super::palette::Colours;
 use super::preset::{self, ObjectRule, Preset};
 use super::style::{FIX, Setting, Style, graph_beside};
 use isophote_files::error::{AtPlace, Error, Result};
 use isophote_loader::Library;
+use isophote_loader::catalogue::Kind;
+use isophote_pictures::exr::{Guide, MaskSource};
 
 /// Key of a rule for the look that its things have.
 const LOOK: &str = "look";
@@ -19,7 +22,7 @@ const LINE_COLORS: &str = "line_colors";
 const ONE: &str = "one";
 
 /// True where a rule gives its things a look of their own.
-pub fn has_look(rule: &ObjectRule) -> bool {
+fn has_look(rule: &ObjectRule) -> bool {
     rule.rule.contains_key(LOOK)
 }
 
@@ -28,11 +31,36 @@ pub fn has_lines(rule: &ObjectRule) -> bool {
     rule.rule.contains_key(LINE_COLOR) && !has_look(rule)
 }
 
+/// Looks that rules of the preset of `style` give to things, each with the place of its rule: looks of their own, and the style
+/// once more, by its `name`, palette and settings, with lines of another colour. The last lies over those before it.
+///
+/// # Errors
+/// As [`Style::load_in`]; [`Error::Input`] for a look that has rules itself.
+pub fn looks(
+    library: &Library,
+    (name, palette, settings): (&Path, Option<&Colours>, &[Setting]),
+    style: &Style,
+) -> Result<Vec<(usize, Style)>> {
+    let mut looks: Vec<(usize, Style)> = own_looks(library, Path::new(&style.name), &style.objects)
+        .map(|(number, look)| Ok((number, look?)))
+        .collect::<Result<_>>()?;
+    for (_, look) in &mut looks {
+        palette.map_or(Ok(()), |palette| look.end_in(palette))?;
+    }
+    for (number, rule) in style.objects.iter().enumerate().filter(|(_, rule)| has_lines(rule)) {
+        let mut look = in_colour(Style::load_in(library, name, palette, settings)?, rule)?;
+        look.objects.clear();
+        looks.push((number, look));
+    }
+    looks.sort_by_key(|(number, _)| *number);
+    Ok(looks)
+}
+
 /// A style whose lines have the colour that a rule says, if it says one.
 ///
 /// # Errors
 /// [`Error::Input`] for styles without such a parameter.
-pub fn in_colour(style: Style, rule: &ObjectRule) -> Result<Style> {
+fn in_colour(style: Style, rule: &ObjectRule) -> Result<Style> {
     let Some(Value::String(color)) = rule.rule.get(LINE_COLOR) else { return Ok(style) };
     style.set(&Setting { node: None, param: LINE_COLOR.into(), value: color.clone() })?;
     if style.params().iter().any(|param| param == LINE_COLORS) {
@@ -62,14 +90,32 @@ impl Style {
         Ok((preset, all.chain(things).collect()))
     }
 
-    /// Looks that rules of its preset give to things, each with the place of its rule.
+    /// Where the things are that the rules of its preset are for, by rule.
     ///
     /// # Errors
-    /// As [`Style::load`]; [`Error::Input`] for a look that has rules itself.
-    pub fn own_looks(&self, library: &Library) -> Result<Vec<(usize, Self)>> {
-        own_looks(library, Path::new(&self.name), &self.objects)
-            .map(|(number, look)| Ok((number, look?)))
-            .collect()
+    /// As [`preset::things`]; [`Error::Input`] for rules that the style does not follow.
+    pub fn things(&self) -> Result<Vec<MaskSource>> {
+        let needs_map = |rule: &ObjectRule| {
+            !(has_look(rule) || has_lines(rule)) || rule.control.iter().any(Option::is_some)
+        };
+        if self.objects.iter().any(needs_map) && !self.takes(Guide::Control.id())? {
+            let problem = "are rules that the style does not follow";
+            let fix = "choose another style, or connect @control in its graph";
+            return Err(Error::input(format!("{}: objects", self.name), problem, fix));
+        }
+        preset::things(&self.name, &self.objects).collect()
+    }
+
+    /// Refuses results that no mask can lay over a picture.
+    ///
+    /// # Errors
+    /// [`Error::Input`] where it yields no colours.
+    pub fn must_cover(&self) -> Result<()> {
+        if self.kind == Kind::Color {
+            return Ok(());
+        }
+        let problem = format!("yields a {}, which no mask can lay over a picture", self.kind.name());
+        Err(Error::input(&self.name, problem, "choose a style that yields a colour"))
     }
 }
 

@@ -3,6 +3,7 @@
 //! The picture and its guides are chosen by the names of channels; [`isophote_exr_edit`] reads them and
 //! writes the result, and keeps every other byte of the file.
 
+mod among;
 mod choose;
 mod colour_layers;
 mod cryptomatte;
@@ -19,7 +20,7 @@ mod offers;
 mod picture;
 
 pub use self::choose::Selection;
-pub use self::cryptomatte::Made as MadeMatte;
+pub use self::cryptomatte::{MATERIALS, Made as MadeMatte, OBJECTS};
 pub use self::file::{ExrFile, Opened, is_whole, mask_of, motion_of};
 pub use self::guide_list::Guide;
 pub use self::guides::GuideChoice;

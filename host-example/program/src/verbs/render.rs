@@ -7,7 +7,7 @@ use clap::Args;
 
 use super::material_args::MaterialArgs;
 use super::shared::{
-    ForceArgs, LengthArgs, PaletteArgs, PrecisionArgs, QuietArgs, SceneArgs, is_folder, parse_size,
+    ForceArgs, LengthArgs, PaletteArgs, PrecisionArgs, QuietArgs, SceneArgs, is_folder, of_any, parse_size,
 };
 use isophote_files::error::{Error, Result};
 use isophote_files::files::{self, Existing};
@@ -19,9 +19,11 @@ use isophote_files::stop::Stop;
 use isophote_finishing::apply::backend::Backend;
 use isophote_finishing::apply::report::{Outcome, Report};
 use isophote_finishing::apply::tasks::Task;
-use isophote_finishing::shot::{Options, Shot};
+use isophote_finishing::directed::Directed;
+use isophote_finishing::shot::{Look, Options, Shot};
 use isophote_finishing::staging::{MotionArgs, StagingArgs};
 use isophote_finishing::stylize::style::{Setting, Style};
+use isophote_finishing::stylize::things;
 use isophote_finishing::video::{self, Film};
 use isophote_finishing::writing::{Depth, FileArgs};
 use isophote_loader::Library;
@@ -120,25 +122,24 @@ pub fn run(args: &RenderArgs) -> Result<()> {
     let library = args.is_stylized().then(Library::open).transpose()?;
     limits::start_threads(0)?;
     let style = match &library {
-        Some(library) => {
-            let mut style =
-                Style::load_in(library, &args.style, args.palette.read(library)?.as_ref(), &args.set)?;
-            args.lengths.apply(&mut style);
-            args.precision.precision.apply(&style)?;
-            args.steadiness.map_or(Ok(()), |steadiness| style.steady(steadiness))?;
-            Some((library, style))
+        Some(library) => Some((library, args.styles(library)?)),
+        None => None,
+    };
+    let scene = args.scene.load()?;
+    args.check_scene(&scene)?;
+    let all = style
+        .iter()
+        .flat_map(|(_, (style, own))| std::iter::once(style).chain(own.iter().map(|(_, own)| own)));
+    let materials = args.materials.open(&all.collect::<Vec<_>>())?;
+    let options = Options { materials, ..args.options(&scene)? };
+    let look = match style {
+        Some((library, (style, own))) => {
+            let directed = Directed::new(library, &style, own, (&scene, &args.scene.scene))?;
+            Some(Look { library, style, directed })
         }
         None => None,
     };
-    if let Some((_, style)) = &style {
-        style.warn_of_keys_beyond(args.frames.frames());
-        style.warn_of_objects();
-    }
-    let scene = args.scene.load()?;
-    args.check_scene(&scene)?;
-    let materials = args.materials.open(&style.iter().map(|(_, style)| style).collect::<Vec<_>>())?;
-    let options = Options { materials, ..args.options(&scene)? };
-    let mut shot = Shot::new(scene, style, options)?;
+    let mut shot = Shot::new(scene, look, options)?;
     files::sweep(&args.out);
     let stop = Stop::on_signals();
     let frames = args.frames.frames();
@@ -156,6 +157,24 @@ pub fn run(args: &RenderArgs) -> Result<()> {
 }
 
 impl RenderArgs {
+    /// The style, and looks that rules of its preset give to things.
+    fn styles(&self, library: &Library) -> Result<(Style, Vec<(usize, Style)>)> {
+        let palette = self.palette.read(library)?;
+        let mut style = Style::load_in(library, &self.style, palette.as_ref(), &self.set)?;
+        let mut own = things::looks(library, (&self.style, palette.as_ref(), &self.set), &style)?;
+        let mut styles: Vec<&mut Style> =
+            std::iter::once(&mut style).chain(own.iter_mut().map(|(_, style)| style)).collect();
+        for style in &mut styles {
+            self.lengths.apply(style);
+            self.precision.precision.apply(style)?;
+            style.warn_of_keys_beyond(self.frames.frames());
+        }
+        let steady =
+            |style: &mut Style| self.steadiness.map_or(Ok(()), |steadiness| style.steady(steadiness));
+        of_any(styles, steady)?;
+        Ok((style, own))
+    }
+
     /// The same with a picture in the folder that was named as the result.
     fn within(&self) -> Self {
         let name = Path::new(self.scene.scene.file_name().unwrap_or_default()).with_extension("png");

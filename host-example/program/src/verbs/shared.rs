@@ -172,3 +172,18 @@ pub fn is_folder(output: &Path) -> bool {
     let ends = |byte: &u8| std::path::is_separator(char::from(*byte));
     output.is_dir() || output.as_os_str().as_encoded_bytes().last().is_some_and(ends)
 }
+
+/// Does something to all looks that can have it. Of several, one is enough.
+///
+/// # Errors
+/// The first refusal where all refuse.
+pub fn of_any<T>(looks: impl IntoIterator<Item = T>, to: impl FnMut(T) -> Result<()>) -> Result<()> {
+    let (mut is_done, mut refused) = (false, None);
+    for result in looks.into_iter().map(to) {
+        match result {
+            Ok(()) => is_done = true,
+            Err(refusal) => refused = refused.or(Some(refusal)),
+        }
+    }
+    refused.filter(|_| !is_done).map_or(Ok(()), Err)
+}

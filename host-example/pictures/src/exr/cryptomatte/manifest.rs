@@ -3,6 +3,7 @@
 use std::collections::BTreeMap;
 use std::path::{Component, Path, PathBuf};
 
+use super::hash;
 use super::names::Pattern;
 
 /// Names in a message.
@@ -35,6 +36,11 @@ impl Manifest {
             ids.insert(name, id);
         }
         Ok(Self(ids))
+    }
+
+    /// The manifest of things of these names.
+    pub fn of(names: &[String]) -> Self {
+        Self(names.iter().map(|name| (name.clone(), hash::id(name))).collect())
     }
 
     /// The id of a name.

@@ -11,4 +11,4 @@ mod names;
 pub use self::hash::id;
 pub use self::made::Made;
 pub use self::manifest::{Manifest, sidecar};
-pub use self::names::MatteChoice;
+pub use self::names::{MATERIALS, MatteChoice, OBJECTS};

@@ -8,9 +8,12 @@ use std::str::FromStr;
 
 /// Beginning of the choice.
 const WORD: &str = "cryptomatte";
-/// Beginning of the choice of materials, without the colon, and the Cryptomatte that holds them.
+/// Beginning of the choice of materials, without the colon.
 const MATERIAL: &str = "material";
-const MATERIALS: &str = "crypto_material";
+/// The usual name of the Cryptomatte of materials.
+pub const MATERIALS: &str = "crypto_material";
+/// The usual name of the Cryptomatte of objects.
+pub const OBJECTS: &str = "crypto_object";
 /// Form in which it is written.
 const FIX: &str =
     "write cryptomatte:NAME,NAME or cryptomatte[LAYER]:NAME,NAME, where * stands for any letters";

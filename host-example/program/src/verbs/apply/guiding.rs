@@ -12,8 +12,6 @@ use isophote_finishing::apply::materials::Laid;
 use isophote_finishing::apply::objects::Rule;
 use isophote_finishing::apply::planner::Planner;
 use isophote_finishing::apply::tasks::Tasks;
-use isophote_finishing::stylize::preset::{self, ObjectRule};
-use isophote_finishing::stylize::things;
 use isophote_loader::Library;
 use isophote_pictures::exr::{Guide, MaskSource, Selection};
 use isophote_pictures::read::Opened;
@@ -39,24 +37,17 @@ impl ApplyArgs {
     /// Where the things are that the rules of the style's preset are for.
     ///
     /// # Errors
-    /// As [`preset::things`]; [`Error::Input`] for rules of a style that follows none, and of one of several looks.
+    /// As [`Style::things`](isophote_finishing::stylize::style::Style::things); [`Error::Input`] for rules of one of several looks.
     pub(super) fn things(&self, looks: &[MaskedStyle]) -> Result<Vec<MaskChoice>> {
         let Some(MaskedStyle { style, .. }) = looks.iter().find(|look| !look.style.objects.is_empty()) else {
             return Ok(Vec::new());
         };
-        let wrong = |problem, fix| Err(Error::input(format!("{}: objects", style.name), problem, fix));
         if self.layered.is_some() {
-            return wrong("are rules of one of several looks", "give looks masks, or name the preset alone");
+            let place = format!("{}: objects", style.name);
+            let problem = "are rules of one of several looks";
+            return Err(Error::input(place, problem, "give looks masks, or name the preset alone"));
         }
-        let needs_map = |rule: &ObjectRule| {
-            !(things::has_look(rule) || things::has_lines(rule)) || rule.control.iter().any(Option::is_some)
-        };
-        if style.objects.iter().any(needs_map) && !style.takes(Guide::Control.id())? {
-            let fix = "choose another style, or connect @control in its graph";
-            return wrong("are rules that the style does not follow", fix);
-        }
-        let sources = preset::things(&style.name, &style.objects);
-        sources.map(|source| Ok(MaskChoice { source: source?, invert: false })).collect()
+        Ok(style.things()?.into_iter().map(|source| MaskChoice { source, invert: false }).collect())
     }
 
     /// Maps over the pictures: masks, those that are painted, materials, and rules for things, whose masks are the last of the choices.
@@ -72,7 +63,7 @@ impl ApplyArgs {
         let laid = |material| Laid::new(material, self.space);
         let laid = self.painted.materials.open(&styles)?.into_iter().map(laid).collect();
         let rules = looks.iter().flat_map(|look| &look.style.objects);
-        let rules = rules.map(|rule| Rule { control: rule.control, has_lines: things::has_lines(rule) });
+        let rules = rules.map(Rule::from);
         let masks = Masks::new(choices, self.mask_from.as_deref(), self.on_unknown)?;
         Ok(masks.with_maps(&paths, self.space)?.with_materials(laid).with_rules(rules.collect()))
     }

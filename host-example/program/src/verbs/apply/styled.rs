@@ -2,6 +2,7 @@
 
 use std::path::Path;
 
+use super::super::shared::of_any;
 use super::ApplyArgs;
 use isophote_files::error::{Error, Result};
 use isophote_finishing::apply::filter::MaskedStyle;
@@ -66,11 +67,10 @@ impl ApplyArgs {
         self.timed(looks)
     }
 
-    /// Looks that rules of the style's preset give to things, whose masks are those of the rules: looks of their own, and the style
-    /// once more with lines of another colour.
+    /// Looks that rules of the style's preset give to things, whose masks are those of the rules.
     ///
     /// # Errors
-    /// As [`Style::own_looks`]; [`Error::Input`] beside a mask.
+    /// As [`things::looks`]; [`Error::Input`] beside a mask.
     fn looks_of_things(
         &self,
         library: &Library,
@@ -78,22 +78,12 @@ impl ApplyArgs {
         palette: Option<&Colours>,
         style: &Style,
     ) -> Result<Vec<MaskedStyle>> {
-        let mut own = style.own_looks(library)?;
-        for (_, look) in &mut own {
-            palette.map_or(Ok(()), |palette| look.end_in(palette))?;
-        }
-        for (number, rule) in style.objects.iter().enumerate().filter(|(_, rule)| things::has_lines(rule)) {
-            let mut look = things::in_colour(Style::load_in(library, name, palette, &self.set)?, rule)?;
-            look.objects.clear();
-            own.push((number, look));
-        }
-        if self.mask.is_some() && !own.is_empty() {
+        let looks = things::looks(library, (name, palette, &self.set), style)?;
+        if self.mask.is_some() && !looks.is_empty() {
             let problem = "the preset's rules give things looks or lines of their own, which no mask covers";
             return Err(Error::input("--mask", problem, "leave it out, or list looks by --layered"));
         }
-        // The last rule lies over those before it.
-        own.sort_by_key(|(number, _)| *number);
-        Ok(own.into_iter().map(|(number, style)| MaskedStyle { style, mask: Some(number) }).collect())
+        Ok(looks.into_iter().map(|(number, style)| MaskedStyle { style, mask: Some(number) }).collect())
     }
 
     /// The looks with what the command line says of time and lengths.
@@ -110,19 +100,4 @@ impl ApplyArgs {
         }
         Ok(looks)
     }
-}
-
-/// Does something to all looks that can have it. Of several, one is enough.
-///
-/// # Errors
-/// The first refusal where all refuse.
-fn of_any<T>(looks: impl IntoIterator<Item = T>, to: impl FnMut(T) -> Result<()>) -> Result<()> {
-    let (mut is_done, mut refused) = (false, None);
-    for result in looks.into_iter().map(to) {
-        match result {
-            Ok(()) => is_done = true,
-            Err(refusal) => refused = refused.or(Some(refusal)),
-        }
-    }
-    refused.filter(|_| !is_done).map_or(Ok(()), Err)
 }

@@ -1,0 +1,131 @@
+//! Rules of a preset for the things of a scene, on frames that a renderer draws of it: what `apply` makes of rules by the
+//! Cryptomattes of a file.
+
+use std::path::Path;
+
+use crate::apply::objects::{self, Covered, Rule};
+use crate::processor::Processor;
+use crate::stylize::style::Style;
+use isophote_files::error::Result;
+use isophote_loader::Library;
+use isophote_pictures::mix::{self, Encoding};
+use isophote_pictures::pixels::{Pixels, Samples};
+use isophote_pictures::space::Space;
+use isophote_scene::Scene;
+
+/// Rules of a style for the things of one scene.
+#[derive(Debug)]
+pub struct Directed {
+    rules: Vec<Rule>,
+    /// By rule and by thing: true where the rule is for it.
+    things: Vec<Vec<bool>>,
+    /// Looks that rules give to things, each with the place of its rule. The last lies over those before it.
+    looks: Vec<(usize, Processor)>,
+}
+
+/// What rules say of a frame.
+#[derive(Debug)]
+pub struct Followed {
+    /// The control map that they are; nothing where they ask for none.
+    pub control: Option<Pixels>,
+    /// By rule, where its look is.
+    pub masks: Vec<Pixels>,
+}
+
+impl Directed {
+    /// The rules of a style for the scene in `file`, with the looks that they give to [things](crate::stylize::things::looks); nothing
+    /// where it has none.
+    ///
+    /// # Errors
+    /// [`isophote_files::error::Error::Input`] for rules that the style does not follow, for names that no thing of the scene has, and
+    /// where looks are no colours.
+    pub fn new(
+        library: &Library,
+        style: &Style,
+        looks: Vec<(usize, Style)>,
+        (scene, file): (&Scene, &Path),
+    ) -> Result<Option<Self>> {
+        if style.objects.is_empty() {
+            return Ok(None);
+        }
+        let (objects, materials) = (scene.object_names(), scene.material_names());
+        let sources = style.things()?.into_iter();
+        let things = sources.map(|source| source.among(file, &objects, &materials)).collect::<Result<_>>()?;
+        if !looks.is_empty() {
+            style.must_cover()?;
+        }
+        let made = |(number, look): (usize, Style)| {
+            look.must_cover()?;
+            Ok((number, Processor::new(library, look)?))
+        };
+        let looks = looks.into_iter().map(made).collect::<Result<_>>()?;
+        Ok(Some(Self { rules: style.objects.iter().map(Rule::from).collect(), things, looks }))
+    }
+
+    /// The looks of things.
+    pub fn looks(&self) -> impl Iterator<Item = &Processor> {
+        self.looks.iter().map(|(_, look)| look)
+    }
+
+    /// Adds to what things of each rule cover of pixels one of `samples` samples: `numbers` are those of the things that it shows, from 1,
+    /// and 0 of none.
+    pub fn count(&self, coverage: &mut Vec<Vec<f32>>, numbers: &[f32], samples: u32) {
+        coverage.resize(self.rules.len(), vec![0.0; numbers.len()]);
+        let share = 1.0 / samples as f32;
+        for (covered, things) in coverage.iter_mut().zip(&self.things) {
+            for (covered, number) in covered.iter_mut().zip(numbers) {
+                let thing = (*number as usize).checked_sub(1).and_then(|index| things.get(index));
+                if thing == Some(&true) {
+                    *covered += share;
+                }
+            }
+        }
+    }
+
+    /// What the rules say of a frame of a size, by what their things cover of it, over what was `painted` for it.
+    pub fn follow(
+        &self,
+        coverage: &[Vec<f32>],
+        (width, height): (u32, u32),
+        painted: Option<&[f32]>,
+        depth: Option<&[f32]>,
+    ) -> Followed {
+        let wide = width as usize;
+        let covered = |(rule, coverage): (&Rule, &'_ Vec<f32>)| {
+            if rule.has_lines { objects::with_lines(coverage, wide, depth) } else { coverage.clone() }
+        };
+        let masks = self.rules.iter().zip(coverage).map(covered);
+        let masks = masks.filter_map(|mask| Pixels::new(width, height, 1, Samples::F32(mask))).collect();
+        if self.rules.iter().all(Rule::is_neutral) {
+            return Followed { control: None, masks };
+        }
+        let rules: Vec<Covered<'_>> = self
+            .rules
+            .iter()
+            .zip(coverage)
+            .map(|(rule, coverage)| Covered { coverage: Some(coverage), control: rule.control })
+            .collect();
+        let map = objects::map(&rules, wide, painted, depth);
+        Followed { control: Pixels::new(width, height, 4, Samples::F32(map)), masks }
+    }
+
+    /// A frame with the looks of things over it, of which `process` makes each; nothing where that was cancelled.
+    ///
+    /// # Errors
+    /// Those of `process`.
+    pub fn lay_over(
+        &mut self,
+        frame: Pixels,
+        masks: &[Pixels],
+        mut process: impl FnMut(&mut Processor) -> Result<Option<Pixels>>,
+    ) -> Result<Option<Pixels>> {
+        let encoding = Encoding { is_premultiplied: true, space: Space::Linear };
+        let mut below = frame;
+        for (number, look) in &mut self.looks {
+            let Some(above) = process(look)? else { return Ok(None) };
+            below =
+                masks.get(*number).map_or(above.clone(), |mask| mix::mixed(&below, above, mask, encoding));
+        }
+        Ok(Some(below))
+    }
+}
