@@ -16,7 +16,7 @@ use crate::limits::{Budget, Limits, Reserved};
 use crate::part::{Chunk, DEEP, MULTI_PART, Part, TILED, channel_list};
 
 /// Bit of the version field: names of more than [`SHORT_NAME`] bytes.
-const LONG_NAMES: u32 = 0x400;
+pub const LONG_NAMES: u32 = 0x400;
 /// The newest compression whose chunks are known well.
 const NEWEST: u8 = 11;
 /// Longest name without that bit.

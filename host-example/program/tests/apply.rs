@@ -346,6 +346,8 @@ fn the_benchmark_reports_every_pass() {
     for way in ["upload_milliseconds", "download_milliseconds"] {
         assert!(results[1][way].as_f64().is_some_and(|v| v > 0.0) && results[0].get(way).is_none(), "{way}");
     }
+    let memory = results[0]["peak_bytes"].as_u64();
+    assert!(memory.is_none_or(|bytes| bytes > 96 * 64 * 16) && memory.is_some() == cfg!(target_os = "linux"));
     assert!(results[1]["bytes"].as_u64().is_some_and(|bytes| bytes > 96 * 64 * 100));
     for result in results {
         assert!(result["milliseconds"].as_f64().is_some_and(|v| v > 0.0));

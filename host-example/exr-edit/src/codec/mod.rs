@@ -22,7 +22,7 @@ const NONE: u8 = 0;
 const ZIPS: u8 = 2;
 const ZIP: u8 = 3;
 /// Scan lines in a chunk of ZIP, of which those of DWAA and DWAB are multiples.
-const ZIP_LINES: usize = 16;
+pub const ZIP_LINES: usize = 16;
 
 fn name(part: &Part) -> &'static str {
     compression::name(part.compression)
@@ -146,6 +146,12 @@ pub fn encode(
         }
     };
     Ok(if packed.len() < raw.len() { packed } else { raw })
+}
+
+/// Compresses the samples of a chunk by ZIP, where that makes them fewer bytes: others are stored as they are.
+pub fn smaller_zip(raw: Vec<u8>) -> Vec<u8> {
+    let packed = zip::zip(&raw);
+    if packed.len() < raw.len() { packed } else { raw }
 }
 
 fn keeps_floats(part: &Part, kept: &[Option<usize>]) -> bool {

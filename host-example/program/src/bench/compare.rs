@@ -114,6 +114,7 @@ mod tests {
             call_seconds: None,
             transfers: None,
             bytes: None,
+            memory: None,
             passes: kernels.map(pass).into(),
         }
     }

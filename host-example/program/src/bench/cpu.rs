@@ -3,6 +3,7 @@
 use std::cell::Cell;
 
 use super::entry::{Entry, PassEntry};
+use super::resident::Resident;
 use super::{Subject, median, motion};
 use isophote_files::error::{AtPlace, Result};
 use isophote_finishing::apply::memory;
@@ -48,11 +49,14 @@ pub fn run(library: &Library, subject: &Subject, picture: &Pixels, runs: u32) ->
         Ok((report.map_err(refused)?.seconds, times))
     };
     // The first runs allocate, and find the frames that others are based on; they are not counted.
+    library.trim().map_err(refused)?;
+    let resident = Resident::new();
     for _ in 0..=past {
         once()?;
     }
+    let memory = resident.grown();
     let measured: Vec<(f64, Vec<PassTime>)> = (0..runs).map(|_| once()).collect::<Result<_>>()?;
-    Ok(entry(subject, size, &measured))
+    Ok(Entry { memory, ..entry(subject, size, &measured) })
 }
 
 /// Medians of the runs that were measured.
@@ -68,6 +72,7 @@ fn entry(subject: &Subject, size: (u32, u32), measured: &[(f64, Vec<PassTime>)])
         call_seconds: Some(median(measured.iter().map(|(call, _)| *call).collect())),
         transfers: None,
         bytes: None,
+        memory: None,
         passes: passes
             .iter()
             .enumerate()

@@ -19,6 +19,9 @@ pub struct Entry {
     pub transfers: Option<Transfers>,
     /// Bytes that all passes together read from and write to textures, on the GPU.
     pub bytes: Option<u64>,
+    /// Most bytes of memory that the first run takes beside the picture, on the CPU, where the system tells: the result and all that
+    /// is made on the way.
+    pub memory: Option<u64>,
     /// The passes; empty where they are not timed apart.
     pub passes: Vec<PassEntry>,
 }

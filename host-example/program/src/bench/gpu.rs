@@ -76,6 +76,7 @@ impl Bench {
             call_seconds: None,
             transfers: Some(transfers),
             bytes: Some(bytes),
+            memory: None,
             passes,
         })
     }

@@ -8,6 +8,7 @@ pub mod gpu;
 pub mod peak;
 mod peers;
 pub mod report;
+mod resident;
 pub mod sequence;
 mod throughput;
 mod timer;

@@ -90,7 +90,7 @@ impl Report {
         let peak = self.machine.peak;
         let rate = entry.megapixels() / entry.seconds;
         let mut text = format!(
-            "\n{} ({}, {}x{}){}{}{}\n",
+            "\n{} ({}, {}x{}){}{}{}{}\n",
             entry.node,
             entry.backend,
             entry.size.0,
@@ -98,6 +98,9 @@ impl Report {
             columns(entry.seconds, rate, shares(peak, entry.seconds, entry.work())),
             entry.bytes.map_or_else(String::new, |bytes| {
                 format!("  {:.0} bytes a pixel", bytes as f64 / 1e6 / entry.megapixels())
+            }),
+            entry.memory.map_or_else(String::new, |bytes| {
+                format!("  {:.0} MiB a megapixel", bytes as f64 / f64::from(1 << 20) / entry.megapixels())
             }),
             ratio(whole)
         );
@@ -237,6 +240,7 @@ fn entry(entry: &Entry, peak: Option<Peak>) -> Value {
         "milliseconds": entry.seconds * 1e3,
         "megapixels_per_second": entry.megapixels() / entry.seconds,
         "bytes": entry.bytes,
+        "peak_bytes": entry.memory,
         "passes": entry.passes.iter().map(|p| {
             let mut value = json!({
                 "kernel": p.kernel,

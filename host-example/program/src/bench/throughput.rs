@@ -1,12 +1,12 @@
 //! Measures, for `isophote bench`, how well reading and writing of a sequence hide behind filtering.
 
-use std::fs;
 use std::path::Path;
 use std::sync::Arc;
 use std::time::Instant;
 
 use serde::Serialize;
 
+use super::resident::Resident;
 use isophote_files::error::{Error, Result};
 use isophote_files::files::Existing;
 use isophote_files::limits::Threads;
@@ -91,7 +91,7 @@ pub fn measure(
         report: &report,
         stop: &stop,
     };
-    forget_peak();
+    let resident = Resident::new();
     let started = Instant::now();
     let result = run.all(filters, Reader::new(frame_source, planner, &tasks, None));
     let seconds = started.elapsed().as_secs_f64();
@@ -103,7 +103,7 @@ pub fn measure(
             "make room for temporary files",
         ));
     }
-    Ok(Throughput { frames, filter_seconds, seconds, peak_bytes: peak(), bound_bytes: bound })
+    Ok(Throughput { frames, filter_seconds, seconds, peak_bytes: resident.peak(), bound_bytes: bound })
 }
 
 fn save(path: &Path, picture: &Pixels) -> Result<()> {
@@ -121,17 +121,4 @@ fn save(path: &Path, picture: &Pixels) -> Result<()> {
         Precision::Half,
         (None, None),
     )
-}
-
-/// Lets the system count the peak of this process anew, where it can.
-fn forget_peak() {
-    // Elsewhere the peak since the start counts, which is no less.
-    let _ = fs::write("/proc/self/clear_refs", "5");
-}
-
-/// The most memory that the process held.
-fn peak() -> Option<u64> {
-    let status = fs::read_to_string("/proc/self/status").ok()?;
-    let line = status.lines().find_map(|line| line.strip_prefix("VmHWM:"))?;
-    Some(line.trim().strip_suffix("kB")?.trim().parse::<u64>().ok()? * 1024)
 }
