@@ -8,6 +8,7 @@ use crate::processor::Processor;
 use crate::stylize::style::Style;
 use isophote_files::error::Result;
 use isophote_loader::Library;
+use isophote_pictures::exr::OnUnknown;
 use isophote_pictures::mix::{self, Encoding};
 use isophote_pictures::pixels::{Pixels, Samples};
 use isophote_pictures::space::Space;
@@ -37,20 +38,22 @@ impl Directed {
     /// where it has none.
     ///
     /// # Errors
-    /// [`isophote_files::error::Error::Input`] for rules that the style does not follow, for names that no thing of the scene has, and
-    /// where looks are no colours.
+    /// [`isophote_files::error::Error::Input`] for rules that the style does not follow, for names that no thing of the scene has unless
+    /// `on_unknown` lets them cover nothing, and where looks are no colours.
     pub fn new(
         library: &Library,
         style: &Style,
         looks: Vec<(usize, Style)>,
         (scene, file): (&Scene, &Path),
+        on_unknown: OnUnknown,
     ) -> Result<Option<Self>> {
         if style.objects.is_empty() {
             return Ok(None);
         }
         let (objects, materials) = (scene.object_names(), scene.material_names());
         let sources = style.things()?.into_iter();
-        let things = sources.map(|source| source.among(file, &objects, &materials)).collect::<Result<_>>()?;
+        let names = [objects.as_slice(), &materials];
+        let things = sources.map(|source| source.among(file, names, on_unknown)).collect::<Result<_>>()?;
         if !looks.is_empty() {
             style.must_cover()?;
         }
@@ -123,8 +126,9 @@ impl Directed {
         let mut below = frame;
         for (number, look) in &mut self.looks {
             let Some(above) = process(look)? else { return Ok(None) };
-            below =
-                masks.get(*number).map_or(above.clone(), |mask| mix::mixed(&below, above, mask, encoding));
+            if let Some(mask) = masks.get(*number) {
+                below = mix::mixed(&below, above, mask, encoding);
+            }
         }
         Ok(Some(below))
     }

@@ -103,4 +103,8 @@ fn names_that_a_scene_does_not_have_are_refused() {
     let mut command = command(folder.path(), "render cube.gltf ruled.png --size 96x64 --style rules.json");
     fails(&mut command, 2, &["cube.gltf", "did you mean hero?"]);
     assert!(!folder.path().join("ruled.png").exists());
+    command.args(["--on-unknown", "empty"]);
+    let (_, warnings) = succeeds(&mut command);
+    assert!(warnings.contains("nothing of the name 'heroo'"), "{warnings}");
+    assert!(folder.path().join("ruled.png").exists());
 }

@@ -3,21 +3,27 @@
 use std::path::Path;
 
 use super::cryptomatte::{MATERIALS, Manifest, MatteChoice, OBJECTS};
-use super::mask::MaskSource;
+use super::mask::{MaskSource, OnUnknown};
 use isophote_files::error::{Error, Result};
+use isophote_files::output;
 
 impl MaskSource {
     /// By thing of the scene in the file `scene`: true where the mask is of it. `objects` and `materials` have a name for each
-    /// thing, whose number is its place, from 1.
+    /// thing, whose number is its place, from 1. Names that no thing has are refused or warned of.
     ///
     /// # Errors
     /// [`Error::Input`] for names that no thing has, and for masks in files.
-    pub fn among(&self, scene: &Path, objects: &[String], materials: &[String]) -> Result<Vec<bool>> {
+    pub fn among(
+        &self,
+        scene: &Path,
+        [objects, materials]: [&[String]; 2],
+        on_unknown: OnUnknown,
+    ) -> Result<Vec<bool>> {
         match self {
             Self::Ids(ids) => {
                 Ok((1..=objects.len()).map(|number| ids.iter().any(|id| *id as usize == number)).collect())
             }
-            Self::Mattes(choice) => choice.among(scene, objects, materials),
+            Self::Mattes(choice) => choice.among(scene, [objects, materials], on_unknown),
             Self::File(_) | Self::Layer(_) => {
                 let problem = "has no masks in files or layers";
                 Err(Error::file(scene, problem, "write cryptomatte:NAME, material:NAME or id:NUMBER"))
@@ -27,7 +33,12 @@ impl MaskSource {
 }
 
 impl MatteChoice {
-    fn among(&self, scene: &Path, objects: &[String], materials: &[String]) -> Result<Vec<bool>> {
+    fn among(
+        &self,
+        scene: &Path,
+        [objects, materials]: [&[String]; 2],
+        on_unknown: OnUnknown,
+    ) -> Result<Vec<bool>> {
         let names = match self.layer.as_deref() {
             None | Some(OBJECTS) => objects,
             Some(MATERIALS) => materials,
@@ -40,7 +51,12 @@ impl MatteChoice {
         for wanted in &self.names {
             if !names.iter().any(|name| wanted.matches(name)) {
                 let problem = format!("has nothing of the name '{}'", wanted.text.escape_default());
-                return Err(Error::file(scene, problem, Manifest::of(names).advice(&wanted.text)));
+                match on_unknown {
+                    OnUnknown::Fail => {
+                        return Err(Error::file(scene, problem, Manifest::of(names).advice(&wanted.text)));
+                    }
+                    OnUnknown::Empty => output::warn(format_args!("{}: {problem}", scene.display())),
+                }
             }
         }
         Ok(names.iter().map(|name| self.names.iter().any(|wanted| wanted.matches(name))).collect())
@@ -57,7 +73,7 @@ mod tests {
         let (objects, materials) = (names(["hero/arm", "hero/leg", "floor"]), names(["skin", "skin", "oak"]));
         let among = |text: &str| {
             let source: MaskSource = text.parse().unwrap();
-            source.among(Path::new("scene.gltf"), &objects, &materials)
+            source.among(Path::new("scene.gltf"), [&objects, &materials], OnUnknown::Fail)
         };
         for (text, expected) in [
             ("cryptomatte:hero/*", [true, true, false]),
@@ -77,5 +93,8 @@ mod tests {
             let error = among(text).unwrap_err().to_string();
             assert!(error.starts_with("scene.gltf") && error.contains(said), "{error}");
         }
+        let source: MaskSource = "cryptomatte:hero/*,flor".parse().unwrap();
+        let found = source.among(Path::new("scene.gltf"), [&objects, &materials], OnUnknown::Empty);
+        assert_eq!(found.unwrap(), [true, true, false]);
     }
 }

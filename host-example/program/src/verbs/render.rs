@@ -27,6 +27,7 @@ use isophote_finishing::stylize::things;
 use isophote_finishing::video::{self, Film};
 use isophote_finishing::writing::{Depth, FileArgs};
 use isophote_loader::Library;
+use isophote_pictures::exr::OnUnknown;
 use isophote_pictures::floats::{self, Header, Layer, Picture, Precision};
 use isophote_pictures::read;
 use isophote_render::targets::{Target, Targets};
@@ -91,6 +92,9 @@ pub struct RenderArgs {
     /// Style of the frames: none, a style, a look, or a preset or graph file (.json).
     #[arg(long, default_value = "none")]
     style: PathBuf,
+    /// What to do with names in rules of a preset that nothing in the scene has.
+    #[arg(long, value_enum, default_value_t)]
+    on_unknown: OnUnknown,
     /// Sets a parameter of the style; node.id=value for one node of a graph. May be repeated.
     #[arg(long, value_name = "ID=VALUE")]
     set: Vec<Setting>,
@@ -134,7 +138,8 @@ pub fn run(args: &RenderArgs) -> Result<()> {
     let options = Options { materials, ..args.options(&scene)? };
     let look = match style {
         Some((library, (style, own))) => {
-            let directed = Directed::new(library, &style, own, (&scene, &args.scene.scene))?;
+            let place = (&scene, args.scene.scene.as_path());
+            let directed = Directed::new(library, &style, own, place, args.on_unknown)?;
             Some(Look { library, style, directed })
         }
         None => None,

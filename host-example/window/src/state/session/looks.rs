@@ -37,7 +37,7 @@ impl Session {
         let look = self.looks.present();
         if !look.preset.objects.is_empty() {
             let said = format!(
-                "{} has rules for objects, which `isophote apply` follows and this window does not",
+                "{} has rules for objects, which `isophote apply` and `render` follow and this window does not",
                 look.name
             );
             self.notes.say(said);
