@@ -16,8 +16,8 @@ use crate::file::LONG_NAMES;
 
 /// Chunks that each thread compresses before they are written: few enough to take little memory.
 const CHUNKS_AT_ONCE: usize = 4;
-/// The first bytes of a file.
-const MAGIC: [u8; 4] = [0x76, 0x2f, 0x31, 0x01];
+/// The first bytes of every EXR file.
+pub const MAGIC: [u8; 4] = [0x76, 0x2f, 0x31, 0x01];
 /// The version field of a file of scan lines of one part.
 const VERSION: u32 = 2;
 /// Bytes of the place of a chunk.

@@ -17,13 +17,11 @@ use crate::pixels::{MOST_PIXELS, Pixels, Samples};
 use crate::primaries::{Change, REC709};
 use crate::tiff::Wide;
 use crate::{colours, hdr, jpeg, png, said, svg, weight};
+use isophote_exr_edit::create::MAGIC;
 use isophote_files::error::{Error, Result};
 use isophote_files::frames;
 use isophote_files::input;
 use isophote_files::limits;
-
-/// First bytes of an EXR file.
-const EXR: [u8; 4] = [0x76, 0x2f, 0x31, 0x01];
 
 /// Bytes that a decoder may take for the smallest picture: its tables and texts.
 const LEAST: u64 = 64 << 20;
@@ -130,7 +128,7 @@ impl Unread {
     /// As [`open`].
     pub fn read(self, path: &Path, selection: &Selection) -> Result<Opened> {
         let bytes = self.bytes(path)?;
-        if bytes.starts_with(&EXR) {
+        if bytes.starts_with(&MAGIC) {
             let opened = exr::Opened::new(path, bytes, selection)?;
             return Ok(Opened(Kind::Exr(Box::new(opened))));
         }
@@ -143,7 +141,7 @@ impl Unread {
     /// As [`open`].
     pub fn any(self, path: &Path) -> Result<Any> {
         let bytes = self.bytes(path)?;
-        Ok(if bytes.starts_with(&EXR) {
+        Ok(if bytes.starts_with(&MAGIC) {
             Any::Exr(bytes)
         } else {
             Any::Other(Opened(Kind::Other(bytes, None)))
@@ -265,7 +263,7 @@ fn hint(path: &Path) -> String {
 /// True where a file is a whole picture, and no beginning of one.
 pub fn is_whole(path: &Path) -> bool {
     let Ok(bytes) = Unread::open(path).and_then(|file| file.bytes(path)) else { return false };
-    if bytes.starts_with(&EXR) {
+    if bytes.starts_with(&MAGIC) {
         return exr::is_whole(bytes);
     }
     if bytes.starts_with(b"<svg") {
