@@ -91,6 +91,9 @@ enum Chore {
 }
 
 fn main() -> ExitCode {
+    if let Some(code) = test::stand_in() {
+        return code;
+    }
     // Clap itself ends wrong usage with code 2.
     let outcome = match Cli::parse().chore {
         Chore::Demo(options) => demo::run(&options),
