@@ -50,6 +50,7 @@ pub struct ApplyArgs {
     /// shot.<UDIM>.exr; one # alone for any number of digits. A file of exactly this name comes first. A video
     /// that ffmpeg reads, such as .mp4, .mov, .mkv, .webm or .gif, or an animated .png or .webp; or - for YUV4MPEG on
     /// standard input. A folder of pictures where the results go to a folder.
+    #[allow(rustdoc::invalid_html_tags, reason = "read in a terminal")]
     #[arg(required_unless_present_any = ["preset", "layered", "to"], value_hint = ValueHint::AnyPath)]
     pub input: Option<PathBuf>,
     /// The result: .png, .jpg, .tif, .exr, or .svg for curves around areas of one colour, for a sequence with #### as well;

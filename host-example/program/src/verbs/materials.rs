@@ -31,7 +31,7 @@ pub struct MaterialsArgs {
 /// Runs the verb.
 ///
 /// # Errors
-/// [`Error::Input`] for files that are there already, [`Error::Failure`] where none can be written.
+/// As [`write::write`], and for files that are there already.
 pub fn run(args: &MaterialsArgs) -> Result<()> {
     if let Some(folder) = &args.folder {
         write_all(args, folder)?;
