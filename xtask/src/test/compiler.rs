@@ -147,8 +147,8 @@ fn documenter(rustc: &OsStr, arguments: &[Argument<'_>]) -> Command {
         .filter(|argument| OF_DOCUMENTS.contains(&argument.name) || argument.name.ends_with(".rs"));
     rustdoc.args(kept.flat_map(|argument| argument.words));
     rustdoc.args(["-D", "warnings", "--out-dir"]).arg(folder().join("documents"));
-    // As cargo has programs documented.
-    if arguments.iter().any(|argument| argument.begins("--crate-type", "bin")) {
+    // Nobody but its authors reads of a program or a plugin.
+    if !arguments.iter().any(|argument| argument.begins("--crate-type", "lib")) {
         rustdoc.args(["--document-private-items", "-A", "rustdoc::private-intra-doc-links"]);
     }
     rustdoc
