@@ -272,7 +272,7 @@ impl FrameCall<'_> {
     /// Frames before and after this one that there are, as many as the graph wants.
     ///
     /// # Safety
-    /// As [`Job::run`].
+    /// As [`FrameCall::run`].
     unsafe fn known(&mut self, state: &State) -> Outcome<[u32; 2]> {
         let (wanted, seen) = (self.graph.frames(), self.graph.frames_of(GraphInput::Color));
         let whole = Rect::of_size(self.request.width, self.request.height);
@@ -302,7 +302,7 @@ impl FrameCall<'_> {
     /// Pulls what a plan reads; the frame, counted from this one, of an image that is not there.
     ///
     /// # Safety
-    /// As [`Job::run`].
+    /// As [`FrameCall::run`].
     unsafe fn pull_all(&mut self, needed: &[Needed]) -> Outcome<Option<i32>> {
         let whole = Rect::of_size(self.request.width, self.request.height);
         for Needed { input, offset, .. } in needed {

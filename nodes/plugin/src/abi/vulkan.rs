@@ -1,7 +1,7 @@
 //! The extension for Vulkan devices of hosts' own: graphs are recorded there, from and to the hosts' images.
 //!
 //! Nothing here waits for the GPU or submits by itself. [`device`] is the host's device, [`objects`] what is made on it,
-//! [`context`] what effects share, [`images`] what hosts hand in, [`passes`] a program made ready, [`record`] its commands,
+//! [`context`] what effects share, [`images`] what hosts hand in, [`passes`] a program made ready, [`mod@record`] its commands,
 //! and [`effect`] all of a graph.
 
 mod context;
