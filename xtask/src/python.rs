@@ -8,7 +8,9 @@
 use crate::error::{Context, Failure, Result};
 use crate::packing;
 use crate::setup::{self, C_COMPILER, PYTHON};
-use crate::tools::{build_library, heading, host_file, library_file, root, run as run_command, target_dir};
+use crate::tools::{
+    WRAPPER, build_library, heading, host_file, library_file, root, run as run_command, target_dir,
+};
 use std::ffi::OsStr;
 use std::fs::File;
 use std::path::{Path, PathBuf};
@@ -293,7 +295,7 @@ fn build_wheel(environment: &Environment, profile: &str, out: &Path) -> Result<P
     }
     let mut maturin = environment.program("maturin");
     // The workspace's own build has linted the module.
-    maturin.env_remove(crate::test::WRAPPER);
+    maturin.env_remove(WRAPPER);
     maturin.args(["build", "--quiet", "--locked", "--manifest-path"]).arg(package().join("Cargo.toml"));
     maturin.arg("--target-dir").arg(target_dir("python")).arg("--out").arg(out);
     maturin.arg("--interpreter").arg(environment.file("python"));

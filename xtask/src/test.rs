@@ -5,9 +5,9 @@ use crate::setup::{
     self, BINUTILS, BLENDER, BROWSER, C_COMPILER, CLANG, CPP_COMPILER, FFMPEG, PACKAGING, PYTHON, SLURM,
     VALGRIND, VULKAN, VULKAN_HEADERS, XVFB,
 };
-use crate::tools::{cargo, cargo_command, heading, library_file, root, target_dir};
+use crate::tools::{WRAPPER, cargo, cargo_command, heading, library_file, root, target_dir};
 use crate::{cases, python, web};
-pub use compiler::{WRAPPER, stand_in};
+pub use compiler::stand_in;
 use programs::Program;
 use report::Ran;
 use std::process::{Command, Output};

@@ -21,6 +21,9 @@ pub struct HandedOn {
     pub arguments: Vec<String>,
 }
 
+/// The variable by which cargo is told of a compiler for the crates of the workspace, which gets rustc and its arguments.
+pub const WRAPPER: &str = "RUSTC_WORKSPACE_WRAPPER";
+
 /// Prints the heading of the next step, and how long the chore has run since its first heading.
 pub fn heading(what: &str) {
     static STARTED: OnceLock<Instant> = OnceLock::new();

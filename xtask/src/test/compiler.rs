@@ -5,13 +5,11 @@
 //! other use for.
 
 use crate::error::{Context, Failure, Result};
-use crate::tools::{root, run as run_command, target_dir};
+use crate::tools::{WRAPPER, root, run as run_command, target_dir};
 use std::ffi::{OsStr, OsString};
 use std::path::{Path, PathBuf};
 use std::process::{Command, ExitCode};
 
-/// The variable by which cargo is told of such a compiler, which gets rustc and its arguments.
-pub const WRAPPER: &str = "RUSTC_WORKSPACE_WRAPPER";
 /// Options of rustc that have a value of their own in the next argument.
 const WITH_VALUE: [&str; 11] = [
     "--crate-name",
