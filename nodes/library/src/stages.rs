@@ -31,6 +31,7 @@ pub(crate) mod marks;
 pub(crate) mod morphology;
 pub mod optical_flow;
 pub(crate) mod oriented_bilateral;
+pub(crate) mod palette;
 pub(crate) mod paper;
 pub(crate) mod quantization;
 pub(crate) mod quantize_luminance;

@@ -252,6 +252,7 @@ def cartoon(
     saturation: float = 1.0,
     lights: float = 0.0,
     darks: float = 0.0,
+    palette: Literal['none', 'comic', 'gouache', 'handheld', 'home_computer', 'four_colours', 'graphics_card', 'terminal', 'blueprint', 'ink_and_paper', 'sepia', 'silver', 'pastel', 'sunset', 'forest', 'night_city', 'riso'] = 'none',
     dots: float = 0.0,
     dot_spacing: float = 9.0,
     shading: Literal['lightness', 'light'] = 'lightness',
@@ -379,6 +380,10 @@ def cartoon(
             colour axes of CIELAB. 0 to 4.
         lights: Brightens the light tones above 0, and darkens them below. -1 to 1.
         darks: Brightens the dark tones above 0, and darkens them below. -1 to 1.
+        palette: Draws the result in the colours of a palette and no others; the node Palette takes
+            your own. Each pixel has the colour that is nearest in CIELAB, its tones brought half
+            the way to those of the palette, as the node `palette` does without dither. Lines that
+            are shown alone keep their colour.
         dots: Prints light and mid colours as dots of ink on white paper, as in old comics; 0 prints
             none and costs nothing. Seen from afar the dots have the colours of the picture; darks
             and pure colours are solid. Lines are not printed, and neither is the picture where they
@@ -957,6 +962,7 @@ def ink(
     crease_color: Color = (0.5, 0.25, 0.18, 1.0),
     paper_color: Color = (0.965, 0.955, 0.93, 1.0),
     saturation: float = 1.0,
+    palette: Literal['none', 'comic', 'gouache', 'handheld', 'home_computer', 'four_colours', 'graphics_card', 'terminal', 'blueprint', 'ink_and_paper', 'sepia', 'silver', 'pastel', 'sunset', 'forest', 'night_city', 'riso'] = 'none',
     cover: bool = False,
     edge_scale: float = 1.0,
     flow_length: float = 1.0,
@@ -1066,6 +1072,10 @@ def ink(
         paper_color: Colour of the paper.
         saturation: Strength of the picture's own colours, as far as the medium shows them: 0 is
             grey. Factor on the colour axes of CIELAB. 0 to 4.
+        palette: Draws the result in the colours of a palette and no others; the node Palette takes
+            your own. Each pixel has the colour that is nearest in CIELAB, its tones brought half
+            the way to those of the palette, as the node `palette` does without dither. Lines that
+            are shown alone keep their colour.
         cover: Puts paper also where the picture is transparent. The result is then opaque.
         edge_scale: Size of the edges that draw lines: 1 is the medium's own. Factor on sigma_e
             (4.7). 0 to 4.
@@ -1178,6 +1188,7 @@ def halftone(
     spot_2: Color = (0.93, 0.32, 0.27, 1.0),
     spot_3: Color = (0.99, 0.81, 0.2, 1.0),
     paper_color: Color = (0.965, 0.95, 0.91, 1.0),
+    palette: Literal['none', 'comic', 'gouache', 'handheld', 'home_computer', 'four_colours', 'graphics_card', 'terminal', 'blueprint', 'ink_and_paper', 'sepia', 'silver', 'pastel', 'sunset', 'forest', 'night_city', 'riso'] = 'none',
     paper_texture: float = 0.06,
     detail: float = 0.5,
     saturation: float = 1.0,
@@ -1275,6 +1286,11 @@ def halftone(
         spot_2: The second colour of your own, as it looks on the paper.
         spot_3: The third colour of your own, as it looks on the paper, where there are three.
         paper_color: Colour of the paper.
+        palette: Prints with the paper and the inks of a palette, in the place of colours of your
+            own. The lightest colour of the palette is the paper, and the darkest the only ink, the
+            black one and spot 1. Spots 2 and 3 are those of the rest that differ most from all
+            before them in CIELAB. Four process inks give way to three spots. Lines keep their
+            colour.
         paper_texture: How rough the paper looks. 0 to 1.
         detail: How much of the picture's detail stays: low values give flat areas, high ones keep
             small things. Scales `sigma_r` from 3 to 1/3 times and `sigma_d` from 2 to 1/2. 0 to 1.

@@ -11,9 +11,14 @@ const DITHERS: [&str; 3] = ["none", "bayer", "noise"];
 
 /// A picture in the colours of a palette, with the settings of [`PLAIN`] and others.
 fn painted(settings: &[(&str, &str)], request: Request, picture: &Image) -> Image {
-    let mut graph = Graph::single("palette").unwrap();
+    styled("palette", &[&PLAIN, settings].concat(), request, picture)
+}
+
+/// A picture through a node.
+fn styled(node: &str, settings: &[(&str, &str)], request: Request, picture: &Image) -> Image {
+    let mut graph = Graph::single(node).unwrap();
     let node = graph.node(0).unwrap();
-    for (param, value) in PLAIN.iter().chain(settings) {
+    for (param, value) in settings {
         graph.set_text(node, param, value).unwrap();
     }
     let planned = Planned::new(&graph, request).unwrap();
@@ -143,6 +148,57 @@ fn palettes_that_ship_have_as_many_colours_as_they_say() {
             }
         }
     }
+}
+
+#[test]
+fn styles_end_in_the_colours_of_a_palette() {
+    let waves = picture([96, 64], |x, y| {
+        let wave = |f: f32| 0.5 + 0.45 * ((x as f32 * f).sin() * (y as f32 * 0.11 * f).cos());
+        [wave(0.13), wave(0.21), wave(0.08), 1.0]
+    });
+    let straight = Request { premultiplied: false, ..request(&waves) };
+    let riso = ["#25356f", "#e9503f", "#f2c23c", "#f6f1e3"];
+    let allowed: BTreeSet<[u32; 3]> = riso.iter().map(|hex| eight_bits(hex).map(f32::to_bits)).collect();
+    for style in ["cartoon", "ink"] {
+        let free = colours(&styled(style, &[], straight, &waves));
+        let found = colours(&styled(style, &[("palette", "riso")], straight, &waves));
+        assert!(free.len() > 100 && found.len() > 1 && found.is_subset(&allowed), "{style}: {}", found.len());
+        // Lines that are laid over something else keep their colour.
+        let alone = [("show", "lines"), ("palette", "riso")];
+        assert!(
+            styled(style, &alone, straight, &waves) == styled(style, &alone[..1], straight, &waves),
+            "{style}"
+        );
+    }
+}
+
+#[test]
+fn halftones_are_printed_with_the_paper_and_the_inks_of_a_palette() {
+    let flat = |v: f32| picture([48, 48], |_, _| [v, v, v, 1.0]);
+    let print = |v: f32, more: &[(&str, &str)]| {
+        let settings = [&[("palette", "riso"), ("paper_texture", "0"), ("softness", "0")], more].concat();
+        let picture = flat(v);
+        styled("halftone", &settings, Request { premultiplied: false, ..request(&picture) }, &picture)
+    };
+    let (paper, navy) = (eight_bits("#f6f1e3"), eight_bits("#25356f"));
+    let near = |image: &Image, colour: [f32; 3]| {
+        image.data().chunks_exact(4).all(|p| (0..3).all(|c| (p[c] - colour[c]).abs() < 2.0 / 255.0))
+    };
+    assert!(near(&print(1.0, &[]), paper));
+    assert!(near(&print(0.0, &[("inks", "one")]), navy));
+    // The same inks by hand.
+    let by_hand = [
+        ("palette", "none"),
+        ("inks", "three_spots"),
+        ("paper_color", "#f6f1e3"),
+        ("spot_1", "#25356f"),
+        ("spot_2", "#e9503f"),
+        ("spot_3", "#f2c23c"),
+        ("ink_color", "#25356f"),
+    ];
+    let other = [&by_hand[..4], &[("spot_3", "#e9503f"), ("spot_2", "#f2c23c")]].concat();
+    let found = print(0.4, &[]);
+    assert!(found == print(0.4, &by_hand) || found == print(0.4, &other));
 }
 
 #[test]

@@ -48,13 +48,20 @@ pub struct Options<'a> {
     pub origin: [f32; 2],
 }
 
+/// Thresholds that nothing is compared with.
+static NO_PATTERN: Pattern = [[0.0; 4]; SIDE * SIDE / 4];
+
+impl<'a> Options<'a> {
+    /// The nearest of the colours for each pixel, with tones brought `fit` of the way to theirs.
+    pub fn nearest(colours: &'a [[f32; 3]], fit: f32) -> Self {
+        Self { colours, fit, spread: 0.0, pattern: &NO_PATTERN, cell: 1.0, origin: [0.0; 2] }
+    }
+}
+
 /// Paints a Lab image in the colours of a palette. The result is gamma-encoded RGB.
 pub fn pass(plan: &mut PlanBuilder, lab: ImageId, options: &Options<'_>) -> ImageId {
     let count = options.colours.len().clamp(1, MOST);
-    let mut colours = [[0.0; 4]; MOST];
-    for (colour, [r, g, b]) in colours.iter_mut().zip(options.colours) {
-        *colour = [*r, *g, *b, 1.0];
-    }
+    let colours = padded(options.colours);
     let labs = labs(&colours);
     let lightness = labs[..count].iter().map(|lab| lab[0]);
     let (low, high) = lightness.fold((100.0f32, 0.0f32), |(low, high), l| (low.min(l), high.max(l)));
@@ -73,9 +80,18 @@ pub fn pass(plan: &mut PlanBuilder, lab: ImageId, options: &Options<'_>) -> Imag
     plan.pass(&KERNEL, &[lab], &params, Class::Colour, Support::Pixels(0))
 }
 
+/// Colours of a palette, opaque, and black in the places that it leaves.
+pub fn padded(palette: &[[f32; 3]]) -> [[f32; 4]; MOST] {
+    let mut colours = [[0.0; 4]; MOST];
+    for (colour, [r, g, b]) in colours.iter_mut().zip(palette) {
+        *colour = [*r, *g, *b, 1.0];
+    }
+    colours
+}
+
 /// CIELAB of gamma-encoded colours, by the arithmetic that pictures go through: a picture that has these colours is at no
 /// distance from them.
-fn labs(colours: &[[f32; 4]; MOST]) -> [[f32; 4]; MOST] {
+pub fn labs(colours: &[[f32; 4]; MOST]) -> [[f32; 4]; MOST] {
     let mut labs = [[0.0; 4]; MOST];
     dispatch!(Level::new(), simd => {
         for (colours, labs) in colours.chunks_exact(BLOCK).zip(labs.chunks_exact_mut(BLOCK)) {

@@ -1,18 +1,17 @@
 //! Pictures in the colours of a palette and no others (§ 4.6 quantizes lightness alone), with ordered dither where it is
 //! asked for.
 
-mod colours;
 mod patterns;
 
-use self::colours::{COMIC, Palette, rgb};
 use self::patterns::{BAYER, Dither};
 use crate::declare::ports;
 use crate::declare::spec::{NodeSpec, Param, STEADINESS, Scope, WINDOW};
 use crate::declare::value::Value;
-use crate::kernels::colour::palette_colours::{self, MOST, Options};
+use crate::kernels::colour::palette_colours::{self, Options};
 use crate::kernels::colour::rgb_to_lab;
 use crate::stages::LOOK;
 use crate::stages::abstraction::{self, Abstraction};
+use crate::stages::palette::{COMIC, Colours, FIT, Palette, rgb};
 use crate::stages::steady::{Agreement, COLOUR_AGREEMENT, steadied};
 use crate::stages::tensor_options::TensorOptions;
 use isophote_engine::ImageId;
@@ -57,7 +56,7 @@ pub static NODE: NodeSpec = NodeSpec {
         COLORS[13],
         COLORS[14],
         COLORS[15],
-        Param::float("fit", "Fit tones", 0.5, [0.0, 1.0])
+        Param::float("fit", "Fit tones", FIT, [0.0, 1.0])
             .group(LOOK)
             .hint("Brings black and white to the darkest and lightest colour of the palette: 0 leaves tones as they are.")
             .doc("Share of the way from lightness 0..100 to that of the palette."),
@@ -148,10 +147,10 @@ const fn color(at: usize) -> Param {
 
 fn build(scope: &mut Scope<'_>) -> ImageId {
     let [smooth] = steadied(scope, Agreement::lab(COLOUR_AGREEMENT), |scope| [smoothed(scope)]);
-    let (colours, count) = colours(scope);
+    let colours = colours(scope);
     let pattern = scope.option::<Dither>("dither").pattern();
     let options = Options {
-        colours: &colours[..count],
+        colours: colours.all(),
         fit: scope.float("fit"),
         spread: if pattern.is_some() { scope.float("spread") } else { 0.0 },
         pattern: pattern.unwrap_or(&BAYER),
@@ -173,18 +172,14 @@ fn smoothed(scope: &mut Scope<'_>) -> ImageId {
     rgb_to_lab::pass(scope.plan, color, 1.0)
 }
 
-/// The colours of the palette that is chosen, and their number.
-fn colours(scope: &Scope<'_>) -> ([[f32; 3]; MOST], usize) {
-    let mut colours = [[0.0; 3]; MOST];
+/// The colours of the palette that is chosen.
+fn colours(scope: &Scope<'_>) -> Colours {
     if let Some(shipped) = scope.option::<Palette>("palette").colours() {
-        for (colour, hex) in colours.iter_mut().zip(shipped) {
-            *colour = rgb(*hex);
-        }
-        return (colours, shipped.len());
+        return Colours::of_numbers(shipped);
     }
-    for (colour, param) in colours.iter_mut().zip(&COLORS) {
+    let own = COLORS.iter().map(|param| {
         let [r, g, b, _] = scope.color(param.id);
-        *colour = [r, g, b];
-    }
-    (colours, scope.int("count") as usize)
+        [r, g, b]
+    });
+    Colours::new(own.take(scope.int("count") as usize))
 }

@@ -16,7 +16,7 @@ use crate::stages::tensor_options::Guides;
 use crate::stages::{
     ADVANCED, LOOK, ben_day, cel_light, difference_of_gaussians as dog, flow_dog, light_steps, line_context,
     line_integral_convolution as lic, line_on_dark, line_wobble, lines, quantization as levels,
-    quantize_luminance as quantization, tone, warp_sharpen,
+    palette, quantize_luminance as quantization, tone, warp_sharpen,
 };
 use isophote_engine::{ImageId, PlanBuilder};
 
@@ -66,6 +66,7 @@ pub static NODE: NodeSpec = NodeSpec {
         tone::SATURATION,
         tone::LIGHTS,
         tone::DARKS,
+        palette::PALETTE,
         ben_day::DOTS,
         ben_day::DOT_SPACING,
         cel_light::SHADING,
@@ -210,7 +211,8 @@ fn build(scope: &mut Scope<'_>) -> ImageId {
         drawn = line_integral_convolution::pass_unadapted(scope.plan, drawn, tensor, &smooth);
     }
     // Last: smoothing along the edges would draw the dots out. Lines are kept out of them.
-    ben_day::printed(scope, drawn, inked.edges, inked.line[3])
+    let printed = ben_day::printed(scope, drawn, inked.edges, inked.line[3]);
+    palette::ended(scope, printed)
 }
 
 /// A smoothed picture in few flat tones, in Lab.

@@ -14,7 +14,7 @@ use crate::stages::abstraction::{self, Abstraction};
 use crate::stages::control::Control;
 use crate::stages::steady::{Agreement, COLOUR_AGREEMENT, steadied};
 use crate::stages::{
-    ADVANCED, LOOK, difference_of_gaussians as dog, flow_dog, line_context, line_sets, lines, tone,
+    ADVANCED, LOOK, difference_of_gaussians as dog, flow_dog, line_context, line_sets, lines, palette, tone,
 };
 use isophote_engine::ImageId;
 
@@ -86,6 +86,13 @@ pub static NODE: NodeSpec = NodeSpec {
         Param::color("paper_color", "Paper colour", [0.965, 0.95, 0.91, 1.0])
             .group(LOOK)
             .hint("Colour of the paper."),
+        palette::PALETTE
+            .hint("Prints with the paper and the inks of a palette, in the place of colours of your own.")
+            .doc(
+                "The lightest colour of the palette is the paper, and the darkest the only ink, the black one and spot 1. Spots 2 and 3 are \
+                 those of the rest that differ most from all before them in CIELAB. Four process inks give way to three spots. \
+                 Lines keep their colour.",
+            ),
         Param::float("paper_texture", "Paper texture", 0.06, [0.0, 1.0])
             .group(LOOK)
             .hint("How rough the paper looks."),

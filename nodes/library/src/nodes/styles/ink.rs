@@ -32,7 +32,7 @@ use crate::stages::structure_tensor::of_color_and_guides;
 use crate::stages::tensor_options::TensorOptions;
 use crate::stages::{
     ADVANCED, LOOK, difference_of_gaussians as dog, flow_map, line_context, line_integral_convolution as lic,
-    line_on_dark, line_sets, lines, marks, paper, tone,
+    line_on_dark, line_sets, lines, marks, palette, paper, tone,
 };
 use isophote_engine::{Class, ImageId, math};
 
@@ -91,6 +91,7 @@ pub static NODE: NodeSpec = NodeSpec {
             .hint("Colour of the paper."),
         tone::SATURATION
             .hint("Strength of the picture's own colours, as far as the medium shows them: 0 is grey."),
+        palette::PALETTE,
         Param::bool("cover", "Opaque paper", false)
             .group(LOOK)
             .hint("Puts paper also where the picture is transparent.")
@@ -463,5 +464,6 @@ fn build(scope: &mut Scope<'_>) -> ImageId {
     let painted = paint.is_some();
     let lines = paint.map_or(lines, |paint| ink_paint::pass(scope.plan, [lines, paint], sheet.cut));
     let drawing = Drawing { lines, painted, color: tinted, strokes, marks, tones: toned, paper };
-    ink_sheet::pass(scope.plan, &drawing, &sheet)
+    let sheet = ink_sheet::pass(scope.plan, &drawing, &sheet);
+    palette::ended(scope, sheet)
 }

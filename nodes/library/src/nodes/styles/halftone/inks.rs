@@ -4,7 +4,9 @@ use crate::declare::choice::choice;
 use crate::declare::spec::Scope;
 use crate::kernels::colour::halftone_screen::Plate;
 use crate::kernels::colour::ink_separation::Plates;
+use crate::kernels::colour::palette_colours::{labs, padded};
 use crate::kernels::shared::colour::LUMINANCE;
+use crate::stages::palette::{self, Ending, PALETTE};
 
 choice! {
     /// Inks that a picture is printed with.
@@ -57,18 +59,20 @@ pub(super) struct Press {
 impl Press {
     /// The press that the parameters of `scope` say.
     pub(super) fn of(scope: &Scope<'_>) -> Self {
-        let paper = light(scope.color("paper_color"));
-        let chosen = |id| Ink::on(paper, light(scope.color(id)));
+        let colours = Colours::of(scope);
+        let paper = light(colours.paper);
+        let chosen = |color| Ink::on(paper, light(color));
+        let [first, second, third] = colours.spots.map(chosen);
+        let black = chosen(colours.black);
         let process = |ink| Ink { color: times(light(ink), paper), ..Ink::on([1.0; 3], light(ink)) };
         let none = Ink::on(paper, paper);
-        match scope.option("inks") {
+        match colours.inks {
             Inks::One => {
-                let ink = chosen("ink_color");
-                let lights = luminance(ink.color) > luminance(paper);
-                Self::new(scope, &[(ink, AT_45)], paper, Plates::One { lights })
+                let lights = luminance(black.color) > luminance(paper);
+                Self::new(scope, &[(black, AT_45)], paper, Plates::One { lights })
             }
             Inks::Process => {
-                let (inks, black) = ([YELLOW, MAGENTA, CYAN].map(process), chosen("ink_color"));
+                let inks = [YELLOW, MAGENTA, CYAN].map(process);
                 let separation = Plates::Four {
                     inks: inks.map(|ink| ink.taken),
                     black: luminance(black.taken),
@@ -78,15 +82,12 @@ impl Press {
                 Self::new(scope, &[(y, AT_0), (m, AT_75), (c, AT_15), (black, AT_45)], paper, separation)
             }
             Inks::TwoSpots => {
-                let inks = ["spot_2", "spot_1"].map(chosen);
-                let separation = Plates::Three([inks[0], inks[1], none].map(|ink| ink.taken));
-                Self::new(scope, &[(inks[0], AT_75), (inks[1], AT_45)], paper, separation)
+                let separation = Plates::Three([second, first, none].map(|ink| ink.taken));
+                Self::new(scope, &[(second, AT_75), (first, AT_45)], paper, separation)
             }
             Inks::ThreeSpots => {
-                let inks = ["spot_3", "spot_2", "spot_1"].map(chosen);
-                let [third, second, first] = inks;
                 let plates = [(third, AT_15), (second, AT_75), (first, AT_45)];
-                Self::new(scope, &plates, paper, Plates::Three(inks.map(|ink| ink.taken)))
+                Self::new(scope, &plates, paper, Plates::Three([third, second, first].map(|ink| ink.taken)))
             }
         }
     }
@@ -110,6 +111,58 @@ impl Press {
     pub(super) fn plates(&self) -> &[Plate] {
         &self.plates[..self.count]
     }
+}
+
+/// Colours of a print, gamma-encoded, and which of them it has.
+#[derive(Clone, Copy, Debug)]
+struct Colours {
+    inks: Inks,
+    paper: [f32; 4],
+    /// That of the only ink, and of the black one.
+    black: [f32; 4],
+    spots: [[f32; 4]; 3],
+}
+
+impl Colours {
+    /// Those that the parameters of `scope` say, or those of a palette.
+    fn of(scope: &Scope<'_>) -> Self {
+        let inks = scope.option("inks");
+        if let Some(numbers) = scope.option::<Ending>(PALETTE.id).colours() {
+            return Self::of_palette(palette::Colours::of_numbers(numbers).all(), inks);
+        }
+        let [paper, black] = ["paper_color", "ink_color"].map(|id| scope.color(id));
+        Self { inks, paper, black, spots: ["spot_1", "spot_2", "spot_3"].map(|id| scope.color(id)) }
+    }
+
+    /// The lightest colour of a palette as paper, and the darkest and those that differ most from all before them as inks. Where
+    /// there are no more, the rest of the inks look like the paper.
+    fn of_palette(palette: &[[f32; 3]], inks: Inks) -> Self {
+        let colours = padded(palette);
+        let labs = labs(&colours);
+        let by_lightness = |a: &usize, b: &usize| labs[*a][0].total_cmp(&labs[*b][0]);
+        let paper = (0..palette.len()).max_by(by_lightness).unwrap_or_default();
+        let darkest = (0..palette.len()).min_by(by_lightness).unwrap_or_default();
+        // Distance from the nearest of those that are taken.
+        let mut apart = labs.map(|lab| distance(lab, labs[paper]));
+        let mut spots = [colours[paper]; 3];
+        for (number, spot) in spots.iter_mut().enumerate() {
+            let farthest = (0..palette.len()).max_by(|a, b| apart[*a].total_cmp(&apart[*b])).unwrap_or_default();
+            let taken = if number == 0 { darkest } else { farthest };
+            if apart[taken] > 0.0 {
+                *spot = colours[taken];
+            }
+            for (apart, lab) in apart.iter_mut().zip(&labs) {
+                *apart = apart.min(distance(*lab, labs[taken]));
+            }
+        }
+        let inks = if inks == Inks::Process { Inks::ThreeSpots } else { inks };
+        Self { inks, paper: colours[paper], black: spots[0], spots }
+    }
+}
+
+/// Square of the distance between two colours.
+fn distance(a: [f32; 4], b: [f32; 4]) -> f32 {
+    a.iter().zip(b).map(|(a, b)| (a - b) * (a - b)).sum()
 }
 
 /// An ink, linear RGB.
@@ -183,6 +236,20 @@ mod tests {
                 }
             }
         }
+    }
+
+    #[test]
+    fn palettes_give_the_paper_and_the_inks_that_differ_most() {
+        // Navy, coral, yellow, a darker yellow and cream.
+        let palette = palette::Colours::of_numbers(&[0xf2c23c, 0x25356f, 0xd8ac34, 0xf6f1e3, 0xe9503f]);
+        let palette = palette.all();
+        let colour = |at: usize| [palette[at][0], palette[at][1], palette[at][2], 1.0];
+        let colours = Colours::of_palette(palette, Inks::Process);
+        assert_eq!((colours.inks, colours.paper, colours.black), (Inks::ThreeSpots, colour(3), colour(1)));
+        assert_eq!(colours.spots[0], colour(1));
+        assert!(colours.spots[1..] == [colour(4), colour(0)] || colours.spots[1..] == [colour(0), colour(4)]);
+        let two = Colours::of_palette(&palette[1..4], Inks::One);
+        assert_eq!((two.inks, two.spots), (Inks::One, [colour(1), colour(2), colour(3)]));
     }
 
     #[test]
