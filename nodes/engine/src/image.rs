@@ -93,11 +93,19 @@ pub const MAX_SIDE: u32 = 1 << 16;
 
 /// A 32-bit float image: `channels` (1..=4) interleaved values a pixel, covering `window` of a
 /// picture.
-#[derive(Clone, Debug, Default, PartialEq)]
+#[derive(Clone, Debug, Default)]
 pub struct Image {
     window: Rect,
     channels: u32,
+    /// The values, and behind them what an image of another shape has left: to clear that for the next one would take as long as a
+    /// pass, in which all threads but one wait.
     data: Vec<f32>,
+}
+
+impl PartialEq for Image {
+    fn eq(&self, other: &Self) -> bool {
+        (self.window, self.channels) == (other.window, other.channels) && self.data() == other.data()
+    }
 }
 
 /// Access of the CPU executor to the memory of images.
@@ -126,9 +134,7 @@ impl Image {
     pub(crate) fn reshape(&mut self, window: Rect, channels: u32) -> Result<()> {
         let len = window.width() as usize * window.height() as usize * channels as usize;
         let mut data = std::mem::take(self).data;
-        if data.capacity() >= len {
-            data.resize(len, 0.0);
-        } else {
+        if data.len() < len {
             drop(data);
             data = memory::zeroed(len)?;
         }
@@ -211,17 +217,24 @@ impl Image {
 
     /// All values, row by row.
     pub fn data(&self) -> &[f32] {
-        &self.data
+        &self.data[..self.len()]
     }
 
     /// All values, row by row.
     pub fn data_mut(&mut self) -> &mut [f32] {
-        &mut self.data
+        let len = self.len();
+        &mut self.data[..len]
     }
 
     /// The values of all pixels, giving up the image.
-    pub fn into_data(self) -> Vec<f32> {
+    pub fn into_data(mut self) -> Vec<f32> {
+        self.data.truncate(self.len());
         self.data
+    }
+
+    /// Number of values.
+    fn len(&self) -> usize {
+        self.stride() * self.window.height() as usize
     }
 
     /// Values from one row to the next.
@@ -305,7 +318,7 @@ impl<'a> View<'a> {
     /// A view of `image` as part of a picture of `full` pixels.
     #[inline]
     pub fn new(image: &'a Image, full: [i32; 2]) -> Self {
-        Self { data: &image.data, window: image.window, channels: image.channels, full }
+        Self { data: image.data(), window: image.window, channels: image.channels, full }
     }
 
     /// The same of the rows of `image` down to `y1`, exclusive.

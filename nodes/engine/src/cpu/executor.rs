@@ -150,18 +150,14 @@ impl CpuExecutor {
         self.strip.unwrap_or(STRIP.max(BAND * threads.count() as i32 * 4))
     }
 
-    /// Memory for an image that passes write: the spare one that wastes least, or a new one.
+    /// Memory for an image that passes write: the smallest spare one that is enough, or a new one.
     ///
     /// # Errors
     /// [`Error::Memory`] when there is not enough.
     fn take(&mut self, window: Rect, channels: u32) -> Result<Image> {
-        let need = window.area() as usize * channels as usize;
-        let best = self
-            .spare
-            .iter()
-            .enumerate()
-            .min_by_key(|(_, image)| image.data().len().abs_diff(need))
-            .map(|(i, _)| i);
+        let need = window.area() * u64::from(channels) * size_of::<f32>() as u64;
+        let fit = |image: &Image| (image.memory() < need, image.memory().abs_diff(need));
+        let best = (0..self.spare.len()).min_by_key(|i| fit(&self.spare[*i]));
         let mut image = best.map(|i| self.spare.swap_remove(i)).unwrap_or_default();
         if image.reshape(window, channels).is_err() {
             // What is kept may be all that there is.
