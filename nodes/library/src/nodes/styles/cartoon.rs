@@ -15,8 +15,8 @@ use crate::stages::steady::{Agreement, COLOUR_AGREEMENT, steadied};
 use crate::stages::tensor_options::Guides;
 use crate::stages::{
     ADVANCED, LOOK, ben_day, cel_light, difference_of_gaussians as dog, flow_dog, light_steps, line_context,
-    line_integral_convolution as lic, line_on_dark, line_wobble, lines, quantization as levels,
-    palette, quantize_luminance as quantization, tone, warp_sharpen,
+    line_integral_convolution as lic, line_on_dark, line_wobble, lines, palette, quantization as levels,
+    quantize_luminance as quantization, tone, warp_sharpen,
 };
 use isophote_engine::{ImageId, PlanBuilder};
 

@@ -146,7 +146,8 @@ impl Colours {
         let mut apart = labs.map(|lab| distance(lab, labs[paper]));
         let mut spots = [colours[paper]; 3];
         for (number, spot) in spots.iter_mut().enumerate() {
-            let farthest = (0..palette.len()).max_by(|a, b| apart[*a].total_cmp(&apart[*b])).unwrap_or_default();
+            let farthest =
+                (0..palette.len()).max_by(|a, b| apart[*a].total_cmp(&apart[*b])).unwrap_or_default();
             let taken = if number == 0 { darkest } else { farthest };
             if apart[taken] > 0.0 {
                 *spot = colours[taken];
