@@ -5,7 +5,7 @@
 //! other use for.
 
 use crate::error::{Context, Failure, Result};
-use crate::tools::{WRAPPER, root, run as run_command, target_dir};
+use crate::tools::{WRAPPER, cargo_command, root, run as run_command, target_dir};
 use std::ffi::{OsStr, OsString};
 use std::path::{Path, PathBuf};
 use std::process::{Command, ExitCode};
@@ -55,8 +55,12 @@ pub fn lints() -> bool {
 /// Runs a copy of this program with the arguments, as the compiler that its cargo calls. The program itself is built anew meanwhile.
 ///
 /// # Errors
-/// When the copy cannot be made, and when it fails.
+/// When clippy is not there, when the copy cannot be made, and when it fails.
 pub fn run_linting(arguments: &[&str]) -> Result<()> {
+    let version = cargo_command(&["clippy", "--version"]).output();
+    if !version.is_ok_and(|version| version.status.success()) {
+        return Err(Failure("clippy is not installed; run `rustup component add clippy`".into()));
+    }
     let folder = folder();
     std::fs::create_dir_all(&folder).context(|| format!("cannot make {}", folder.display()))?;
     let copy = folder.join(format!("xtask{}", std::env::consts::EXE_SUFFIX));
