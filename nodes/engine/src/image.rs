@@ -93,13 +93,19 @@ pub const MAX_SIDE: u32 = 1 << 16;
 
 /// A 32-bit float image: `channels` (1..=4) interleaved values a pixel, covering `window` of a
 /// picture.
-#[derive(Clone, Debug, Default)]
+#[derive(Debug, Default)]
 pub struct Image {
     window: Rect,
     channels: u32,
     /// The values, and behind them what an image of another shape has left: to clear that for the next one would take as long as a
     /// pass, in which all threads but one wait.
     data: Vec<f32>,
+}
+
+impl Clone for Image {
+    fn clone(&self) -> Self {
+        Self { data: self.data().to_vec(), ..*self }
+    }
 }
 
 impl PartialEq for Image {
