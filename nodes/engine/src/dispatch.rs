@@ -6,7 +6,7 @@
 
 #[doc(hidden)]
 pub use fearless_simd as vectors;
-use fearless_simd::Level;
+use fearless_simd::{Level, Simd, SimdBase};
 
 /// Runs `$op` with vectors `$simd` of the widest instruction set that `$level` has and this build knows.
 ///
@@ -45,8 +45,22 @@ pub const IS_FOR_AVX512: bool = !cfg!(debug_assertions);
 /// Hides which instruction set it is, so that code is written for all.
 #[doc(hidden)]
 #[inline(always)]
-pub fn of_any<S: fearless_simd::Simd>(simd: S) -> impl fearless_simd::Simd {
+pub fn of_any<S: Simd>(simd: S) -> impl Simd {
     simd
+}
+
+/// Runs `op` as a function of its own by SSE2, and in place by wider instruction sets.
+///
+/// SSE2 takes several instructions, and calls, for what others do in one. What is inlined by it into the loops of large kernels
+/// makes functions that the compiler spends minutes on; a machine without AVX2 can afford the call.
+#[inline(always)]
+pub fn apart<S: Simd, R>(simd: S, op: impl FnOnce() -> R) -> R {
+    // A constant, so that only one of the two is compiled.
+    if const { cfg!(target_arch = "x86_64") && <S::f32s as SimdBase<S>>::LEN == 4 } {
+        simd.vectorize(op)
+    } else {
+        op()
+    }
 }
 
 /// The level, but AVX2 for AVX-512: for code that measurements show to be slower by AVX-512, such as chains of
@@ -81,7 +95,7 @@ pub fn levels() -> Vec<(&'static str, Level)> {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use fearless_simd::{Simd, SimdBase, f32x8};
+    use fearless_simd::f32x8;
 
     #[test]
     fn every_level_is_dispatched_to() {

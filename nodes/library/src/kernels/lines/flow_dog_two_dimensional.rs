@@ -168,16 +168,29 @@ impl Filter<'_> {
         sum
     }
 
-    /// Adds the response across the tangent at (x, y), (u alpha, alpha), times `weight`.
+    /// Adds the response across the tangent at (x, y), (u alpha, alpha), times `weight`. It is called, not inlined: five samples
+    /// for every pair of steps, at the start and on either side of two kinds of lines, made one function that took a
+    /// third of the time in which the library compiles.
     #[inline(always)]
     fn add<S: Simd>(
         &self,
         simd: S,
         sum: &mut [f32x8<S>; 2],
         weight: f32x8<S>,
-        [x, y]: [f32x8<S>; 2],
-        [tx, ty]: [f32x8<S>; 2],
+        place: [f32x8<S>; 2],
+        tangent: [f32x8<S>; 2],
     ) {
+        let [u, alpha] = simd.vectorize(
+            #[inline(always)]
+            || self.across(simd, place, tangent),
+        );
+        sum[0] = weight.mul_add(u, sum[0]);
+        sum[1] = weight.mul_add(alpha, sum[1]);
+    }
+
+    /// The response across the tangent at (x, y): (u alpha and lines, alpha).
+    #[inline(always)]
+    fn across<S: Simd>(&self, simd: S, [x, y]: [f32x8<S>; 2], [tx, ty]: [f32x8<S>; 2]) -> [f32x8<S>; 2] {
         let (zero, one) = (f32x8::splat(simd, 0.0), f32x8::splat(simd, 1.0));
         let params = self.params;
         let upright = tx.abs().simd_gt(ty.abs());
@@ -204,7 +217,6 @@ impl Filter<'_> {
         }
         let (u, covered) = dog_of_sums([narrow, narrow_alpha], [wide, wide_alpha], params.base, params.edge);
         let u = covered.select(u, zero);
-        sum[0] = weight.mul_add(u * alpha + lines, sum[0]);
-        sum[1] = weight.mul_add(alpha, sum[1]);
+        [u * alpha + lines, alpha]
     }
 }

@@ -15,6 +15,7 @@ use crate::kernels::shared::sectors::{INSIDE, MIN_RADIUS, Polynomial, Response, 
 use crate::kernels::shared::tensor::{anisotropy, tangent};
 use crate::kernels::simd::moment_buffer::{CHANNELS, MomentBuffer, for_rows};
 use crate::kernels::simd::pixels::{Block, eight, write};
+use isophote_engine::dispatch::apart;
 use isophote_engine::fearless_simd::{Simd, f32x8, prelude::*};
 use isophote_engine::{Band, Class, CpuPass, ImageId, PlanBuilder, Support, Tolerance};
 use std::f32::consts::FRAC_1_SQRT_2;
@@ -116,18 +117,26 @@ fn filter<S: Simd>(simd: S, pass: &CpuPass<'_>, params: &Params, band: &mut Band
                 let original = block.read(simd, color);
                 let place = Place { planes, x, y };
                 let response = match (opaque, params.sectors == 8) {
-                    (true, true) => {
-                        filtered::<S, true, true>(simd, place, &ellipses, params, &mut taps, original)
-                    }
-                    (false, true) => {
-                        filtered::<S, false, true>(simd, place, &ellipses, params, &mut taps, original)
-                    }
-                    (true, false) => {
-                        filtered::<S, true, false>(simd, place, &ellipses, params, &mut taps, original)
-                    }
-                    (false, false) => {
-                        filtered::<S, false, false>(simd, place, &ellipses, params, &mut taps, original)
-                    }
+                    (true, true) => apart(
+                        simd,
+                        #[inline(always)]
+                        || filtered::<S, true, true>(simd, place, &ellipses, params, &mut taps, original),
+                    ),
+                    (false, true) => apart(
+                        simd,
+                        #[inline(always)]
+                        || filtered::<S, false, true>(simd, place, &ellipses, params, &mut taps, original),
+                    ),
+                    (true, false) => apart(
+                        simd,
+                        #[inline(always)]
+                        || filtered::<S, true, false>(simd, place, &ellipses, params, &mut taps, original),
+                    ),
+                    (false, false) => apart(
+                        simd,
+                        #[inline(always)]
+                        || filtered::<S, false, false>(simd, place, &ellipses, params, &mut taps, original),
+                    ),
                 };
                 put_response(response, [x, x1.min(x + 8)], y, band);
             }
