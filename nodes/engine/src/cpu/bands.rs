@@ -8,8 +8,10 @@ use crate::kernel::{Band, CpuPass, Kernel};
 use crate::memory;
 use std::sync::{Mutex, OnceLock};
 
-/// Least rows of a band.
+/// Least rows of a band, where there are not more threads than bands of so many.
 pub(super) const BAND: i32 = 16;
+/// Least rows of a band among however many threads.
+const THINNEST: usize = 4;
 
 /// Runs `kernel` over the rows of `window` of `outputs`, which must hold them. Does less when `control`
 /// says to stop.
@@ -26,9 +28,7 @@ pub(super) fn run_bands(
     control: Control<'_>,
 ) -> Result<()> {
     let height = window.height() as usize;
-    // Some bands per thread even out unequal rows; very thin ones would read their halo too often.
-    let bands = (threads.count() * 4).clamp(1, height.div_ceil(BAND as usize).max(1));
-    let jobs = split(window, full, outputs, height.div_ceil(bands));
+    let jobs = split(window, full, outputs, rows(height, threads.count()));
     let cancelled = control.cancelled;
     let failed = OnceLock::new();
     threads.run(jobs.len(), &|i| {
@@ -45,6 +45,13 @@ pub(super) fn run_bands(
     });
     drop(jobs);
     failed.into_inner().map_or(Ok(()), Err)
+}
+
+/// Rows of a band of a picture of `height` rows. Up to four bands for each thread even out unequal rows, but very thin ones would
+/// read their halo too often. As many for each thread, or in the last turn some would wait for others.
+fn rows(height: usize, threads: usize) -> usize {
+    let turns = (height / BAND as usize / threads.max(1)).clamp(1, 4);
+    height.div_ceil(turns * threads.max(1)).max(THINNEST)
 }
 
 /// Bands of `rows` rows of `window`, each with its part of every image.
@@ -68,4 +75,19 @@ fn split(window: Rect, full: [i32; 2], outputs: &mut [Image], rows: usize) -> Ve
         }
     }
     bands
+}
+
+#[cfg(test)]
+mod tests {
+    use super::rows;
+
+    #[test]
+    fn threads_get_as_many_bands_each() {
+        for (threads, expected) in
+            [(0, 270), (1, 270), (2, 135), (16, 17), (32, 17), (64, 17), (128, 9), (2000, 4)]
+        {
+            assert_eq!(rows(1080, threads), expected, "{threads} threads");
+        }
+        assert_eq!((rows(1, 2), rows(0, 2), rows(20, 2)), (4, 4, 10));
+    }
 }
