@@ -49,10 +49,22 @@ pub fn of_any<S: Simd>(simd: S) -> impl Simd {
     simd
 }
 
-/// Runs `op` as a function of its own by SSE2, and in place by wider instruction sets.
+/// Runs `$op` as a function of its own by SSE2, and in place by wider instruction sets.
 ///
 /// SSE2 takes several instructions, and calls, for what others do in one. What is inlined by it into the loops of large kernels
 /// makes functions that the compiler spends minutes on; a machine without AVX2 can afford the call.
+#[macro_export]
+macro_rules! apart {
+    ($simd:expr, $op:expr $(,)?) => {
+        $crate::dispatch::apart(
+            $simd,
+            #[inline(always)]
+            || $op,
+        )
+    };
+}
+
+#[doc(hidden)]
 #[inline(always)]
 pub fn apart<S: Simd, R>(simd: S, op: impl FnOnce() -> R) -> R {
     // A constant, so that only one of the two is compiled.

@@ -4,8 +4,8 @@
 //! which is what makes tiles equal full frames. Polynomials are those of the Cephes library or of
 //! least greatest error, their relative error below 3e-7 over the stated ranges.
 
+use crate::apart;
 use crate::bounds::Bounds;
-use crate::dispatch::apart;
 #[cfg(target_arch = "x86_64")]
 use fearless_simd::Avx2;
 use fearless_simd::{Simd, f32x4, f32x8, f32x16, i32x4, i32x8, i32x16, prelude::*};
@@ -45,27 +45,23 @@ macro_rules! elementary {
             #[inline(always)]
             fn exp(self) -> Self {
                 let simd = self.simd;
-                apart(
-                    simd,
-                    #[inline(always)]
-                    || {
-                        let x = self.at_most($float::splat(simd, 88.3)).at_least($float::splat(simd, -88.0));
-                        let n = (x * $float::splat(simd, std::f32::consts::LOG2_E)).round_ties_even();
-                        let r = n.mul_add($float::splat(simd, -LN2_HIGH), x);
-                        let r = n.mul_add($float::splat(simd, -LN2_LOW), r);
-                        let p = $float::splat(simd, 1.987_569_1e-4);
-                        let p = p.mul_add(r, $float::splat(simd, 1.398_2e-3));
-                        let p = p.mul_add(r, $float::splat(simd, 8.333_452e-3));
-                        let p = p.mul_add(r, $float::splat(simd, 4.166_579_6e-2));
-                        let p = p.mul_add(r, $float::splat(simd, 1.666_666_5e-1));
-                        let p = p.mul_add(r, $float::splat(simd, 0.5));
-                        let p = p.mul_add(r * r, r + $float::splat(simd, 1.0));
-                        let n: $int<S> = n.to_int();
-                        let scale: $float<S> = ((n + $int::splat(simd, 127)) << 23).bitcast();
-                        let result = p * scale;
-                        self.simd_lt($float::splat(simd, -87.3)).select($float::splat(simd, 0.0), result)
-                    },
-                )
+                apart!(simd, {
+                    let x = self.at_most($float::splat(simd, 88.3)).at_least($float::splat(simd, -88.0));
+                    let n = (x * $float::splat(simd, std::f32::consts::LOG2_E)).round_ties_even();
+                    let r = n.mul_add($float::splat(simd, -LN2_HIGH), x);
+                    let r = n.mul_add($float::splat(simd, -LN2_LOW), r);
+                    let p = $float::splat(simd, 1.987_569_1e-4);
+                    let p = p.mul_add(r, $float::splat(simd, 1.398_2e-3));
+                    let p = p.mul_add(r, $float::splat(simd, 8.333_452e-3));
+                    let p = p.mul_add(r, $float::splat(simd, 4.166_579_6e-2));
+                    let p = p.mul_add(r, $float::splat(simd, 1.666_666_5e-1));
+                    let p = p.mul_add(r, $float::splat(simd, 0.5));
+                    let p = p.mul_add(r * r, r + $float::splat(simd, 1.0));
+                    let n: $int<S> = n.to_int();
+                    let scale: $float<S> = ((n + $int::splat(simd, 127)) << 23).bitcast();
+                    let result = p * scale;
+                    self.simd_lt($float::splat(simd, -87.3)).select($float::splat(simd, 0.0), result)
+                })
             }
 
             #[inline(always)]
@@ -76,100 +72,80 @@ macro_rules! elementary {
             #[inline(always)]
             fn exp2_falling(self) -> Self {
                 let simd = self.simd;
-                apart(
-                    simd,
-                    #[inline(always)]
-                    || {
-                        let x = self.at_least($float::splat(simd, -126.0));
-                        let shift = $float::splat(simd, WHOLE);
-                        let shifted = x + shift;
-                        let r = x - (shifted - shift);
-                        // In pairs, so that no more than four operations wait for each other.
-                        let rr = r * r;
-                        let a = r.mul_add($float::splat(simd, 6.931_469_8e-1), $float::splat(simd, 1.0));
-                        let b = r.mul_add(
-                            $float::splat(simd, 5.550_733_7e-2),
-                            $float::splat(simd, 2.402_224_2e-1),
-                        );
-                        let c =
-                            r.mul_add($float::splat(simd, 1.326_472_7e-3), $float::splat(simd, 9.671_513e-3));
-                        let p = rr.mul_add(c, b).mul_add(rr, a);
-                        // The whole part goes to the exponent: p is at least 0.7, so that it does not run over.
-                        let n = shifted.bitcast::<$int<S>>() << 23;
-                        (p.bitcast::<$int<S>>() + n).bitcast()
-                    },
-                )
+                apart!(simd, {
+                    let x = self.at_least($float::splat(simd, -126.0));
+                    let shift = $float::splat(simd, WHOLE);
+                    let shifted = x + shift;
+                    let r = x - (shifted - shift);
+                    // In pairs, so that no more than four operations wait for each other.
+                    let rr = r * r;
+                    let a = r.mul_add($float::splat(simd, 6.931_469_8e-1), $float::splat(simd, 1.0));
+                    let b =
+                        r.mul_add($float::splat(simd, 5.550_733_7e-2), $float::splat(simd, 2.402_224_2e-1));
+                    let c = r.mul_add($float::splat(simd, 1.326_472_7e-3), $float::splat(simd, 9.671_513e-3));
+                    let p = rr.mul_add(c, b).mul_add(rr, a);
+                    // The whole part goes to the exponent: p is at least 0.7, so that it does not run over.
+                    let n = shifted.bitcast::<$int<S>>() << 23;
+                    (p.bitcast::<$int<S>>() + n).bitcast()
+                })
             }
 
             #[inline(always)]
             fn ln(self) -> Self {
                 let simd = self.simd;
-                apart(
-                    simd,
-                    #[inline(always)]
-                    || {
-                        let bits: $int<S> = self.bitcast();
-                        let exponent = (bits >> 23) - $int::splat(simd, 126);
-                        let mantissa =
-                            (bits & $int::splat(simd, 0x007f_ffff)) | $int::splat(simd, 0x3f00_0000);
-                        let m: $float<S> = mantissa.bitcast();
-                        let e: $float<S> = exponent.to_float();
-                        // m lies in [0.5, 1); below sqrt(1/2) it is doubled so that the series stays short.
-                        let small = m.simd_lt($float::splat(simd, std::f32::consts::FRAC_1_SQRT_2));
-                        let e = small.select(e - $float::splat(simd, 1.0), e);
-                        let x = small.select(m + m, m) - $float::splat(simd, 1.0);
-                        let z = x * x;
-                        let p = $float::splat(simd, 7.037_683_6e-2);
-                        let p = p.mul_add(x, $float::splat(simd, -1.151_461e-1));
-                        let p = p.mul_add(x, $float::splat(simd, 1.167_699_9e-1));
-                        let p = p.mul_add(x, $float::splat(simd, -1.242_014_1e-1));
-                        let p = p.mul_add(x, $float::splat(simd, 1.424_932_3e-1));
-                        let p = p.mul_add(x, $float::splat(simd, -1.666_805_7e-1));
-                        let p = p.mul_add(x, $float::splat(simd, 2.000_071_5e-1));
-                        let p = p.mul_add(x, $float::splat(simd, -2.499_999_4e-1));
-                        let p = p.mul_add(x, $float::splat(simd, 3.333_333_1e-1));
-                        let y = p * x * z;
-                        let y = e.mul_add($float::splat(simd, LN2_LOW), y);
-                        let y = z.mul_add($float::splat(simd, -0.5), y);
-                        e.mul_add($float::splat(simd, LN2_HIGH), x + y)
-                    },
-                )
+                apart!(simd, {
+                    let bits: $int<S> = self.bitcast();
+                    let exponent = (bits >> 23) - $int::splat(simd, 126);
+                    let mantissa = (bits & $int::splat(simd, 0x007f_ffff)) | $int::splat(simd, 0x3f00_0000);
+                    let m: $float<S> = mantissa.bitcast();
+                    let e: $float<S> = exponent.to_float();
+                    // m lies in [0.5, 1); below sqrt(1/2) it is doubled so that the series stays short.
+                    let small = m.simd_lt($float::splat(simd, std::f32::consts::FRAC_1_SQRT_2));
+                    let e = small.select(e - $float::splat(simd, 1.0), e);
+                    let x = small.select(m + m, m) - $float::splat(simd, 1.0);
+                    let z = x * x;
+                    let p = $float::splat(simd, 7.037_683_6e-2);
+                    let p = p.mul_add(x, $float::splat(simd, -1.151_461e-1));
+                    let p = p.mul_add(x, $float::splat(simd, 1.167_699_9e-1));
+                    let p = p.mul_add(x, $float::splat(simd, -1.242_014_1e-1));
+                    let p = p.mul_add(x, $float::splat(simd, 1.424_932_3e-1));
+                    let p = p.mul_add(x, $float::splat(simd, -1.666_805_7e-1));
+                    let p = p.mul_add(x, $float::splat(simd, 2.000_071_5e-1));
+                    let p = p.mul_add(x, $float::splat(simd, -2.499_999_4e-1));
+                    let p = p.mul_add(x, $float::splat(simd, 3.333_333_1e-1));
+                    let y = p * x * z;
+                    let y = e.mul_add($float::splat(simd, LN2_LOW), y);
+                    let y = z.mul_add($float::splat(simd, -0.5), y);
+                    e.mul_add($float::splat(simd, LN2_HIGH), x + y)
+                })
             }
 
             #[inline(always)]
             fn powf(self, y: f32) -> Self {
                 let simd = self.simd;
-                apart(
-                    simd,
-                    #[inline(always)]
-                    || {
-                        let zero = $float::splat(simd, 0.0);
-                        let bits: $int<S> = self.at_least($float::splat(simd, f32::MIN_POSITIVE)).bitcast();
-                        // The mantissa lies between the roots of 1/2 and 2, so that log2 has no sign to lose.
-                        let exponent = (bits - $int::splat(simd, 0x3f35_04f3)) >> 23;
-                        let mantissa: $float<S> = (bits - (exponent << 23)).bitcast();
-                        let x = mantissa - $float::splat(simd, 1.0);
-                        // In pairs, as above.
-                        let xx = x * x;
-                        let p0 =
-                            x.mul_add($float::splat(simd, -7.213_571_7e-1), $float::splat(simd, 1.442_694_8));
-                        let p1 = x.mul_add(
-                            $float::splat(simd, -3.600_871_9e-1),
-                            $float::splat(simd, 4.809_394_5e-1),
-                        );
-                        let p2 = x
-                            .mul_add($float::splat(simd, -2.500_693e-1), $float::splat(simd, 2.867_075_5e-1));
-                        let p3 = x.mul_add(
-                            $float::splat(simd, -1.457_429_53e-1),
-                            $float::splat(simd, 2.368_897_8e-1),
-                        );
-                        let (low, high) = (xx.mul_add(p1, p0), xx.mul_add(p3, p2));
-                        let p = (xx * xx).mul_add(high, low);
-                        let log2 = p.mul_add(x, exponent.to_float::<$float<S>>());
-                        let power = (log2 * $float::splat(simd, y)).exp2();
-                        self.simd_gt(zero).select(power, zero)
-                    },
-                )
+                apart!(simd, {
+                    let zero = $float::splat(simd, 0.0);
+                    let bits: $int<S> = self.at_least($float::splat(simd, f32::MIN_POSITIVE)).bitcast();
+                    // The mantissa lies between the roots of 1/2 and 2, so that log2 has no sign to lose.
+                    let exponent = (bits - $int::splat(simd, 0x3f35_04f3)) >> 23;
+                    let mantissa: $float<S> = (bits - (exponent << 23)).bitcast();
+                    let x = mantissa - $float::splat(simd, 1.0);
+                    // In pairs, as above.
+                    let xx = x * x;
+                    let p0 =
+                        x.mul_add($float::splat(simd, -7.213_571_7e-1), $float::splat(simd, 1.442_694_8));
+                    let p1 =
+                        x.mul_add($float::splat(simd, -3.600_871_9e-1), $float::splat(simd, 4.809_394_5e-1));
+                    let p2 =
+                        x.mul_add($float::splat(simd, -2.500_693e-1), $float::splat(simd, 2.867_075_5e-1));
+                    let p3 =
+                        x.mul_add($float::splat(simd, -1.457_429_53e-1), $float::splat(simd, 2.368_897_8e-1));
+                    let (low, high) = (xx.mul_add(p1, p0), xx.mul_add(p3, p2));
+                    let p = (xx * xx).mul_add(high, low);
+                    let log2 = p.mul_add(x, exponent.to_float::<$float<S>>());
+                    let power = (log2 * $float::splat(simd, y)).exp2();
+                    self.simd_gt(zero).select(power, zero)
+                })
             }
 
             #[inline(always)]
@@ -189,25 +165,21 @@ macro_rules! elementary {
             #[inline(always)]
             fn tanh(self) -> Self {
                 let simd = self.simd;
-                apart(
-                    simd,
-                    #[inline(always)]
-                    || {
-                        let a = self.abs();
-                        let z = self * self;
-                        let p = $float::splat(simd, -5.704_988_7e-3);
-                        let p = p.mul_add(z, $float::splat(simd, 2.063_908_9e-2));
-                        let p = p.mul_add(z, $float::splat(simd, -5.373_971_5e-2));
-                        let p = p.mul_add(z, $float::splat(simd, 1.333_144_2e-1));
-                        let p = p.mul_add(z, $float::splat(simd, -3.333_328_2e-1));
-                        let near = (p * z).mul_add(self, self);
-                        let e = (a + a).at_most($float::splat(simd, 40.0)).exp();
-                        let far = ($float::splat(simd, 1.0)
-                            - $float::splat(simd, 2.0) / (e + $float::splat(simd, 1.0)))
-                        .copysign(self);
-                        a.simd_lt($float::splat(simd, 0.625)).select(near, far)
-                    },
-                )
+                apart!(simd, {
+                    let a = self.abs();
+                    let z = self * self;
+                    let p = $float::splat(simd, -5.704_988_7e-3);
+                    let p = p.mul_add(z, $float::splat(simd, 2.063_908_9e-2));
+                    let p = p.mul_add(z, $float::splat(simd, -5.373_971_5e-2));
+                    let p = p.mul_add(z, $float::splat(simd, 1.333_144_2e-1));
+                    let p = p.mul_add(z, $float::splat(simd, -3.333_328_2e-1));
+                    let near = (p * z).mul_add(self, self);
+                    let e = (a + a).at_most($float::splat(simd, 40.0)).exp();
+                    let far = ($float::splat(simd, 1.0)
+                        - $float::splat(simd, 2.0) / (e + $float::splat(simd, 1.0)))
+                    .copysign(self);
+                    a.simd_lt($float::splat(simd, 0.625)).select(near, far)
+                })
             }
         }
     };

@@ -13,7 +13,7 @@
 pub use crate::kernels::shaders::directed_shock::Params;
 use crate::kernels::shared::tensor::axis;
 use crate::kernels::simd::pixels::{BLOCK, Block, fetch4, offsets, write};
-use isophote_engine::dispatch::apart;
+use isophote_engine::apart;
 use isophote_engine::fearless_simd::{Simd, f32x8, i32x8, mask32x8, prelude::*};
 use isophote_engine::{Band, Class, CpuPass, ImageId, PlanBuilder, Rect, Support, Tolerance, View};
 use luma_taps::{Line, LumaTaps, STRIP};
@@ -102,17 +102,9 @@ fn strips<S: Simd>(simd: S, pass: &CpuPass<'_>, params: &Params, band: &mut Band
                 let (_, n) = axis((e - g) * 0.5, f);
                 let line = smoothed.line(simd, block.x, y, n);
                 let z = if smoothed.is_opaque() {
-                    apart(
-                        simd,
-                        #[inline(always)]
-                        || flow_log::response::<_, true>(simd, derivative, &smoothed, &line, block),
-                    )
+                    apart!(simd, flow_log::response::<_, true>(simd, derivative, &smoothed, &line, block))
                 } else {
-                    apart(
-                        simd,
-                        #[inline(always)]
-                        || flow_log::response::<_, false>(simd, derivative, &smoothed, &line, block),
-                    )
+                    apart!(simd, flow_log::response::<_, false>(simd, derivative, &smoothed, &line, block))
                 };
                 let active = z.abs().simd_gt(f32x8::splat(simd, params.threshold));
                 if !active.any_true() {
@@ -126,20 +118,17 @@ fn strips<S: Simd>(simd: S, pass: &CpuPass<'_>, params: &Params, band: &mut Band
                 };
                 // Over so short a reach neighbours seldom come to lie farther apart.
                 let colors = match (lumas.is_opaque(), line.rows()) {
-                    (true, 1) => apart(
+                    (true, 1) => apart!(
                         simd,
-                        #[inline(always)]
-                        || extreme::<_, true, 1>(simd, pass, params, radius, lumas, &line, block, active, z),
+                        extreme::<_, true, 1>(simd, pass, params, radius, lumas, &line, block, active, z),
                     ),
-                    (true, _) => apart(
+                    (true, _) => apart!(
                         simd,
-                        #[inline(always)]
-                        || extreme::<_, true, 0>(simd, pass, params, radius, lumas, &line, block, active, z),
+                        extreme::<_, true, 0>(simd, pass, params, radius, lumas, &line, block, active, z),
                     ),
-                    (false, _) => apart(
+                    (false, _) => apart!(
                         simd,
-                        #[inline(always)]
-                        || extreme::<_, false, 0>(simd, pass, params, radius, lumas, &line, block, active, z),
+                        extreme::<_, false, 0>(simd, pass, params, radius, lumas, &line, block, active, z),
                     ),
                 };
                 write(colors, target);

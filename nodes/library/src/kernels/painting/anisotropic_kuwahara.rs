@@ -15,7 +15,7 @@ use crate::kernels::shared::sectors::{INSIDE, MIN_RADIUS, Polynomial, Response, 
 use crate::kernels::shared::tensor::{anisotropy, tangent};
 use crate::kernels::simd::moment_buffer::{CHANNELS, MomentBuffer, for_rows};
 use crate::kernels::simd::pixels::{Block, eight, write};
-use isophote_engine::dispatch::apart;
+use isophote_engine::apart;
 use isophote_engine::fearless_simd::{Simd, f32x8, prelude::*};
 use isophote_engine::{Band, Class, CpuPass, ImageId, PlanBuilder, Support, Tolerance};
 use std::f32::consts::FRAC_1_SQRT_2;
@@ -117,25 +117,21 @@ fn filter<S: Simd>(simd: S, pass: &CpuPass<'_>, params: &Params, band: &mut Band
                 let original = block.read(simd, color);
                 let place = Place { planes, x, y };
                 let response = match (opaque, params.sectors == 8) {
-                    (true, true) => apart(
+                    (true, true) => apart!(
                         simd,
-                        #[inline(always)]
-                        || filtered::<S, true, true>(simd, place, &ellipses, params, &mut taps, original),
+                        filtered::<S, true, true>(simd, place, &ellipses, params, &mut taps, original),
                     ),
-                    (false, true) => apart(
+                    (false, true) => apart!(
                         simd,
-                        #[inline(always)]
-                        || filtered::<S, false, true>(simd, place, &ellipses, params, &mut taps, original),
+                        filtered::<S, false, true>(simd, place, &ellipses, params, &mut taps, original),
                     ),
-                    (true, false) => apart(
+                    (true, false) => apart!(
                         simd,
-                        #[inline(always)]
-                        || filtered::<S, true, false>(simd, place, &ellipses, params, &mut taps, original),
+                        filtered::<S, true, false>(simd, place, &ellipses, params, &mut taps, original),
                     ),
-                    (false, false) => apart(
+                    (false, false) => apart!(
                         simd,
-                        #[inline(always)]
-                        || filtered::<S, false, false>(simd, place, &ellipses, params, &mut taps, original),
+                        filtered::<S, false, false>(simd, place, &ellipses, params, &mut taps, original),
                     ),
                 };
                 put_response(response, [x, x1.min(x + 8)], y, band);

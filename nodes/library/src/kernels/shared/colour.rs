@@ -3,7 +3,7 @@
 //! Both curves are extended to values below 0 and above 1 so that they stay monotonic and
 //! invertible. CIELAB is relative to D65, L in 0..100.
 
-use isophote_engine::dispatch::apart;
+use isophote_engine::apart;
 use isophote_engine::fearless_simd::{Simd, f32x8, i32x8, prelude::*};
 use isophote_engine::math::Elementary;
 
@@ -62,15 +62,11 @@ pub fn srgb_encode<S: Simd>([r, g, b]: Rgb<S>) -> Rgb<S> {
 
 #[inline(always)]
 fn encode<S: Simd>(v: f32x8<S>) -> f32x8<S> {
-    apart(
-        v.simd,
-        #[inline(always)]
-        || {
-            let a = v.abs();
-            let curve = a.powf(1.0 / 2.4) * 1.055 - 0.055;
-            a.simd_le(0.003_130_8).select(a * 12.92, curve).copysign(v)
-        },
-    )
+    apart!(v.simd, {
+        let a = v.abs();
+        let curve = a.powf(1.0 / 2.4) * 1.055 - 0.055;
+        a.simd_le(0.003_130_8).select(a * 12.92, curve).copysign(v)
+    })
 }
 
 /// The sRGB curve to linear light, odd about 0.
@@ -81,15 +77,11 @@ pub fn srgb_decode<S: Simd>([r, g, b]: Rgb<S>) -> Rgb<S> {
 
 #[inline(always)]
 fn decode<S: Simd>(v: f32x8<S>) -> f32x8<S> {
-    apart(
-        v.simd,
-        #[inline(always)]
-        || {
-            let a = v.abs();
-            let curve = power_2_4((a + 0.055) * (1.0 / 1.055));
-            a.simd_le(0.040_45).select(a * (1.0 / 12.92), curve).copysign(v)
-        },
-    )
+    apart!(v.simd, {
+        let a = v.abs();
+        let curve = power_2_4((a + 0.055) * (1.0 / 1.055));
+        a.simd_le(0.040_45).select(a * (1.0 / 12.92), curve).copysign(v)
+    })
 }
 
 /// x^2.4 of a positive, normal number, relative error below 6e-7: the cube of x times the inverse of its
@@ -135,11 +127,7 @@ fn inverse_root<S: Simd>(x: f32x8<S>, exponent: f32, offset: i32) -> f32x8<S> {
 /// f(t) of CIELAB: a cube root with a straight line towards 0.
 #[inline(always)]
 pub fn lab_curve<S: Simd>(t: f32x8<S>) -> f32x8<S> {
-    apart(
-        t.simd,
-        #[inline(always)]
-        || t.simd_le(EPSILON_LAB).select(t * SLOPE_LAB + 16.0 / 116.0, cube_root(t)),
-    )
+    apart!(t.simd, t.simd_le(EPSILON_LAB).select(t * SLOPE_LAB + 16.0 / 116.0, cube_root(t)))
 }
 
 /// Linear Rec. 709 to CIELAB.

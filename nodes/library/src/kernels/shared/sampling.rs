@@ -4,7 +4,7 @@
 
 use crate::kernels::simd::pixels::{load_pixel, load_pixels};
 use isophote_engine::View;
-use isophote_engine::dispatch::apart;
+use isophote_engine::apart;
 use isophote_engine::fearless_simd::{Simd, f32x8, f64x4, i32x8, prelude::*};
 use isophote_engine::math::{spread, transposed};
 
@@ -14,64 +14,56 @@ use isophote_engine::math::{spread, transposed};
 /// Each lane takes four 128-bit loads; hardware gathers would take sixteen times as many.
 #[inline(always)]
 pub fn sample_linear4<S: Simd>(simd: S, view: &View<'_>, x: f32x8<S>, y: f32x8<S>) -> [f32x8<S>; 4] {
-    apart(
-        simd,
-        #[inline(always)]
-        || {
-            let ([w, h], window, data) = (view.full(), view.window(), view.data());
-            let (columns, fx) = floor_and_share(x, w);
-            let (rows, fy) = floor_and_share(y, h);
-            let inside = columns.simd_ge(0) & columns.simd_lt(w - 1) & rows.simd_ge(0) & rows.simd_lt(h - 1);
-            let (fx, fy) = (spread(fx), spread(fy));
-            let mut pixels = [f32x8::splat(simd, 0.0); 4];
-            if inside.all_true() {
-                // Away from the edges the right neighbour is the next pixel: a fourth of the places to look up.
-                let stride = view.stride() as u32 as usize;
-                let at = ((rows - window.y0) * stride as i32 + (columns - window.x0) * 4).to_array();
-                for i in 0..4 {
-                    let (low, high) = (at[i] as u32 as usize, at[i + 4] as u32 as usize);
-                    let (low, high) = (&data[low..low + stride + 8], &data[high..high + stride + 8]);
-                    let a = load_pixels(simd, low, high);
-                    let b = load_pixels(simd, &low[4..], &high[4..]);
-                    let c = load_pixels(simd, &low[stride..], &high[stride..]);
-                    let d = load_pixels(simd, &low[stride + 4..], &high[stride + 4..]);
-                    pixels[i] = bilinear([a, b, c, d], fx[i], fy[i]);
-                }
-            } else {
-                let taps = LinearTaps::new(simd, view, x, y);
-                for (i, pixel) in pixels.iter_mut().enumerate() {
-                    let mut corners = [f32x8::splat(simd, 0.0); 4];
-                    for (corner, at) in corners.iter_mut().zip(&taps.at) {
-                        *corner = load_pixel(simd, data, at[i]).combine(load_pixel(simd, data, at[i + 4]));
-                    }
-                    *pixel = bilinear(corners, fx[i], fy[i]);
-                }
+    apart!(simd, {
+        let ([w, h], window, data) = (view.full(), view.window(), view.data());
+        let (columns, fx) = floor_and_share(x, w);
+        let (rows, fy) = floor_and_share(y, h);
+        let inside = columns.simd_ge(0) & columns.simd_lt(w - 1) & rows.simd_ge(0) & rows.simd_lt(h - 1);
+        let (fx, fy) = (spread(fx), spread(fy));
+        let mut pixels = [f32x8::splat(simd, 0.0); 4];
+        if inside.all_true() {
+            // Away from the edges the right neighbour is the next pixel: a fourth of the places to look up.
+            let stride = view.stride() as u32 as usize;
+            let at = ((rows - window.y0) * stride as i32 + (columns - window.x0) * 4).to_array();
+            for i in 0..4 {
+                let (low, high) = (at[i] as u32 as usize, at[i + 4] as u32 as usize);
+                let (low, high) = (&data[low..low + stride + 8], &data[high..high + stride + 8]);
+                let a = load_pixels(simd, low, high);
+                let b = load_pixels(simd, &low[4..], &high[4..]);
+                let c = load_pixels(simd, &low[stride..], &high[stride..]);
+                let d = load_pixels(simd, &low[stride + 4..], &high[stride + 4..]);
+                pixels[i] = bilinear([a, b, c, d], fx[i], fy[i]);
             }
-            transposed(pixels)
-        },
-    )
+        } else {
+            let taps = LinearTaps::new(simd, view, x, y);
+            for (i, pixel) in pixels.iter_mut().enumerate() {
+                let mut corners = [f32x8::splat(simd, 0.0); 4];
+                for (corner, at) in corners.iter_mut().zip(&taps.at) {
+                    *corner = load_pixel(simd, data, at[i]).combine(load_pixel(simd, data, at[i + 4]));
+                }
+                *pixel = bilinear(corners, fx[i], fy[i]);
+            }
+        }
+        transposed(pixels)
+    })
 }
 
 /// The pixels of a four-channel image at eight places, clamped to the picture, one vector per channel.
 #[inline(always)]
 pub fn fetch4<S: Simd>(simd: S, view: &View<'_>, x: i32x8<S>, y: i32x8<S>) -> [f32x8<S>; 4] {
-    apart(
-        simd,
-        #[inline(always)]
-        || {
-            let ([w, h], window) = (view.full(), view.window());
-            let zero = i32x8::splat(simd, 0);
-            let x = x.within(zero, i32x8::splat(simd, w - 1)) - window.x0;
-            let y = y.within(zero, i32x8::splat(simd, h - 1)) - window.y0;
-            let at = (y * view.stride() as i32 + x * 4).to_array();
-            let data = view.data();
-            let mut pixels = [f32x8::splat(simd, 0.0); 4];
-            for (i, pixel) in pixels.iter_mut().enumerate() {
-                *pixel = load_pixel(simd, data, at[i]).combine(load_pixel(simd, data, at[i + 4]));
-            }
-            transposed(pixels)
-        },
-    )
+    apart!(simd, {
+        let ([w, h], window) = (view.full(), view.window());
+        let zero = i32x8::splat(simd, 0);
+        let x = x.within(zero, i32x8::splat(simd, w - 1)) - window.x0;
+        let y = y.within(zero, i32x8::splat(simd, h - 1)) - window.y0;
+        let at = (y * view.stride() as i32 + x * 4).to_array();
+        let data = view.data();
+        let mut pixels = [f32x8::splat(simd, 0.0); 4];
+        for (i, pixel) in pixels.iter_mut().enumerate() {
+            *pixel = load_pixel(simd, data, at[i]).combine(load_pixel(simd, data, at[i + 4]));
+        }
+        transposed(pixels)
+    })
 }
 
 #[inline(always)]
@@ -93,27 +85,23 @@ fn floor_and_share<S: Simd>(position: f32x8<S>, full: i32) -> (i32x8<S>, f32x8<S
 /// Bilinear sample of a one-channel image at eight positions; see [`sample_linear4`].
 #[inline(always)]
 pub fn sample_linear1<S: Simd>(simd: S, view: &View<'_>, x: f32x8<S>, y: f32x8<S>) -> f32x8<S> {
-    apart(
-        simd,
-        #[inline(always)]
-        || {
-            let taps = LinearTaps::new(simd, view, x, y);
-            let data = view.data();
-            let mut corners = [[0.0f32; 8]; 4];
-            for (values, at) in corners.iter_mut().zip(&taps.at) {
-                for (value, at) in values.iter_mut().zip(at) {
-                    *value = data[*at as usize];
-                }
+    apart!(simd, {
+        let taps = LinearTaps::new(simd, view, x, y);
+        let data = view.data();
+        let mut corners = [[0.0f32; 8]; 4];
+        for (values, at) in corners.iter_mut().zip(&taps.at) {
+            for (value, at) in values.iter_mut().zip(at) {
+                *value = data[*at as usize];
             }
-            let [a, b, c, d] = corners;
-            let (a, b) = (f32x8::simd_from(simd, a), f32x8::simd_from(simd, b));
-            let (c, d) = (f32x8::simd_from(simd, c), f32x8::simd_from(simd, d));
-            let (fx, fy) = (f32x8::simd_from(simd, taps.fx), f32x8::simd_from(simd, taps.fy));
-            let top = (b - a).mul_add(fx, a);
-            let bottom = (d - c).mul_add(fx, c);
-            (bottom - top).mul_add(fy, top)
-        },
-    )
+        }
+        let [a, b, c, d] = corners;
+        let (a, b) = (f32x8::simd_from(simd, a), f32x8::simd_from(simd, b));
+        let (c, d) = (f32x8::simd_from(simd, c), f32x8::simd_from(simd, d));
+        let (fx, fy) = (f32x8::simd_from(simd, taps.fx), f32x8::simd_from(simd, taps.fy));
+        let top = (b - a).mul_add(fx, a);
+        let bottom = (d - c).mul_add(fx, c);
+        (bottom - top).mul_add(fy, top)
+    })
 }
 
 /// Bilinear sample of a two-channel image at eight positions, one vector per channel; see
@@ -122,46 +110,42 @@ pub fn sample_linear1<S: Simd>(simd: S, view: &View<'_>, x: f32x8<S>, y: f32x8<S
 /// The two pixels of a row are neighbours in memory too, so a lane takes two 128-bit loads.
 #[inline(always)]
 pub fn sample_linear2<S: Simd>(simd: S, view: &View<'_>, x: f32x8<S>, y: f32x8<S>) -> [f32x8<S>; 2] {
-    apart(
-        simd,
-        #[inline(always)]
-        || {
-            let ([w, h], window) = (view.full(), view.window());
-            if w < 2 {
-                return sample_column2(simd, view, x, y);
+    apart!(simd, {
+        let ([w, h], window) = (view.full(), view.window());
+        if w < 2 {
+            return sample_column2(simd, view, x, y);
+        }
+        let rows = Axis { full: h, start: window.y0, stride: view.stride() as i32 };
+        let (top, bottom, fy) = rows.taps(simd, y);
+        // At the right edge the left pixel is the last but one, with all the weight on the last.
+        let column = (x - 0.5).within(0.0f32, (w - 1) as f32);
+        let left = column.floor().at_most((w - 2) as f32);
+        let fx = column - left;
+        let left = (left.to_int::<i32x8<S>>() - i32x8::splat(simd, window.x0)) * 2;
+        let fy = spread(fy);
+        let data = view.data();
+        let mut pixels = [f32x8::splat(simd, 0.0); 4];
+        let stride = view.stride() as u32 as usize;
+        if (bottom - top).simd_eq(stride as i32).all_true() {
+            let at = (top + left).to_array();
+            for i in 0..4 {
+                let (low, high) = (at[i] as u32 as usize, at[i + 4] as u32 as usize);
+                let (low, high) = (&data[low..low + stride + 4], &data[high..high + stride + 4]);
+                let (a, b) =
+                    (load_pixels(simd, low, high), load_pixels(simd, &low[stride..], &high[stride..]));
+                pixels[i] = (b - a).mul_add(fy[i], a);
             }
-            let rows = Axis { full: h, start: window.y0, stride: view.stride() as i32 };
-            let (top, bottom, fy) = rows.taps(simd, y);
-            // At the right edge the left pixel is the last but one, with all the weight on the last.
-            let column = (x - 0.5).within(0.0f32, (w - 1) as f32);
-            let left = column.floor().at_most((w - 2) as f32);
-            let fx = column - left;
-            let left = (left.to_int::<i32x8<S>>() - i32x8::splat(simd, window.x0)) * 2;
-            let fy = spread(fy);
-            let data = view.data();
-            let mut pixels = [f32x8::splat(simd, 0.0); 4];
-            let stride = view.stride() as u32 as usize;
-            if (bottom - top).simd_eq(stride as i32).all_true() {
-                let at = (top + left).to_array();
-                for i in 0..4 {
-                    let (low, high) = (at[i] as u32 as usize, at[i + 4] as u32 as usize);
-                    let (low, high) = (&data[low..low + stride + 4], &data[high..high + stride + 4]);
-                    let (a, b) =
-                        (load_pixels(simd, low, high), load_pixels(simd, &low[stride..], &high[stride..]));
-                    pixels[i] = (b - a).mul_add(fy[i], a);
-                }
-            } else {
-                let (top, bottom) = ((top + left).to_array(), (bottom + left).to_array());
-                for (i, pixel) in pixels.iter_mut().enumerate() {
-                    let a = load_pixel(simd, data, top[i]).combine(load_pixel(simd, data, top[i + 4]));
-                    let b = load_pixel(simd, data, bottom[i]).combine(load_pixel(simd, data, bottom[i + 4]));
-                    *pixel = (b - a).mul_add(fy[i], a);
-                }
+        } else {
+            let (top, bottom) = ((top + left).to_array(), (bottom + left).to_array());
+            for (i, pixel) in pixels.iter_mut().enumerate() {
+                let a = load_pixel(simd, data, top[i]).combine(load_pixel(simd, data, top[i + 4]));
+                let b = load_pixel(simd, data, bottom[i]).combine(load_pixel(simd, data, bottom[i + 4]));
+                *pixel = (b - a).mul_add(fy[i], a);
             }
-            let [l0, l1, r0, r1] = transposed(pixels);
-            [(r0 - l0).mul_add(fx, l0), (r1 - l1).mul_add(fx, l1)]
-        },
-    )
+        }
+        let [l0, l1, r0, r1] = transposed(pixels);
+        [(r0 - l0).mul_add(fx, l0), (r1 - l1).mul_add(fx, l1)]
+    })
 }
 
 /// [`sample_linear2`] of a picture one pixel wide, whose columns have no neighbour.

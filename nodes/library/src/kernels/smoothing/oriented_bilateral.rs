@@ -14,7 +14,7 @@ use crate::kernels::shared::coverage::premultiply;
 use crate::kernels::shared::tensor::{anisotropy, tangent};
 use crate::kernels::simd::line_taps::{LineTaps, Lines, STEPS, strips};
 use crate::kernels::simd::pixels::{read, read_tensors, write};
-use isophote_engine::dispatch::apart;
+use isophote_engine::apart;
 use isophote_engine::fearless_simd::prelude::*;
 use isophote_engine::fearless_simd::{Simd, f32x8};
 use isophote_engine::math::Elementary;
@@ -132,21 +132,9 @@ fn filter<S: Simd>(simd: S, pass: &CpuPass<'_>, params: &Params, band: &mut Band
             let (mut i, count) = (0, strip.width() as usize);
             while i < count {
                 let result = match mode {
-                    MANUAL => apart(
-                        simd,
-                        #[inline(always)]
-                        || row.filtered::<S, MANUAL>(simd, i, &mut block),
-                    ),
-                    OPAQUE => apart(
-                        simd,
-                        #[inline(always)]
-                        || row.filtered::<S, OPAQUE>(simd, i, &mut block),
-                    ),
-                    _ => apart(
-                        simd,
-                        #[inline(always)]
-                        || row.filtered::<S, COVERED>(simd, i, &mut block),
-                    ),
+                    MANUAL => apart!(simd, row.filtered::<S, MANUAL>(simd, i, &mut block)),
+                    OPAQUE => apart!(simd, row.filtered::<S, OPAQUE>(simd, i, &mut block)),
+                    _ => apart!(simd, row.filtered::<S, COVERED>(simd, i, &mut block)),
                 };
                 write(result, &mut target[4 * i..4 * count.min(i + 8)]);
                 i += 8;
