@@ -27,6 +27,9 @@ const STYLES: [Drawing; 3] = [
 /// Fewest squares whose mean counts.
 const LEAST: usize = 150;
 
+/// Frames before a frame that carried marks want.
+const KNOWN: usize = 7;
+
 /// Most that marks may slide, pixels a frame.
 const MOST_SLIDE: f64 = 0.5;
 
@@ -79,7 +82,8 @@ fn marks_do_not_slide_on_surfaces() {
     }
 }
 
-/// Frames of a shot as grey pictures in a style that knows their motion alone.
+/// Frames of a shot as grey pictures in a style that knows their motion alone, from the last of those that know fewer before
+/// them than they want.
 fn carried(shot: &Shot, graph: &Graph, value: f32) -> Vec<Image> {
     let mut player = Player::new(graph.clone(), 1 << 30);
     let source = |input: GraphInput, number: i64| {
@@ -92,7 +96,7 @@ fn carried(shot: &Shot, graph: &Graph, value: f32) -> Vec<Image> {
     };
     let size = &shot.frames[0].color;
     let request = Request::new(size.width(), size.height());
-    (0..shot.frames.len()).map(|n| player.frame(request, n as i64, &source)).collect()
+    (KNOWN - 1..shot.frames.len()).map(|n| player.frame(request, n as i64, &source)).collect()
 }
 
 /// Everything moves by (-3, 1.5) pixels a frame.
@@ -124,9 +128,8 @@ fn marks_are_carried_where_motion_alone_is_known() {
             let [before, after] = ["0", "0.5"].map(|steadiness| {
                 let params = [params, &[("steadiness", steadiness), ("window", "0")]].concat();
                 let frames = carried(shot, &run::single(node, &params), value);
-                // The last frames know as many before them as they want.
-                let pairs = 7..frames.len();
-                let slides = pairs.flat_map(|n| slides(shot, n, [&frames[n - 1], &frames[n]]));
+                let pairs = frames.windows(2).zip(KNOWN..);
+                let slides = pairs.flat_map(|(pair, n)| slides(shot, n, [&pair[0], &pair[1]]));
                 let slides: Vec<f64> = slides.map(|[x, y]| (x * across[0] + y * across[1]).abs()).collect();
                 assert!(slides.len() > LEAST, "{name}: {} squares", slides.len());
                 mean(&slides)

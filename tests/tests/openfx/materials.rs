@@ -2,14 +2,15 @@
 
 use super::reference::*;
 use super::render::through;
-use isophote::ColourSpace;
 use isophote::graph::GraphInput;
+use isophote::{ColourSpace, Graph};
 use isophote_abi::openfx::*;
 use isophote_tests::ofx::effect::Described;
 use isophote_tests::ofx::host::Host;
 use isophote_tests::ofx::picture::{Layout, Picture};
 use isophote_tests::ofx::plugin::Binary;
 use isophote_tests::ofx::state::Behaviour;
+use std::ffi::CString;
 
 /// Size of the pictures.
 const SIZE: [i32; 2] = [WIDTH, HEIGHT];
@@ -43,21 +44,39 @@ pub fn materials_of_any_size_are_tiled(binary: &Binary, effect: Expected) {
             continue;
         }
         plain(&instance);
-        let mut graph = effect.graph(false);
-        let first = graph.find("t").or_else(|_| graph.find("n")).unwrap();
-        graph.connect_input(input, first, input.id()).unwrap();
+        let graph = with_material(&effect, input);
         let (small, whole) = tile(dark);
         instance.connect(clip, Picture::packed_in(layout, TILE[0], TILE[1], &small));
         let got = instance.render(layout, SIZE).packed();
         let reference = Through::of(&graph, SIZE);
         let inputs = [("color", color.as_slice(), layout), (input.id(), &whole, layout)];
-        assert!(got == reference.c(&inputs, layout), "{} {clip}", effect.node.id);
+        let want = reference.c(&inputs, layout);
+        assert!(got == want, "{} {clip}", effect.node.id);
         assert!(
             got != through(&graph, &source, layout, ColourSpace::Srgb),
             "{} minds no {clip}",
             effect.node.id
         );
+        // Generators have no end: their pixels are asked for where the picture is, and are no tile.
+        let name = CString::new(format!("{ROI_PREFIX}{clip}")).unwrap();
+        for endless in [f64::from(i32::MAX), f64::INFINITY] {
+            let of_generator = Layout { endless: Some(endless), ..layout };
+            instance.connect(clip, Picture::packed_in(of_generator, WIDTH, HEIGHT, &whole));
+            let all = [0.0, 0.0, f64::from(WIDTH), f64::from(HEIGHT)];
+            let asked = instance.regions(all, 1.0).expect("a region").numbers(&name);
+            assert_eq!(asked, all, "{} {clip}", effect.node.id);
+            let got = instance.render(layout, SIZE).packed();
+            assert!(got == want, "{} {clip} without an end", effect.node.id);
+        }
         instance.disconnect(clip);
     }
     host.no_faults();
+}
+
+/// The graph of an effect that takes a material.
+fn with_material(effect: &Expected, input: GraphInput) -> Graph {
+    let mut graph = effect.graph(false);
+    let first = graph.find("t").or_else(|_| graph.find("n")).unwrap();
+    graph.connect_input(input, first, input.id()).unwrap();
+    graph
 }
