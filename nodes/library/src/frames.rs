@@ -30,6 +30,12 @@ impl Frames {
         Self { past, future, keep: false, handed: 0 }
     }
 
+    /// Frames in order: so many before this one, whose stages the host hands in. Those of this one leave the plan.
+    pub fn in_order(past: u32) -> Self {
+        let known = Self::around(past, 0).keeping();
+        (1..=known.past as i32).fold(known, |frames, before| frames.with_handed(-before))
+    }
+
     /// The same where the host hands in the stages of `frame`, which is not 0.
     pub const fn with_handed(mut self, frame: i32) -> Self {
         if frame != 0 && frame.unsigned_abs() <= MOST_FRAMES {

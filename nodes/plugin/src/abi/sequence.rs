@@ -411,9 +411,8 @@ unsafe extern "C" fn plan_create(
             (request, region(host_region, &request)?, args::get(history, "the history")?)
         };
         let past = history.past.min(graph.frames()[0]);
-        let handed = (1..=past as i32).map(|n| -n);
-        let frames = handed.fold(Frames::around(past, 0).keeping(), Frames::with_handed);
-        let request = Request { frames, max_motion: longest(history.max_motion)?, ..request };
+        let request =
+            Request { frames: Frames::in_order(past), max_motion: longest(history.max_motion)?, ..request };
         plan::PlanObject::new(graph, request, region)
     };
     // SAFETY: the host promised that both places may be written.
