@@ -5,6 +5,7 @@ use crate::error::{Failure, Result};
 use clap::ValueEnum;
 
 mod aarch64;
+mod bevy;
 mod check;
 mod packages;
 mod running;
@@ -26,6 +27,8 @@ pub enum Target {
     /// Windows, in Wine
     #[cfg(unix)]
     Windows,
+    /// Cameras of Bevy, stylized by its plugin
+    Bevy,
     /// Only types: the library, the plugin and the program for macOS on ARM and for Windows by Microsoft's compiler
     Check,
 }
@@ -41,6 +44,7 @@ pub fn run(target: Target, filter: Option<&str>) -> Result<()> {
         Target::Aarch64 => aarch64::run(filter),
         #[cfg(unix)]
         Target::Windows => windows::run(filter),
+        Target::Bevy => bevy::run(filter),
         Target::Check => check::run(),
     }
 }
