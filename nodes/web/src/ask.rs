@@ -105,6 +105,8 @@ pub struct Picture {
     /// Number of the frame.
     #[serde(default)]
     pub frame: i64,
+    /// Frames before this one that are known, for looks that are steady over time; none for a still.
+    pub past: Option<u32>,
     /// Position of the picture in the canonical one, pixels of the full size.
     #[serde(default)]
     origin: [f64; 2],

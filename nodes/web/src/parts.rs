@@ -4,9 +4,11 @@ use crate::ask::Picture;
 use crate::look::GraphAtFrame;
 use isophote::engine::plan::LEAST_ROWS;
 use isophote::engine::{Plan, Rect, Support};
+use isophote::frames::Frames;
 use isophote::planned::Planned;
 use isophote::{Error, Graph};
 use serde_json::{Map, Value, json};
+use std::collections::BTreeMap;
 
 /// Pixels of a part: few enough that a page can change its mind between two of them.
 const PIXELS: i32 = 1 << 19;
@@ -20,7 +22,32 @@ pub fn graph_and_request(look: &Value, picture: &Picture) -> Result<(Graph, isop
     let mut graph = look.graph;
     graph.set_precision(picture.precision());
     isophote::engine::image::check_size(picture.width, picture.height)?;
-    Ok((graph, picture.request(look.reference_height)?))
+    let mut request = picture.request(look.reference_height)?;
+    let [read, _] = graph.frames();
+    if let Some(past) = picture.past.filter(|_| read > 0) {
+        request.frames = Frames::in_order(past.min(read));
+    }
+    Ok((graph, request))
+}
+
+/// What frames in order read of those before them, where all are known: their number, and by the names of stages and guides
+/// how many frames before are read. Nothing where they read none.
+///
+/// # Errors
+/// As planning.
+pub fn history(graph: &Graph, request: isophote::Request) -> Result<Value, Error> {
+    let [read, _] = graph.frames();
+    if request.frames == Frames::NONE || read == 0 {
+        return Ok(Value::Null);
+    }
+    let whole = Planned::new(graph, isophote::Request { frames: Frames::in_order(read), ..request })?;
+    let mut images: BTreeMap<&str, u32> = BTreeMap::new();
+    for port in whole.plan().inputs().iter().filter(|port| port.frame < 0) {
+        let most = images.entry(port.base()).or_default();
+        *most = port.frame.unsigned_abs().max(*most);
+    }
+    let frames = images.values().copied().max().unwrap_or(0);
+    Ok(json!({ "frames": frames, "images": images }))
 }
 
 /// The plan of a look on a picture.

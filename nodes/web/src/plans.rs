@@ -3,7 +3,7 @@
 use crate::ask::{Picture, Request, region};
 use crate::catalogue::catalogue;
 use crate::look::GraphAtFrame;
-use crate::parts::{graph_and_request, parts};
+use crate::parts::{graph_and_request, history, parts};
 #[cfg(feature = "cpu")]
 use crate::processor::Processor;
 use crate::response::{self, Response};
@@ -44,12 +44,13 @@ impl Planner {
             Request::Plan { look, picture, region } => self.plan(&look, &picture, region),
             Request::Update { plan, look, picture } => {
                 let (graph, request) = graph_and_request(&look, &picture)?;
+                let history = history(&graph, request)?;
                 let plan = self.get(plan)?;
                 let change = match plan.update(graph, Some(request))? {
                     Change::Uniforms => "uniforms",
                     Change::Structure => "structure",
                 };
-                Ok(program(plan, json!({ "change": change })))
+                Ok(program(plan, json!({ "change": change, "history": history })))
             }
             Request::Region { plan, region: part } => {
                 let plan = self.get(plan)?;
@@ -81,9 +82,10 @@ impl Planner {
     fn plan(&mut self, look: &Value, picture: &Picture, part: Option<[i32; 4]>) -> Result<Response, Error> {
         let (graph, request) = graph_and_request(look, picture)?;
         let part = part.map_or_else(|| Rect::of_size(request.width, request.height), region);
+        let history = history(&graph, request)?;
         let plan = Lowered::new(graph, request, part)?;
         self.last += 1;
-        let answer = program(&plan, json!({ "plan": self.last }));
+        let answer = program(&plan, json!({ "plan": self.last, "history": history }));
         self.plans.insert(self.last, plan);
         Ok(answer)
     }
@@ -208,6 +210,34 @@ mod tests {
             down = y1;
         }
         assert_eq!(down, 3000);
+    }
+
+    #[test]
+    fn frames_in_order_say_what_they_read_of_those_before() {
+        let mut planner = Planner::default();
+        let look = json!({ "style": "cartoon", "parameters": { "steadiness": 1 } });
+        let mut plan = |past: Value| {
+            let picture = json!({ "width": 64, "height": 48, "guides": ["motion"], "past": past });
+            ask(&mut planner, json!({ "ask": "plan", "look": look, "picture": picture })).json
+        };
+        let names = |plan: &Value, role: &str| -> Vec<String> {
+            let textures =
+                plan["textures"].as_array().unwrap().iter().filter(|texture| texture["role"] == role);
+            textures.map(|texture| texture["name"].as_str().unwrap().to_owned()).collect()
+        };
+        let still = plan(Value::Null);
+        assert_eq!(still["history"], Value::Null);
+        assert_eq!(names(&still, "output").len(), 1);
+        let first = plan(json!(0));
+        let frames = first["history"]["frames"].as_u64().unwrap();
+        assert!(frames > 0 && first["history"]["images"]["stage0"].as_u64().unwrap() <= frames);
+        assert!(names(&first, "output").iter().any(|name| name == "stage0"));
+        assert!(!names(&first, "input").iter().any(|name| name.contains('@')));
+        // More frames than are read are as many as are.
+        for past in [1, 99] {
+            let inputs = names(&plan(json!(past)), "input");
+            assert!(inputs.iter().any(|name| name == "stage0@-1"), "{inputs:?}");
+        }
     }
 
     #[cfg(feature = "cpu")]

@@ -37,5 +37,7 @@ export function scenes(isophote: Isophote): StylizeNode {
   stylize(isophote, { style: "ink" }, scenePass, { guides: ["wood"] });
   // @ts-expect-error A look names its style.
   stylize(isophote, { parameters: {} }, scenePass);
-  return stylize(isophote, { style: "ink" }, scenePass, { guides: ["depth"] });
+  const steady = stylize(isophote, { style: "ink" }, scenePass, { guides: ["depth", "motion"] });
+  void steady.cut();
+  return steady;
 }

@@ -157,7 +157,8 @@ export interface StylizerOptions extends PictureOptions {
   height: number;
   /**
    * Guides that every frame brings. `normal`: view-space x, y, z in -1..1 and validity in alpha; `depth`: distance from the
-   * camera, 0 or less where there is nothing; `object_id`: a number per object.
+   * camera, 0 or less where there is nothing; `object_id`: a number per object; `motion`: pixels from where points are to where they
+   * were in the frame before. With `motion` each call of `encode` is the next frame, and looks with `steadiness` are steady.
    */
   guides?: Guide[];
 }
@@ -192,6 +193,8 @@ export class Stylizer {
   update(look: Look, options?: { frame?: number; origin?: [number, number] }): Promise<"uniforms" | "structure">;
   /** Records the look; the result is the same texture until an update changes the structure. */
   encode(encoder: GPUCommandEncoder, inputs: { color: GPUTexture } & Partial<Record<Guide, GPUTexture>>): GPUTexture;
+  /** Takes the next frame for the first of a shot: what was before counts no longer. */
+  cut(): Promise<void>;
   destroy(): void;
 }
 

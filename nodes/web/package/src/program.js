@@ -2,6 +2,7 @@
 //
 // The same work in Rust is `host-example/src/plan_runner.rs`.
 
+import { isStage } from "./history.js";
 import { SAMPLER } from "./kernels.js";
 
 const BYTES = { r32float: 4, rg32float: 8, rgba32float: 16, rgba16float: 8 };
@@ -16,6 +17,9 @@ export function memory(program) {
   const own = program.textures.filter(({ role }) => role !== "input");
   return own.reduce((sum, texture) => sum + size(texture)[0] * size(texture)[1] * BYTES[texture.format], 0);
 }
+
+/** Whether a texture is handed in: an input, or a stage that later frames read. */
+const isBound = ({ role, name }) => role === "input" || (role === "output" && isStage(name));
 
 /** A program, ready to be recorded again and again. */
 export class Program {
@@ -38,7 +42,7 @@ export class Program {
    */
   build(program, bytes, compiled) {
     const { device } = this.#kernels;
-    const old = this.#textures.filter(({ role }) => role !== "input");
+    const old = this.#textures.filter((texture) => !isBound(texture));
     this.#textures = program.textures.map((texture) => ({ ...texture, ...this.#place(texture, old) }));
     old.forEach(({ texture }) => texture.destroy());
     const alignment = device.limits.minUniformBufferOffsetAlignment;
@@ -68,7 +72,7 @@ export class Program {
   }
 
   #place(wanted, old) {
-    if (wanted.role === "input") {
+    if (isBound(wanted)) {
       return { texture: null, view: null };
     }
     const [width, height] = size(wanted);
@@ -112,11 +116,11 @@ export class Program {
   /**
    * Connects textures with the inputs of their names. Their first texel is the first of the input's window; those that the
    * program does not read are ignored, and the same ones again cost nothing.
-   * @param {Record<string, GPUTexture>} inputs
+   * @param {Record<string, GPUTexture>} inputs, and stages that are written
    */
   bind(inputs) {
     this.#textures.forEach((slot, index) => {
-      if (slot.role !== "input") {
+      if (!isBound(slot)) {
         return;
       }
       const given = inputs[slot.name];
@@ -133,7 +137,8 @@ export class Program {
         this.#inputs.set(index, given);
         const aspect = given.format.startsWith("depth") ? "depth-only" : "all";
         slot.view = given.createView({ aspect });
-        this.#dispatches.filter(({ inputs: read }) => read.includes(index)).forEach((d) => { d.group = null; });
+        const uses = (dispatch) => dispatch.inputs.includes(index) || dispatch.outputs.includes(index);
+        this.#dispatches.filter(uses).forEach((dispatch) => { dispatch.group = null; });
       }
     });
     this.#dispatches.forEach((dispatch) => { dispatch.group ??= this.#group(dispatch); });
@@ -167,12 +172,17 @@ export class Program {
 
   /** What it computes, until it is built anew. */
   get output() {
-    return this.#textures.find(({ role }) => role === "output").texture;
+    return this.#textures.find((texture) => texture.role === "output" && !isBound(texture)).texture;
+  }
+
+  /** Textures as the planner named them. */
+  get textures() {
+    return this.#textures;
   }
 
   /** Gives all textures back. */
   destroy() {
-    this.#textures.filter(({ role }) => role !== "input").forEach(({ texture }) => texture.destroy());
+    this.#textures.filter((texture) => !isBound(texture)).forEach(({ texture }) => texture.destroy());
     this.#uniforms?.destroy();
     this.#textures = [];
     this.#dispatches = [];

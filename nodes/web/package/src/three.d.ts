@@ -2,8 +2,8 @@ import type { MRTNode, Node, PassNode, TextureNode } from "three/webgpu";
 import type { Guide, Isophote, Look } from "./index.js";
 
 export interface StylizeOptions {
-  /** Which guides the look is given; both without. */
-  guides?: ("normal" | "depth")[];
+  /** Which guides the look is given; `normal` and `depth` without. With `motion`, looks with `steadiness` are steady over time. */
+  guides?: ("normal" | "depth" | "motion")[];
   /** `fast` without. */
   precision?: "exact" | "half" | "fast";
 }
@@ -21,16 +21,18 @@ export class StylizeNode extends Node {
   readonly ready: Promise<void>;
   /** Takes over another look from the next frame on; rejects with a `LookError` where it is refused. */
   setLook(look: Look): Promise<void>;
+  /** Takes the next frame for the first of a shot, as after a cut. */
+  cut(): Promise<void>;
 }
 
 /**
- * A look on what a pass draws, with its normals and depths. It is the last node of a pipeline, whose `outputColorTransform`
+ * A look on what a pass draws, with its normals and depths, beside what the pass draws already (`pass.setMRT(…)` before). It is the last node of a pipeline, whose `outputColorTransform`
  * is false: colours are tone-mapped and encoded before the look sees them.
  */
 export function stylize(isophote: Isophote, look: Look, scenePass: PassNode, options?: StylizeOptions): StylizeNode;
 
 /** What textures that hold guides are called. */
-export const NAMES: { normal: string; depth: string };
+export const NAMES: { normal: string; depth: string; motion: string };
 
 /** What a renderer is told to draw beside colours, for who reads the textures without a node. */
-export function targets(guides?: ("normal" | "depth")[]): MRTNode;
+export function targets(guides?: ("normal" | "depth" | "motion")[]): MRTNode;

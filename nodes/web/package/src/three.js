@@ -9,32 +9,57 @@
 //
 // Nothing is copied: the look reads the textures of the pass, and writes the texture that the node shows.
 
-import { ExternalTexture, FloatType, HalfFloatType, Node, RedFormat } from "three/webgpu";
-import { convertToTexture, Fn, mrt, normalView, output, positionView, renderOutput, texture, uv, vec4 } from "three/tsl";
+import { ExternalTexture, FloatType, Node, RedFormat, RTTNode } from "three/webgpu";
+import {
+  cameraFar, convertToTexture, Fn, mrt, normalView, output, positionView, reference, renderOutput, screenSize, texture, uv, vec2, vec4, velocity,
+} from "three/tsl";
 
 /** What the textures of a pass are called that hold guides. */
-export const NAMES = { normal: "isophoteNormal", depth: "isophoteDepth" };
+export const NAMES = { normal: "isophoteNormal", depth: "isophoteDepth", motion: "isophoteMotion" };
+
+/** Steps of the coarse part of a depth, as many as a 16-bit float tells apart. */
+const STEPS = 2048;
 
 /** Only things have normals and depths; the sky has none. */
 const ofThings = (value) => Fn((builder) => (builder.object?.name === "Background.mesh" ? vec4(0) : value))();
 
+/** Samples are averaged by the device in 16 bits at most: a coarse and a fine part of a share of the camera's far distance have 22. */
+const splitDepth = Fn(() => {
+  const share = positionView.z.negate().div(cameraFar).clamp(0, 1).mul(STEPS).toVar();
+  const coarse = share.floor();
+  return vec4(coarse.div(STEPS), share.sub(coarse), 0, 1);
+});
+
 const VALUES = {
   normal: () => ofThings(vec4(normalView, 1)),
   depth: () => ofThings(vec4(positionView.z.negate(), 0, 0, 1)),
+  // From where points were, in halves of the picture and upwards, to where they are; looks ask for the way back, in pixels.
+  motion: () => vec4(velocity.mul(vec2(-0.5, 0.5)).mul(screenSize), 0, 1),
 };
+
+/** Distances again, from what {@link splitDepth} has drawn with a camera. */
+function distances(node, camera) {
+  const far = reference("far", "float", camera);
+  const distance = node.x.add(node.y.div(STEPS)).mul(far);
+  return new RTTNode(vec4(distance, 0, 0, 1), null, null, { type: FloatType, format: RedFormat, depthBuffer: false });
+}
 
 /**
  * What a renderer is told to draw beside colours: `pass.setMRT(targets(guides))`, or `renderer.setMRT(…)` for a target whose
- * textures have the names in {@link NAMES}.
+ * textures have the names in {@link NAMES}. Distances are those of the scene: their texture must hold them, in 32 bits if it can.
  */
 export function targets(guides = ["normal", "depth"]) {
+  return drawn(guides, VALUES);
+}
+
+function drawn(guides, values) {
   const unknown = guides.find((guide) => NAMES[guide] === undefined);
   if (unknown !== undefined) {
     throw new Error(`'${unknown}' is no guide that a pass of three.js draws; it draws ${Object.keys(NAMES).join(" and ")}`);
   }
   const outputs = { output };
   for (const guide of guides) {
-    outputs[NAMES[guide]] = VALUES[guide]();
+    outputs[NAMES[guide]] = values[guide]();
   }
   const made = mrt(outputs);
   guides.forEach((guide) => made.setClearColor(NAMES[guide], 0, 0));
@@ -46,14 +71,19 @@ export function targets(guides = ["normal", "depth"]) {
  * @param {Isophote} isophote on the device of the renderer
  * @param look a preset or a graph
  * @param scenePass what `pass(scene, camera)` of `three/tsl` makes
- * @param options `guides`: which of `normal` and `depth` the look is given, both without; `precision`: `fast` without
+ * @param options `guides`: which of `normal`, `depth` and `motion` the look is given, the first two without; with `motion`, looks with
+ *   `steadiness` are steady over time; `precision`: `fast` without
  * @returns {StylizeNode} the last node of a pipeline, whose `outputColorTransform` is false
  */
 export function stylize(isophote, look, scenePass, { guides = ["normal", "depth"], ...options } = {}) {
-  scenePass.setMRT(targets(guides));
+  // What the application draws besides stays.
+  const own = scenePass.getMRT();
+  const added = drawn(guides, { ...VALUES, depth: () => ofThings(splitDepth()) });
+  scenePass.setMRT(own === null ? added : added.merge(own));
   const nodes = {};
   for (const guide of guides) {
-    nodes[guide] = scenePass.getTextureNode(NAMES[guide]);
+    const node = scenePass.getTextureNode(NAMES[guide]);
+    nodes[guide] = guide === "depth" ? distances(node, scenePass.camera) : node;
   }
   // The look sees what is shown: tone-mapped and gamma-encoded.
   const color = convertToTexture(renderOutput(scenePass.getTextureNode()));
@@ -110,7 +140,6 @@ export class StylizeNode extends Node {
   }
 
   setup(builder) {
-    this.#chooseDepthFormat(builder.renderer);
     // What a node holds here is updated before it.
     Object.assign(builder.getNodeProperties(this), this.#inputs);
     return this.#node;
@@ -185,19 +214,14 @@ export class StylizeNode extends Node {
     this.#node.value = this.#shown;
   }
 
+  /** Takes the next frame for the first of a shot, as after a cut: what was before counts no longer. */
+  async cut() {
+    await this.#stylizer?.cut();
+  }
+
   #release() {
     if (this.#shown.isExternalTexture) {
       this.#shown.dispose();
-    }
-  }
-
-  /** Before the pass makes its textures. */
-  #chooseDepthFormat(renderer) {
-    const depth = this.#inputs.depth?.value;
-    if (depth !== undefined) {
-      depth.format = RedFormat;
-      // Samples of 32-bit floats cannot be averaged by the device.
-      depth.type = renderer.samples > 1 ? HalfFloatType : FloatType;
     }
   }
 
