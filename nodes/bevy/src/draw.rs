@@ -1,14 +1,16 @@
 //! The system that stylizes the camera at hand, in Bevy's render schedule.
 
 use crate::component::Wanted;
+use crate::error::Error;
 use crate::guides::{self, Prepasses, View};
 use crate::runner::{Picture, Runner};
-use crate::{Error, present, shaders};
+use crate::{present, shaders};
 use bevy::camera::CompositingSpace;
 use bevy::core_pipeline::prepass::ViewPrepassTextures;
 use bevy::ecs::entity::EntityHashMap;
 use bevy::ecs::prelude::*;
-use bevy::log::error;
+use bevy::log::{error, error_once};
+use bevy::render::render_resource::TextureView;
 use bevy::render::renderer::{RenderContext, RenderDevice, RenderQueue, ViewQuery};
 use bevy::render::view::{ExtractedView, ResolvedCompositingSpace, ViewTarget};
 use isophote::ColourSpace;
@@ -57,25 +59,9 @@ pub(crate) fn stylize(
 ) {
     let entity = camera.entity();
     let (target, view, prepass, space, wanted) = camera.into_inner();
-    let format = target.main_texture_format();
-    let space = match space.and_then(|space| space.0) {
-        None | Some(CompositingSpace::Linear) => ColourSpace::Linear,
-        Some(CompositingSpace::Srgb) => ColourSpace::Srgb,
-        Some(CompositingSpace::Oklab) => {
-            bevy::log::error_once!(
-                "a camera that blends in Oklab is not stylized: choose CompositingSpace::Srgb or Linear"
-            );
-            return;
-        }
-    };
-    let guides = Guides {
-        depth: prepass.is_some_and(|p| p.depth_only_view().is_some()),
-        normal: prepass.is_some_and(|p| p.depth_only_view().is_some() && p.normal_view().is_some()),
-        motion: prepass.is_some_and(|p| p.motion_vectors_view().is_some()),
-        ..Guides::NONE
-    };
+    let Some(space) = space_of(space) else { return };
     let [left, top, width, height] = view.viewport.to_array();
-    let picture = Picture { size: [width, height], space, guides };
+    let picture = Picture { size: [width, height], space, guides: known(prepass) };
     let raw = device.wgpu_device();
     let Drawings { device: shared, guides, presents, cameras } = &mut *drawings;
     let shared = shared.get_or_insert_with(|| Device::wrap(raw.clone(), (**queue).clone()));
@@ -92,28 +78,60 @@ pub(crate) fn stylize(
     queue.write_buffer(of_view, 0, bytemuck::bytes_of(&block));
     queue.write_buffer(of_viewport, 0, bytemuck::bytes_of(&viewport));
 
-    let prepasses = Prepasses {
+    let prepasses = prepasses(target, prepass);
+    let at =
+        found(guides, |pass| pass.fits(&prepasses), || guides::Pass::new(raw, prepasses.is_multisampled()));
+    let encoder = context.command_encoder();
+    let Some(runner) = &mut drawing.runner else { return };
+    guides[at].encode(raw, encoder, of_view, prepasses, &runner.targets(), picture.size);
+    match runner.encode(encoder) {
+        Ok(stylized) => {
+            let (write, format) = (target.post_process_write(), target.main_texture_format());
+            let at = found(presents, |pass| pass.fits(format), || present::Pass::new(raw, format));
+            presents[at].encode(raw, encoder, of_viewport, [write.source, &stylized], write.destination);
+        }
+        Err(e) => {
+            failed(&e);
+            drawing.runner = None;
+        }
+    }
+}
+
+/// The space of a camera's colours; none for one that no look reads.
+fn space_of(space: Option<&ResolvedCompositingSpace>) -> Option<ColourSpace> {
+    match space.and_then(|space| space.0) {
+        None | Some(CompositingSpace::Linear) => Some(ColourSpace::Linear),
+        Some(CompositingSpace::Srgb) => Some(ColourSpace::Srgb),
+        Some(CompositingSpace::Oklab) => {
+            error_once!(
+                "a camera that blends in Oklab is not stylized: choose CompositingSpace::Srgb or Linear"
+            );
+            None
+        }
+    }
+}
+
+/// What a camera's prepasses know.
+fn known(prepass: Option<&ViewPrepassTextures>) -> Guides {
+    let has = |view: fn(&ViewPrepassTextures) -> Option<&TextureView>| prepass.and_then(view).is_some();
+    let depth = has(ViewPrepassTextures::depth_only_view);
+    Guides {
+        depth,
+        // Depth says where there is a surface.
+        normal: depth && has(ViewPrepassTextures::normal_view),
+        motion: has(ViewPrepassTextures::motion_vectors_view),
+        ..Guides::NONE
+    }
+}
+
+/// The pictures of a camera.
+fn prepasses<'v>(target: &'v ViewTarget, prepass: Option<&'v ViewPrepassTextures>) -> Prepasses<'v> {
+    Prepasses {
         color: target.main_texture_view(),
         depth: prepass.and_then(|p| p.depth_only_view()).map(|view| &**view),
         normal: prepass.and_then(|p| p.normal_view()).map(|view| &**view),
         motion: prepass.and_then(|p| p.motion_vectors_view()).map(|view| &**view),
-    };
-    let multisampled = prepass.is_some_and(is_multisampled);
-    let at = found(guides, |pass| pass.fits(&prepasses), || guides::Pass::new(raw, multisampled));
-    let encoder = context.command_encoder();
-    let Some(runner) = &mut drawing.runner else { return };
-    guides[at].encode(raw, encoder, of_view, prepasses, runner, picture.size);
-    let stylized = match runner.encode(encoder) {
-        Ok(stylized) => stylized,
-        Err(e) => {
-            failed(&e);
-            drawing.runner = None;
-            return;
-        }
-    };
-    let write = target.post_process_write();
-    let at = found(presents, |pass| pass.fits(format), || present::Pass::new(raw, format));
-    presents[at].encode(raw, encoder, of_viewport, [write.source, &stylized], write.destination);
+    }
 }
 
 /// Forgets what is kept for cameras that are stylized no longer.
@@ -161,11 +179,6 @@ fn kept(runner: Result<Runner, Error>) -> Option<Runner> {
 
 fn failed(e: &Error) {
     error!("a camera is not stylized: {e}");
-}
-
-fn is_multisampled(prepass: &ViewPrepassTextures) -> bool {
-    let views = [prepass.depth_only_view(), prepass.normal_view(), prepass.motion_vectors_view()];
-    views.into_iter().flatten().any(|view| view.texture().sample_count() > 1)
 }
 
 /// The index of the pass that fits, which is made where there is none.

@@ -3,7 +3,6 @@
 //! Bevy's prepass has normals in the world's space, depth as it is tested, and motion in widths and heights of the viewport. A look has
 //! them in the camera's space, as distances and in pixels, in its viewport alone.
 
-use crate::runner::Runner;
 use crate::shaders;
 use isophote::engine::gpu::wgpu;
 use wgpu::{TextureFormat, TextureSampleType};
@@ -39,6 +38,17 @@ pub(crate) struct Prepasses<'v> {
     pub(crate) depth: Option<&'v wgpu::TextureView>,
     pub(crate) normal: Option<&'v wgpu::TextureView>,
     pub(crate) motion: Option<&'v wgpu::TextureView>,
+}
+
+impl Prepasses<'_> {
+    fn views(&self) -> impl Iterator<Item = &wgpu::TextureView> {
+        [self.depth, self.normal, self.motion].into_iter().flatten()
+    }
+
+    /// True where a pixel has several samples.
+    pub(crate) fn is_multisampled(&self) -> bool {
+        self.views().any(|view| view.texture().sample_count() > 1)
+    }
 }
 
 /// The pass that writes guides, for prepasses of one kind.
@@ -81,21 +91,17 @@ impl Pass {
 
     /// True where the prepasses are of its kind.
     pub(crate) fn fits(&self, prepasses: &Prepasses) -> bool {
-        let Prepasses { depth, normal, motion, .. } = *prepasses;
-        [depth, normal, motion]
-            .into_iter()
-            .flatten()
-            .all(|view| (view.texture().sample_count() > 1) == self.is_multisampled)
+        prepasses.views().next().is_none() || prepasses.is_multisampled() == self.is_multisampled
     }
 
-    /// Records the guides of a frame, into the images of `runner`. `uniforms` holds the [`View`], whose viewport has this size.
+    /// Records the guides of a frame, into `targets`, which are those of [`IMAGES`]. `uniforms` holds the [`View`], whose viewport has this size.
     pub(crate) fn encode(
         &self,
         device: &wgpu::Device,
         encoder: &mut wgpu::CommandEncoder,
         uniforms: &wgpu::Buffer,
         prepasses: Prepasses,
-        runner: &Runner,
+        targets: &[&wgpu::TextureView],
         [width, height]: [u32; 2],
     ) {
         let [no_depth, no_vectors] = &self.nothing;
@@ -105,7 +111,7 @@ impl Pass {
             prepasses.normal.unwrap_or(no_vectors),
             prepasses.motion.unwrap_or(no_vectors),
         ];
-        views.extend(IMAGES.iter().filter_map(|(name, _)| runner.target(name)));
+        views.extend(targets);
         let group = shaders::group(device, &self.layout, uniforms, &views);
         let descriptor = wgpu::ComputePassDescriptor { label: Some(LABEL), timestamp_writes: None };
         let mut pass = encoder.begin_compute_pass(&descriptor);

@@ -1,6 +1,6 @@
 //! Images of the frame at hand and of those before it, by their names.
 
-use crate::Error;
+use crate::error::Error;
 use isophote::engine::gpu::{Device, wgpu};
 
 /// Usages of all images: kernels write and read them, and tools copy them.

@@ -1,6 +1,6 @@
 //! Looks as assets.
 
-use crate::Error;
+use crate::error::Error;
 use bevy::asset::io::Reader;
 use bevy::asset::{Asset, AssetLoader, LoadContext};
 use bevy::log::warn;

@@ -1,7 +1,7 @@
 //! A look on the frames of a camera, in order.
 
-use crate::Error;
 use crate::component::Wanted;
+use crate::error::Error;
 use crate::guides;
 use crate::images::{Images, Needed};
 use crate::look::Style;
@@ -159,9 +159,9 @@ impl Runner {
         self.images.hold(&self.device, &needed)
     }
 
-    /// The image of this name in the frame at hand, for the camera's pictures: those of [`guides::IMAGES`].
-    pub(crate) fn target(&self, name: &str) -> Option<&wgpu::TextureView> {
-        self.images.now(name)
+    /// The images that the camera's pictures are written to, in the order of [`guides::IMAGES`].
+    pub(crate) fn targets(&self) -> Vec<&wgpu::TextureView> {
+        guides::IMAGES.iter().filter_map(|(name, _)| self.images.now(name)).collect()
     }
 
     /// Records the look on what [`Runner::targets`] holds, and returns the picture that it draws. The next call is of the next

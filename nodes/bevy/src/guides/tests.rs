@@ -1,14 +1,9 @@
 //! Numbers of guides from prepasses whose numbers are known.
 
-use super::{Pass, Prepasses, View};
-use crate::component::Wanted;
-use crate::look::Look;
-use crate::runner::{Picture, Runner};
+use super::{IMAGES, Pass, Prepasses, View};
+use crate::images::{Images, Needed};
 use crate::shaders;
-use isophote::ColourSpace;
 use isophote::engine::gpu::{Device, Options, wgpu};
-use isophote::engine::program::Precision;
-use isophote::guides::Guides;
 use std::sync::Arc;
 use wgpu::{TextureFormat, TextureUsages};
 
@@ -100,17 +95,12 @@ struct Found {
 
 /// The guides of one pixel, whose depth is this, in a camera that looks along -x.
 fn guides(device: &Arc<Device>, samples: u32, depth: f64) -> Found {
-    let wanted = Wanted {
-        style: Look::named("cartoon").expect("a style").style,
-        frame: 0,
-        shot: 0,
-        max_motion: 128.0,
-        precision: Precision::Exact,
-    };
-    let guides = Guides { depth: true, normal: true, motion: true, ..Guides::NONE };
     let size = [VIEWPORT[2], VIEWPORT[3]];
-    let picture = Picture { size, space: ColourSpace::Linear, guides };
-    let runner = Runner::new(device, &wanted, picture).expect("a plan");
+    let needed = IMAGES.map(|(name, format)| Needed { name: name.into(), depth: 0, size, format });
+    let mut images = Images::default();
+    images.hold(device, &needed).expect("there is room");
+    let target = |name: &str| images.now(name).expect("it is kept");
+    let targets = IMAGES.map(|(name, _)| target(name));
     let raw = device.raw();
     let color = cleared(device, TextureFormat::Rgba8UnormSrgb, 1, [0.2, 0.4, 0.6, 1.0]);
     let depth = cleared(device, TextureFormat::Depth32Float, samples, [depth, 0.0, 0.0, 0.0]);
@@ -141,10 +131,10 @@ fn guides(device: &Arc<Device>, samples: u32, depth: f64) -> Found {
     let uniforms = shaders::uniforms(raw, "view", size_of::<View>());
     device.queue().write_buffer(&uniforms, 0, bytemuck::bytes_of(&view));
     let mut encoder = raw.create_command_encoder(&wgpu::CommandEncoderDescriptor::default());
-    pass.encode(raw, &mut encoder, &uniforms, prepasses, &runner, size);
+    pass.encode(raw, &mut encoder, &uniforms, prepasses, &targets, size);
     device.queue().submit([encoder.finish()]);
     device.check().expect("nothing was refused");
-    let read = |name: &str| first(device, runner.target(name).expect("it is written"));
+    let read = |name: &str| first(device, target(name));
     let [depth, _]: [f32; 2] = bytemuck::cast(read("depth"));
     Found { depth, motion: bytemuck::cast(read("motion")), normal: bytemuck::cast(read("normal")) }
 }
