@@ -6,14 +6,12 @@ use crate::guides;
 use crate::images::{Images, Needed};
 use crate::look::Style;
 use bevy::platform::cell::SyncCell;
-use isophote::engine::Rect;
 use isophote::engine::gpu::{Device, Executor, Prepared, texture_format, wgpu};
 use isophote::engine::program::{Program, Role};
-use isophote::frames::Frames;
 use isophote::guides::Guides;
-use isophote::planned::Change;
+use isophote::live::{Follow, Live, is_stage, split};
 use isophote::preset::Lengths;
-use isophote::{ColourSpace, Graph, Lowered, Request};
+use isophote::{ColourSpace, Graph, Request};
 use std::sync::Arc;
 
 /// Picture of a camera: what can change from frame to frame, and asks for another plan.
@@ -33,15 +31,10 @@ pub(crate) struct Runner {
     /// Not to be shared between threads, as resources are.
     executor: SyncCell<Executor>,
     style: Arc<Style>,
-    picture: Picture,
     wanted: Wanted,
-    lowered: Lowered,
+    live: Live,
     prepared: Option<Prepared>,
     images: Images,
-    /// Frames before the next that were drawn, at most those that the look reads.
-    known: u32,
-    /// Number of them that the plan reads.
-    planned: u32,
 }
 
 impl Runner {
@@ -50,22 +43,17 @@ impl Runner {
     /// # Errors
     /// [`Error::Plan`] for sizes and lengths that are impossible, [`Error::Device`] where memory does not suffice.
     pub(crate) fn new(device: &Arc<Device>, wanted: &Wanted, picture: Picture) -> Result<Self, Error> {
-        let style = Arc::clone(&wanted.style);
-        let graph = graph_of(wanted)?;
-        let lowered = lowered(graph, request(wanted, &picture), 0)?;
+        let live = Live::new(graph_of(wanted)?, request(wanted, &picture))?;
         let mut runner = Self {
             device: Arc::clone(device),
             executor: SyncCell::new(Executor::new(Arc::clone(device))),
-            style,
-            picture,
+            style: Arc::clone(&wanted.style),
             wanted: wanted.clone(),
-            lowered,
+            live,
             prepared: None,
             images: Images::default(),
-            known: 0,
-            planned: 0,
         };
-        runner.make_images()?;
+        runner.make_images(picture.size)?;
         runner.prepare()?;
         Ok(runner)
     }
@@ -76,86 +64,46 @@ impl Runner {
     /// # Errors
     /// As [`Runner::new`], which must be called then.
     pub(crate) fn update(&mut self, wanted: &Wanted, picture: Picture) -> Result<(), Error> {
-        let is_other = picture != self.picture
-            || wanted.max_motion != self.wanted.max_motion
-            || wanted.precision != self.wanted.precision;
-        if is_other {
-            *self = Self::new(&Arc::clone(&self.device), wanted, picture)?;
-            return Ok(());
-        }
         if wanted.shot != self.wanted.shot {
-            self.known = 0;
+            self.live.cut();
         }
-        let is_edited = !Arc::ptr_eq(&wanted.style, &self.style);
+        let is_edited = !Arc::ptr_eq(&wanted.style, &self.style) || wanted.precision != self.wanted.precision;
         let is_later = wanted.frame != self.wanted.frame;
-        self.wanted = wanted.clone();
-        if is_edited {
-            self.style = Arc::clone(&wanted.style);
-        }
-        let graph = if is_edited || is_later { graph_of(wanted)? } else { self.lowered.graph().clone() };
-        if is_edited && reads(&graph) != reads(self.lowered.graph()) {
-            self.known = 0;
-            self.plan(graph)?;
-            self.make_images()
-        } else if self.known != self.planned {
-            self.plan(graph)
-        } else if is_edited || is_later {
-            self.follow(graph)
-        } else {
-            Ok(())
-        }
-    }
-
-    /// Takes over parameters, and a frame number.
-    fn follow(&mut self, graph: Graph) -> Result<(), Error> {
-        let request = request(&self.wanted, &self.picture);
-        let change = self.lowered.update(graph, Some(request))?;
-        let program = self.lowered.program();
-        match &mut self.prepared {
-            Some(prepared) if change == Change::Uniforms => Ok(prepared.repack(program)?),
-            _ => {
-                self.make_images()?;
+        let graph = if is_edited || is_later { Some(graph_of(wanted)?) } else { None };
+        (self.wanted, self.style) = (wanted.clone(), Arc::clone(&wanted.style));
+        match self.live.follow(graph, request(wanted, &picture))? {
+            Follow::Nothing => Ok(()),
+            Follow::Uniforms => match &mut self.prepared {
+                Some(prepared) => Ok(prepared.repack(self.live.program())?),
+                None => self.prepare(),
+            },
+            Follow::Program => self.prepare(),
+            Follow::Kept => {
+                self.make_images(picture.size)?;
                 self.prepare()
             }
         }
     }
 
-    /// Plans for the frames before that are known.
-    fn plan(&mut self, graph: Graph) -> Result<(), Error> {
-        self.lowered = lowered(graph, request(&self.wanted, &self.picture), self.known)?;
-        self.planned = self.known;
-        self.prepare()
-    }
-
     fn prepare(&mut self) -> Result<(), Error> {
         // Its scratch textures are taken again.
         self.prepared = None;
-        self.prepared = Some(self.executor.get().prepare(self.lowered.program())?);
+        self.prepared = Some(self.executor.get().prepare(self.live.program())?);
         Ok(())
     }
 
-    /// Makes the images that the camera writes, and those that frames hand on, as a frame reads them where all before it are known.
-    fn make_images(&mut self) -> Result<(), Error> {
-        let graph = self.lowered.graph().clone();
-        let depth = reads(&graph)[0];
-        let whole = lowered(graph, request(&self.wanted, &self.picture), depth)?;
+    /// Makes the images that the camera writes, and those that frames hand on.
+    fn make_images(&mut self, size: [u32; 2]) -> Result<(), Error> {
+        let kept = self.live.kept();
+        let depth = |name: &str| kept.iter().find(|image| image.name == name).map_or(0, |image| image.depth);
         let mut needed: Vec<Needed> = guides::IMAGES
-            .map(|(name, format)| Needed { name: name.into(), depth: 0, size: self.picture.size, format })
+            .map(|(name, format)| Needed { name: name.into(), depth: depth(name), size, format })
             .into();
-        for texture in &whole.program().textures {
-            if let Role::Output(name) = &texture.role
-                && is_stage(name)
-            {
-                let (size, format) =
-                    ([texture.window.width(), texture.window.height()], texture_format(texture.format));
-                needed.push(Needed { name: name.clone(), depth: 0, size, format });
-            }
-        }
-        for (base, before) in inputs(whole.program()).filter_map(split) {
-            if let Some(image) = needed.iter_mut().find(|image| image.name == base) {
-                image.depth = image.depth.max(before);
-            }
-        }
+        needed.extend(kept.iter().filter_map(|image| {
+            let (size, format) = image.texture?;
+            let format = texture_format(format);
+            Some(Needed { name: image.name.clone(), depth: image.depth, size, format })
+        }));
         self.images.hold(&self.device, &needed)
     }
 
@@ -170,7 +118,7 @@ impl Runner {
     /// # Errors
     /// [`Error::Device`] where the device refuses.
     pub(crate) fn encode(&mut self, encoder: &mut wgpu::CommandEncoder) -> Result<wgpu::TextureView, Error> {
-        let program = self.lowered.program();
+        let program = self.live.program();
         let Some(prepared) = &mut self.prepared else {
             return Err(isophote::engine::Error::Input("the plan was not prepared".into()).into());
         };
@@ -195,14 +143,9 @@ impl Runner {
         let result = prepared.own_output(name)?;
         prepared.encode(encoder)?;
         self.images.advance();
-        self.known = (self.planned + 1).min(reads(self.lowered.graph())[0]);
+        self.live.drawn();
         Ok(result)
     }
-}
-
-/// Frames around its own that a frame of a graph reads; those after it are never there.
-fn reads(graph: &Graph) -> [u32; 2] {
-    graph.frames()
 }
 
 /// The graph of a style at a frame.
@@ -225,30 +168,9 @@ fn request(wanted: &Wanted, picture: &Picture) -> Request {
     }
 }
 
-/// The program of a frame where so many before it are known.
-fn lowered(graph: Graph, request: Request, known: u32) -> Result<Lowered, Error> {
-    let frames = match known {
-        0 if reads(&graph) == [0, 0] => Frames::NONE,
-        _ => Frames::in_order(known),
-    };
-    let all = Rect::of_size(request.width, request.height);
-    Ok(Lowered::new(graph, Request { frames, ..request }, all)?)
-}
-
 fn inputs(program: &Program) -> impl Iterator<Item = &str> {
     program.textures.iter().filter_map(|texture| match &texture.role {
         Role::Input(name) => Some(name.as_str()),
         _ => None,
     })
-}
-
-/// The name of an input of a frame before, and how many frames: `depth@-2` is of 2 before.
-fn split(name: &str) -> Option<(&str, usize)> {
-    let (base, before) = name.split_once("@-")?;
-    Some((base, before.parse().ok()?))
-}
-
-/// True for an output that later frames read.
-fn is_stage(name: &str) -> bool {
-    name.strip_prefix("stage").is_some_and(|number| number.parse::<u32>().is_ok())
 }

@@ -32,7 +32,7 @@ pub use isophote_engine as engine;
 pub use plan::lowered::Lowered;
 pub use plan::planned::Planned;
 pub use plan::request::Request;
-pub use plan::{planned, request, sequence};
+pub use plan::{live, planned, request, sequence};
 pub use stages::optical_flow;
 
 /// The example of the README, compiled with the documentation tests.
