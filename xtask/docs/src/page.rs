@@ -16,10 +16,11 @@ pub struct Page {
 }
 
 /// Documents of the repository that are pages, too: part, place, title, document.
-pub const DOCUMENTS: [(&str, &str, &str, &str); 7] = [
+pub const DOCUMENTS: [(&str, &str, &str, &str); 8] = [
     ("For compositors", "compositors/openfx", "Every host, in detail", "nodes/plugin/OPENFX.md"),
     ("For engine authors", "engines/rust", "From Rust", "nodes/library/README.md"),
     ("For engine authors", "engines/bevy", "In Bevy", "nodes/bevy/README.md"),
+    ("For engine authors", "engines/godot", "In Godot", "nodes/godot/README.md"),
     ("For render TDs", "farms/farm", "Farms", "host-example/FARM.md"),
     ("For render TDs", "farms/benchmarks", "How fast the nodes are", "host-example/BENCHMARKS.md"),
     ("For the web", "web/package", "The npm package", "nodes/web/package/README.md"),

@@ -7,6 +7,7 @@ use clap::ValueEnum;
 mod aarch64;
 mod bevy;
 mod check;
+mod godot;
 mod packages;
 mod running;
 mod web;
@@ -29,6 +30,8 @@ pub enum Target {
     Windows,
     /// Cameras of Bevy, stylized by its plugin
     Bevy,
+    /// Viewports of Godot, stylized by its extension; Godot 4.4 or newer must be there
+    Godot,
     /// Only types: the library, the plugin and the program for macOS on ARM and for Windows by Microsoft's compiler
     Check,
 }
@@ -45,6 +48,7 @@ pub fn run(target: Target, filter: Option<&str>) -> Result<()> {
         #[cfg(unix)]
         Target::Windows => windows::run(filter),
         Target::Bevy => bevy::run(filter),
+        Target::Godot => godot::run(),
         Target::Check => check::run(),
     }
 }
@@ -57,6 +61,10 @@ pub fn run_all() -> Result<()> {
     let failed = Target::value_variants().iter().filter_map(|target| {
         let name = target.to_possible_value().map(|value| value.get_name().to_owned()).unwrap_or_default();
         println!("\n=== {name}");
+        if matches!(target, Target::Godot) && godot::program().is_none() {
+            println!("left out: Godot is not there");
+            return None;
+        }
         run(*target, None).err().map(|why| format!("{name}: {why}"))
     });
     let failed: Vec<String> = failed.collect();
