@@ -31,8 +31,8 @@ pub struct Stylize {
     /// Largest motion from frame to frame that is followed, in pixels of the viewport; longer ones are unknown. 128 unless
     /// set otherwise.
     pub max_motion: f32,
-    /// Precision of images on the way: half as many bytes and filtered lookups by default, which is 1.5 to 2 times as fast as exact
-    /// numbers and differs by a step of 8 bits here and there.
+    /// Precision of images on the way: by default colours in half as many bytes, and lookups by samplers. `Exact` gives the numbers
+    /// of the library's CPU executor.
     #[reflect(ignore, default = "fast")]
     pub precision: Precision,
 }
