@@ -18,7 +18,7 @@ use isophote_bevy::{Look, Stylize, StylizePlugin};
 use std::path::{Path, PathBuf};
 use std::time::Duration;
 
-/// What the command line asks for.
+/// Options of the command line.
 #[derive(Resource, Clone, Debug)]
 struct Options {
     look: String,
@@ -28,7 +28,7 @@ struct Options {
     size: [u32; 2],
 }
 
-/// What turns.
+/// Mark of things that turn.
 #[derive(Component)]
 struct Turning;
 

@@ -27,7 +27,7 @@ pub(crate) struct Drawings {
     cameras: EntityHashMap<Drawing>,
 }
 
-/// What is kept for one camera.
+/// State of one camera.
 struct Drawing {
     /// None where its look could not be drawn; it is tried again when something else is wanted.
     runner: Option<Runner>,
@@ -111,7 +111,7 @@ fn space_of(space: Option<&ResolvedCompositingSpace>) -> Option<ColourSpace> {
     }
 }
 
-/// What a camera's prepasses know.
+/// Guides that a camera's prepasses give.
 fn known(prepass: Option<&ViewPrepassTextures>) -> Guides {
     let has = |view: fn(&ViewPrepassTextures) -> Option<&TextureView>| prepass.and_then(view).is_some();
     let depth = has(ViewPrepassTextures::depth_only_view);
@@ -139,7 +139,7 @@ pub(crate) fn forget(mut drawings: ResMut<Drawings>, cameras: Query<(), With<Wan
     drawings.cameras.retain(|entity, _| cameras.contains(*entity));
 }
 
-/// What is kept for a camera, brought to what is wanted now; none where that cannot be drawn.
+/// State of a camera, brought to what is wanted now; none where that cannot be drawn.
 fn followed<'d>(
     cameras: &'d mut EntityHashMap<Drawing>,
     entity: Entity,

@@ -21,7 +21,7 @@ pub(crate) struct Picture {
     pub(crate) size: [u32; 2],
     /// Space of its colours.
     pub(crate) space: ColourSpace,
-    /// What its prepasses know.
+    /// Guides that its prepasses give.
     pub(crate) guides: Guides,
 }
 

@@ -114,7 +114,7 @@ impl Device {
         Ok(sampler)
     }
 
-    /// What a shader is given, by the numbers of its bindings.
+    /// Resources of a shader, by the numbers of its bindings.
     pub(crate) fn set(&mut self, shader: Shader, bound: &[(u32, Bound)]) -> Result<Rid, Error> {
         let uniform = |(binding, bound): &(u32, Bound)| {
             let (kind, id) = match *bound {

@@ -62,7 +62,7 @@ struct Asked {
     parameters: Vec<(String, String)>,
 }
 
-/// What is kept for a view of a viewport.
+/// State of a view of a viewport.
 struct Viewport {
     /// None where the look could not be drawn; it is tried again when something else is wanted.
     runner: Option<Runner>,

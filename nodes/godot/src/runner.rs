@@ -15,7 +15,7 @@ struct Pass {
     shader: Shader,
     /// Buffers of the grid and, where the kernel has any, of its parameters, with the bytes that they hold.
     uniforms: Vec<(Rid, Vec<u8>)>,
-    /// What it is given, by the turn of the images that it reads; made when it is first needed.
+    /// Resources that it is given, by the turn of the images that it reads; made when it is first needed.
     sets: Vec<Option<Rid>>,
 }
 

@@ -30,7 +30,7 @@ pub fn graph_and_request(look: &Value, picture: &Picture) -> Result<(Graph, isop
     Ok((graph, request))
 }
 
-/// What frames in order read of those before them, where all are known: their number, and by the names of stages and guides
+/// Images that frames in order read of those before them, where all are known: their number, and by the names of stages and guides
 /// how many frames before are read. Nothing where they read none.
 ///
 /// # Errors

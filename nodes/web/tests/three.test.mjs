@@ -145,7 +145,7 @@ window.step = async (unit, antialias) => {
   return dark(read(made.renderer.domElement));
 };
 
-/** What the application draws besides is there, and lines are. */
+/** The target of the application is there, and lines are. */
 window.own = async () => {
   const made = await stage({ antialias: false }, 0.1, 100);
   made.square(40, -12);

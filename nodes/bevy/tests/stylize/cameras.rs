@@ -80,7 +80,7 @@ fn cameras_follow_their_targets_sizes() {
 }
 
 #[test]
-fn cameras_of_two_dimensions_and_hidden_ones_are_left_alone() {
+fn cameras_that_are_hidden_or_gone_do_no_harm() {
     let mut stage = stage();
     let target = stage.target(SIZE);
     let camera = stage.camera(&target);

@@ -1,4 +1,4 @@
-//! What is drawn.
+//! Pictures as they are drawn.
 
 use crate::stage::{Picture, SIZE, Stage};
 use bevy::core_pipeline::prepass::{DepthPrepass, MotionVectorPrepass, NormalPrepass};

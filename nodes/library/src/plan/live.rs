@@ -141,7 +141,7 @@ fn lowered(graph: Graph, request: Request, reads: u32, known: u32) -> Result<Low
     Lowered::new(graph, Request { frames, ..request }, all)
 }
 
-/// What frames hand on, as one reads it where all before it are known.
+/// Images that frames hand on, as one reads it where all before it are known.
 fn kept(graph: &Graph, request: Request, reads: u32) -> Result<Vec<Kept>> {
     if reads == 0 {
         return Ok(Vec::new());

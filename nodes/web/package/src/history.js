@@ -2,10 +2,10 @@
 //
 // The same work in Rust is `host-example/src/history.rs`.
 
-/** Whether an output is kept for later frames. */
+/** True for an output that is kept for later frames. */
 export const isStage = (name) => /^stage\d+$/.test(name);
 
-/** What frames in order read of those before them: stages of the look, and guides. */
+/** Textures that frames in order read of those before them: stages of the look, and guides. */
 export class History {
   #device;
   /** By name: a texture for the frame at hand and for each before it that is read. */
@@ -30,7 +30,7 @@ export class History {
     return Math.min(this.#turn, this.frames);
   }
 
-  /** Whether the planner says the same of another look. */
+  /** True where the planner says the same of another look. */
   isLike(history) {
     const images = Object.entries(history.images);
     return images.length === Object.keys(this.#images).length

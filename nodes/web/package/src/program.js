@@ -18,7 +18,7 @@ export function memory(program) {
   return own.reduce((sum, texture) => sum + size(texture)[0] * size(texture)[1] * BYTES[texture.format], 0);
 }
 
-/** Whether a texture is handed in: an input, or a stage that later frames read. */
+/** True for a texture that is handed in: an input, or a stage that later frames read. */
 const isBound = ({ role, name }) => role === "input" || (role === "output" && isStage(name));
 
 /** A program, ready to be recorded again and again. */

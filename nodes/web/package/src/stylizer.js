@@ -99,7 +99,7 @@ export class Stylizer {
     });
   }
 
-  /** Whether frames read of those before what they read now. */
+  /** True where frames read of those before what they read now. */
   #reads(history) {
     return history === null ? this.#history === null : this.#history?.isLike(history) === true;
   }
