@@ -181,6 +181,11 @@ pub fn test(filter: Option<&str>) -> Result<()> {
         lint("ruff", &["check", "--quiet", "."])?;
         lint("ruff", &["format", "--check", "--quiet", "."])?;
         lint("mypy", &["--cache-dir", "../../target/python/mypy"])?;
+        if cfg!(target_os = "linux") {
+            // Nothing else reads these before GitHub does.
+            let workflows = files(&root().join(".github/workflows"), "yml")?;
+            run_command(environment.program("actionlint").args(workflows))?;
+        }
     }
     let mut pytest = environment.pytest(filter);
     pytest.arg(package().join("tests")).env("ISOPHOTE_HOST", host_file("debug"));

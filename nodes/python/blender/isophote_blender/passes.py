@@ -1,7 +1,7 @@
 """The passes of a finished render as arrays.
 
-Blender gives the pixels of passes to nobody but its own file writers. So they are written to a file for as long as it takes to
-read it.
+Blender gives the pixels of passes to nobody but its own file writers: to Python the image of a render has none, and in 5.2 a
+viewer of the compositor has none where there is no window. So they are written to a file for as long as it takes to read it.
 """
 
 import contextlib
@@ -27,6 +27,12 @@ _WANTED = {
     "Object Index": "object_id",
 }
 
+_WORKING = {"lin_rec709_scene": "linear", "lin_rec2020_scene": "rec2020", "lin_ap1_scene": "acescg"}
+"""The library's spaces for those that a file's scenes can be lit in, by the names of the Color Interop Forum."""
+
+_DISPLAY = "sRGB"
+"""The display that colours are read for, whatever the user's is: the library's parameters have colours of it."""
+
 BACKGROUND = 1e9
 """From this depth on there is nothing: Blender writes 1e10."""
 
@@ -41,6 +47,19 @@ class Frame:
 
     color: np.ndarray
     guides: dict[str, np.ndarray]
+
+
+def working_space() -> tuple[str, str]:
+    """The space of the light of scenes in this file, by the library's name and Blender's; before Blender 5 there was one."""
+    colors = getattr(bpy.data, "colorspace", None)
+    if colors is None:
+        return "linear", "Linear Rec.709"
+    space = _WORKING.get(colors.working_space_interop_id)
+    if space is None:
+        raise NoRender(
+            f"the file's working space {colors.working_space} is not known; choose 'As displayed', or another working space"
+        )
+    return space, colors.working_space
 
 
 def enable(view_layer: bpy.types.ViewLayer) -> None:
@@ -66,14 +85,14 @@ def read(scene: bpy.types.Scene, layer: str, colors: str) -> Frame:
         raise NoRender("there is no render yet; render the image first")
     with tempfile.TemporaryDirectory(prefix="isophote-") as folder:
         file = Path(folder) / "passes.exr"
-        _save(scene, image, file, "OPEN_EXR_MULTILAYER", "32")
+        _save(scene, image, file, "OPEN_EXR_MULTILAYER")
         found = _layer(file, layer)
         if "color" not in found:
             raise NoRender(f"the render has no pass Combined of the view layer '{layer}'; render the image again")
         color = _rgba(found.pop("color"))
         if colors == "display":
             file = Path(folder) / "display.png"
-            _save(scene, image, file, "PNG", "16")
+            _save(scene, image, file, "PNG")
             color = _picture(file)
     return Frame(color, _guides(scene, found))
 
@@ -96,10 +115,18 @@ def _guides(scene: bpy.types.Scene, found: dict[str, np.ndarray]) -> dict[str, n
     return guides
 
 
-def _save(scene: bpy.types.Scene, image: bpy.types.Image, file: Path, format: str, depth: str) -> None:
-    """Writes the render."""
+def _save(scene: bpy.types.Scene, image: bpy.types.Image, file: Path, format: str) -> None:
+    """Writes the render: its light in the working space, or in a format for displays as one of sRGB shows it."""
+    is_light = "EXR" in format
     try:
-        save(scene, image, file, format, depth, "NONE")
+        with _kept(scene.render.image_settings) as settings:
+            if not is_light:
+                # It takes view, look and exposure of the scene along, where it was not so before.
+                settings.color_management = "OVERRIDE"
+                settings.display_settings.display_device = _DISPLAY
+            elif settings.color_management == "OVERRIDE":
+                settings.linear_colorspace_settings.name = working_space()[1]
+            save(scene, image, file, format, "32" if is_light else "16", "NONE")
     except RuntimeError as error:
         raise NoRender(f"the render cannot be read: {error}; render the image first") from error
     if not file.exists():
@@ -108,7 +135,7 @@ def _save(scene: bpy.types.Scene, image: bpy.types.Image, file: Path, format: st
 
 def save(scene: bpy.types.Scene, image: bpy.types.Image, file: Path, format: str, depth: str, codec: str) -> None:
     """Writes an image as renders are written, in a format, whatever the scene's own is; `codec` is that of EXR files."""
-    with _settings(scene.render.image_settings) as settings:
+    with _kept(scene.render.image_settings) as settings:
         if hasattr(settings, "media_type"):
             settings.media_type = "MULTI_LAYER_IMAGE" if format == "OPEN_EXR_MULTILAYER" else "IMAGE"
         settings.file_format = format
@@ -120,15 +147,23 @@ def save(scene: bpy.types.Scene, image: bpy.types.Image, file: Path, format: str
 
 
 @contextlib.contextmanager
-def _settings(settings: bpy.types.ImageFormatSettings) -> Iterator[bpy.types.ImageFormatSettings]:
+def _kept(settings: bpy.types.ImageFormatSettings) -> Iterator[bpy.types.ImageFormatSettings]:
     """The settings, which are afterwards as before. Each allows only some values of those after it."""
-    names = ("media_type", "file_format", "color_mode", "color_depth", "exr_codec")
-    before = {name: getattr(settings, name) for name in names if hasattr(settings, name)}
+    names = ("media_type", "file_format", "color_mode", "color_depth", "exr_codec", "color_management")
+    kept = [(settings, name) for name in names if hasattr(settings, name)]
+    if settings.color_management == "OVERRIDE":
+        # Otherwise they count for nothing.
+        view = settings.view_settings
+        kept += [(settings.linear_colorspace_settings, "name"), (settings.display_settings, "display_device")]
+        kept += [(view, "view_transform"), (view, "look")]
+    before = [(owner, name, getattr(owner, name)) for owner, name in kept]
     try:
         yield settings
     finally:
-        for name, value in before.items():
-            setattr(settings, name, value)
+        for owner, name, value in before:
+            # What is set anew takes other settings along.
+            if getattr(owner, name) != value:
+                setattr(owner, name, value)
 
 
 def _layer(file: Path, layer: str) -> dict[str, np.ndarray]:

@@ -14,10 +14,12 @@ from .settings import ISOPHOTE_PG_settings, values
 IMAGE = "Stylized Render"
 """The image that results come back as."""
 
-_SPACES = {
-    "display": {"color_space": "srgb", "alpha_mode": "straight"},
-    "linear": {"color_space": "linear", "alpha_mode": "premultiplied"},
-}
+
+def _space(settings: ISOPHOTE_PG_settings) -> dict[str, str]:
+    """What the numbers of colours mean to the library."""
+    if settings.colors == "linear":
+        return {"color_space": passes.working_space()[0], "alpha_mode": "premultiplied"}
+    return {"color_space": "srgb", "alpha_mode": "straight"}
 
 
 def still(context: bpy.types.Context) -> bpy.types.Image:
@@ -34,7 +36,7 @@ def still(context: bpy.types.Context) -> bpy.types.Image:
         lengths=settings.lengths,
         device=settings.device,
         **guides,
-        **_SPACES[settings.colors],
+        **_space(settings),
     )
     return _image(result, settings)
 
@@ -80,7 +82,7 @@ def animation(context: bpy.types.Context) -> Iterator[tuple[int, int, Path]]:
                     list(rendered[number].guides),
                     lengths=settings.lengths,
                     device=settings.device,
-                    **_SPACES[settings.colors],
+                    **_space(settings),
                 )
             for name, value in chosen[number].items():
                 style.set(name, value)
@@ -120,7 +122,7 @@ def _image(pixels: np.ndarray, settings: ISOPHOTE_PG_settings) -> bpy.types.Imag
 
 def _fill(image: bpy.types.Image, pixels: np.ndarray, is_linear: bool) -> None:
     """Gives an image pixels, and says what they mean."""
-    image.colorspace_settings.name = "Linear Rec.709" if is_linear else "sRGB"
+    image.colorspace_settings.name = passes.working_space()[1] if is_linear else "sRGB"
     image.alpha_mode = "PREMUL" if is_linear else "STRAIGHT"
     image.pixels.foreach_set(pixels.ravel())
     image.update()

@@ -235,3 +235,41 @@ def test_what_the_compositor_makes_is_the_picture(scene: Any, extension: ModuleT
     display = extension.passes.read(scene, "ViewLayer", "display").color
     dark = plain["display"].color[..., 0] < 0.15
     assert dark.any() and (display[dark][:, 0] > 0.6).all()
+
+
+def test_colours_are_of_the_files_working_space_and_of_one_display(scene: Any, extension: ModuleType) -> None:
+    scene.objects["sun"].data.color = (1.0, 0.2, 0.05)
+    bpy.ops.render.render()
+    before = {colors: extension.passes.read(scene, "ViewLayer", colors).color for colors in ("display", "linear")}
+    assert bpy.ops.wm.set_working_color_space(working_space="Linear Rec.2020", convert_colors=True) == {"FINISHED"}
+    scene.display_settings.display_device = "Display P3"
+    written = scene.render.image_settings
+
+    def chosen() -> tuple[str, str, str]:
+        display, linear = written.display_settings, written.linear_colorspace_settings
+        return written.color_management, display.display_device, linear.name
+
+    for override in (False, True):
+        if override:
+            written.color_management = "OVERRIDE"
+            written.display_settings.display_device = "Rec.1886"
+            written.linear_colorspace_settings.name = "ACEScg"
+        asked = chosen()
+        bpy.ops.render.render()
+        now = {colors: extension.passes.read(scene, "ViewLayer", colors).color for colors in ("display", "linear")}
+        assert np.abs(now["display"] - before["display"]).max() < 3 / 255
+        # The matrix of Rec. ITU-R BT.2087 from Rec.709.
+        matrix = np.array([[0.6274, 0.3293, 0.0433], [0.0691, 0.9195, 0.0114], [0.0164, 0.0880, 0.8956]], np.float32)
+        light = before["linear"][..., :3] @ matrix.T
+        assert np.abs(now["linear"][..., :3] - light).max() < 2e-3 * light.max()
+        assert np.abs(light - before["linear"][..., :3]).max() > 0.1
+        # What is not overridden counts for nothing.
+        assert chosen()[0] == asked[0] and (not override or chosen() == asked)
+    scene.isophote.colors = "linear"
+    assert bpy.ops.isophote.stylize() == {"FINISHED"}
+    assert bpy.data.images["Stylized Render"].colorspace_settings.name == "Linear Rec.2020"
+    frame = extension.passes.read(scene, "ViewLayer", "linear")
+    guides = {name: guide for name, guide in frame.guides.items() if "motion" not in name}
+    common: dict[str, Any] = {"frame": scene.frame_current, "lengths": scene.isophote.lengths, "alpha_mode": "premultiplied"}
+    out = np.empty(frame.color.shape, np.float32)
+    assert np.array_equal(shown(), isophote.apply("cartoon", frame.color, out=out, color_space="rec2020", **common, **guides))
