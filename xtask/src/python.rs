@@ -70,6 +70,18 @@ fn released(options: &WheelOptions) -> Result<(Environment, PathBuf)> {
     Ok((environment, wheel))
 }
 
+/// Unpacks a package of others as it is for 64-bit Windows.
+///
+/// # Errors
+/// As pip.
+pub fn unpack_for_windows(package: &str, folder: &Path) -> Result<()> {
+    let _turn = turn()?;
+    let mut pip = Environment::tools()?.program("python");
+    pip.args(["-m", "pip", "install", "--quiet", "--disable-pip-version-check", "--no-deps", "--upgrade"]);
+    pip.args(["--platform", "win_amd64", "--only-binary=:all:", "--target"]);
+    run_command(pip.arg(folder).arg(package))
+}
+
 /// The right to change what all chores share, until it is dropped: the environments, and what is put beside the package.
 fn turn() -> Result<File> {
     let (folder, failed) =

@@ -53,3 +53,5 @@ mod view_panel;
 mod view_previews;
 mod view_screens;
 mod view_story;
+#[cfg(windows)]
+mod windows;

@@ -4,7 +4,6 @@
 use std::fs;
 use std::path::Path;
 use std::process::{Command, Stdio};
-use std::time::Duration;
 
 use serde_json::Value;
 
@@ -267,9 +266,9 @@ fn interrupted_runs_leave_whole_files() {
         .expect("a process");
     let patience = std::time::Instant::now();
     while listing(&at("out")).iter().all(|n| n.starts_with('.'))
-        && patience.elapsed() < Duration::from_secs(60)
+        && patience.elapsed() < std::time::Duration::from_secs(60)
     {
-        std::thread::sleep(Duration::from_millis(5));
+        std::thread::sleep(std::time::Duration::from_millis(5));
     }
     let status = Command::new("kill").args(["-INT", &child.id().to_string()]).status().expect("kill");
     assert!(status.success());

@@ -7,7 +7,7 @@ use std::process::Command;
 
 use isophote_window::jobs::document::{Document, Options};
 
-use crate::support::{IN_PIXELS, cube, errors, fails, isophote, listing, succeeds, video_folder};
+use crate::support::{self, IN_PIXELS, cube, fails, isophote, listing, succeeds, video_folder};
 
 const FRAMES: u64 = 50;
 
@@ -179,7 +179,7 @@ fn damaged_videos_are_not_written_in_silence() {
         bytes[middle..middle + 400].fill(0xA5);
         fs::write(at.join(&bad), bytes).expect("the folder is writable");
         let before = listing(at);
-        fails(&mut apply(at, &[&bad, "out.mkv"]), 1, &[&bad, "is damaged", " 50 frames"]);
+        fails(&mut apply(at, &[&bad, "out.mkv"]), 1, &[&bad, "damaged", " 50 frames"]);
         assert_eq!(listing(at), before, "{name}: nothing is written");
         let (text, said) = succeeds(&mut apply(at, &[&bad, "out.mkv", "--on-error", "skip"]));
         let written = count(&at.join("out.mkv"));
@@ -276,7 +276,7 @@ fn full_disks_hold_no_video() {
     // A limit on the size of files fails as a full disk does once its signal is ignored, and else ends the encoder.
     let limited = |script: &str, args: &[&str]| {
         let mut command = Command::new("sh");
-        command.current_dir(at).env("ISOPHOTE_LIBRARY", crate::support::library());
+        command.current_dir(at).env("ISOPHOTE_LIBRARY", support::library());
         command.args(["-c", &format!("{script}; exec \"$0\" \"$@\"")]).arg(env!("CARGO_BIN_EXE_isophote"));
         command.args(args);
         command
@@ -305,7 +305,7 @@ fn full_disks_hold_no_video() {
             &["apply", "gaussian", "a.mp4", output, "--backend", "cpu", "--lengths", "pixels"],
         );
         let mut command = Command::new("unshare");
-        command.current_dir(at).env("ISOPHOTE_LIBRARY", crate::support::library());
+        command.current_dir(at).env("ISOPHOTE_LIBRARY", support::library());
         command.args(["-rm", "sh"]).args(inner.get_args());
         fails(&mut command, 1, &[output, "cannot be written", "the disk is full"]);
     }
@@ -332,7 +332,7 @@ fn standard_output_that_takes_no_more_is_no_success() {
                 .spawn()
                 .and_then(std::process::Child::wait_with_output);
             let output = output.expect("the program runs");
-            let said = errors(&output);
+            let said = support::errors(&output);
             assert_eq!(output.status.code(), Some(1), "{said}");
             assert!(
                 said.starts_with("error: cannot write to standard output") && said.contains(why),

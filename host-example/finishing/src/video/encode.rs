@@ -322,8 +322,9 @@ impl Encoding<'_> {
             false => format!("crop={width}:{height}:0:0,"),
         };
         let palette = if self.container() == "gif" && self.options.is_none() { PALETTE } else { "" };
+        let unsaid = form.unsaid();
         format!(
-            "{cut}scale=in_range=pc:out_color_matrix={matrix}:out_range={range}:{EXACT},format={pixels},setsar={aspect}{palette}"
+            "{cut}scale=in_range=pc:out_color_matrix={matrix}:out_range={range}:{EXACT},format={pixels}{unsaid},setsar={aspect}{palette}"
         )
     }
 

@@ -16,6 +16,7 @@ use std::path::{Path, PathBuf};
 use std::process::Command;
 use wine::{LINKER, Wine};
 
+mod videos;
 mod wine;
 
 /// Packages whose tests are run.
@@ -34,7 +35,7 @@ const PACKAGES: [&str; 11] = [
 ];
 
 /// Files of tests beside the packages' own: of the program, then of the library and the plugin.
-const FILES: [&str; 35] = [
+const FILES: [&str; 38] = [
     "apply",
     "bad_input",
     "command_line",
@@ -58,11 +59,14 @@ const FILES: [&str; 35] = [
     "staging",
     "stylize",
     "time",
+    "video",
+    "video_faults",
     "view_chain",
     "view_frames",
     "view_looks",
     "view_panel",
     "view_previews",
+    "windows",
     "abi_images",
     "abi_sequences",
     "bits",
@@ -109,6 +113,7 @@ pub fn run(filter: Option<&str>) -> Result<()> {
     let programs = programs::build(tests)?;
     let library = folder.join(WINDOWS_TARGET).join("debug/isophote.dll");
     let wine = Wine::start(&folder.join("wine"))?;
+    videos::put(&folder.join("videos"), &wine.programs())?;
     run_programs(programs, &FILES, filter, &["wine"], |command| {
         wine.prepare(command);
         command.env("ISOPHOTE_LIBRARY", wine::path(&library));

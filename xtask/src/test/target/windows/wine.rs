@@ -4,7 +4,7 @@ use crate::error::{Context, Failure, Result};
 use crate::tools::run as run_command;
 use std::fs;
 use std::io::{BufRead, BufReader};
-use std::os::unix::fs::PermissionsExt;
+use std::os::unix::fs::{PermissionsExt, symlink};
 use std::path::{Path, PathBuf};
 use std::process::{Child, Command, Stdio};
 
@@ -47,6 +47,7 @@ impl Wine {
             compile("bcryptprimitives.c", &system.join("bcryptprimitives.dll"), &["-shared", "-ladvapi32"])?;
         }
         wine.clean();
+        wine.share_the_disk()?;
         wine.add_programs()?;
         Ok(wine)
     }
@@ -65,9 +66,18 @@ impl Wine {
         run_command(command.args(arguments))
     }
 
-    /// Folder of programs of this system that those of Windows find by their names.
-    fn programs(&self) -> PathBuf {
+    /// Folder of programs that those of Windows find by their names.
+    pub fn programs(&self) -> PathBuf {
         self.folder.join("programs")
+    }
+
+    /// Lets programs name the disk as that of another machine, as every Windows does for those who look after it.
+    fn share_the_disk(&self) -> Result<()> {
+        let machine = self.folder.join("dosdevices/unc/localhost");
+        let cannot = || format!("cannot make {}", machine.display());
+        let _ = fs::remove_dir_all(&machine);
+        fs::create_dir_all(&machine).context(cannot)?;
+        symlink(self.folder.join("drive_c"), machine.join("C$")).context(cannot)
     }
 
     /// Empties the folders of temporary files. Libraries that are loaded cannot be removed by those who made them.
@@ -107,8 +117,7 @@ impl Drop for Wine {
     }
 }
 
-/// Programs that tests start, by their names in Wine and in this system. Wine hands them no pipes, so that ffmpeg cannot be
-/// among them, and tests of videos find none.
+/// Programs that tests start, by their names in Wine and in this system. Wine hands them no pipes.
 const PROGRAMS: [(&str, &str); 1] = [("cc", LINKER)];
 
 /// A script that `native.c` starts: it runs a program with paths as this system has them, and tells how it ended.
