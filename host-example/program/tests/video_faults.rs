@@ -7,7 +7,7 @@ use std::process::Command;
 
 use isophote_window::jobs::document::{Document, Options};
 
-use crate::support::{self, IN_PIXELS, cube, fails, isophote, listing, succeeds, video_folder};
+use crate::support::{IN_PIXELS, cube, fails, isophote, listing, succeeds, video_folder};
 
 const FRAMES: u64 = 50;
 
@@ -276,7 +276,7 @@ fn full_disks_hold_no_video() {
     // A limit on the size of files fails as a full disk does once its signal is ignored, and else ends the encoder.
     let limited = |script: &str, args: &[&str]| {
         let mut command = Command::new("sh");
-        command.current_dir(at).env("ISOPHOTE_LIBRARY", support::library());
+        command.current_dir(at).env("ISOPHOTE_LIBRARY", crate::support::library());
         command.args(["-c", &format!("{script}; exec \"$0\" \"$@\"")]).arg(env!("CARGO_BIN_EXE_isophote"));
         command.args(args);
         command
@@ -305,7 +305,7 @@ fn full_disks_hold_no_video() {
             &["apply", "gaussian", "a.mp4", output, "--backend", "cpu", "--lengths", "pixels"],
         );
         let mut command = Command::new("unshare");
-        command.current_dir(at).env("ISOPHOTE_LIBRARY", support::library());
+        command.current_dir(at).env("ISOPHOTE_LIBRARY", crate::support::library());
         command.args(["-rm", "sh"]).args(inner.get_args());
         fails(&mut command, 1, &[output, "cannot be written", "the disk is full"]);
     }
@@ -332,7 +332,7 @@ fn standard_output_that_takes_no_more_is_no_success() {
                 .spawn()
                 .and_then(std::process::Child::wait_with_output);
             let output = output.expect("the program runs");
-            let said = support::errors(&output);
+            let said = crate::support::errors(&output);
             assert_eq!(output.status.code(), Some(1), "{said}");
             assert!(
                 said.starts_with("error: cannot write to standard output") && said.contains(why),
