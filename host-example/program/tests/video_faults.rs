@@ -179,7 +179,7 @@ fn damaged_videos_are_not_written_in_silence() {
         bytes[middle..middle + 400].fill(0xA5);
         fs::write(at.join(&bad), bytes).expect("the folder is writable");
         let before = listing(at);
-        fails(&mut apply(at, &[&bad, "out.mkv"]), 1, &[&bad, "damaged", " 50 frames"]);
+        fails(&mut apply(at, &[&bad, "out.mkv"]), 1, &[&bad, " 50 frames", "use an intact file"]);
         assert_eq!(listing(at), before, "{name}: nothing is written");
         let (text, said) = succeeds(&mut apply(at, &[&bad, "out.mkv", "--on-error", "skip"]));
         let written = count(&at.join("out.mkv"));

@@ -324,7 +324,7 @@ impl Encoding<'_> {
         let palette = if self.container() == "gif" && self.options.is_none() { PALETTE } else { "" };
         let unsaid = form.unsaid();
         format!(
-            "{cut}scale=in_range=pc:out_color_matrix={matrix}:out_range={range}:{EXACT},format={pixels}{unsaid},setsar={aspect}{palette}"
+            "{cut}scale=in_range=pc:out_color_matrix={matrix}:out_range={range}:{EXACT},format={pixels},{unsaid},setsar={aspect}{palette}"
         )
     }
 

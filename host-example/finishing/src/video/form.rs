@@ -105,12 +105,11 @@ impl Form {
     /// A filter that takes away what the source does not say of its colours. From its version 7 on ffmpeg writes down what it
     /// converts to, and players show a file by that where they would have supposed something else.
     pub fn unsaid(&self) -> String {
-        let is_unsaid = |option| self.tags.iter().all(|[known, _]| *known != option);
-        let unsaid: Vec<&str> = [("-color_range", "range=unknown"), ("-colorspace", "colorspace=unknown")]
-            .into_iter()
-            .filter_map(|(option, unknown)| is_unsaid(option).then_some(unknown))
-            .collect();
-        if unsaid.is_empty() { String::new() } else { format!(",setparams={}", unsaid.join(":")) }
+        let kept = |option| {
+            let is_said = self.tags.iter().any(|[known, _]| *known == option);
+            if is_said { "auto" } else { "unknown" }
+        };
+        format!("setparams=range={}:colorspace={}", kept("-color_range"), kept("-colorspace"))
     }
 
     fn tag(&mut self, option: &'static str, value: &'static str) {

@@ -101,6 +101,7 @@ fn arguments(stream: &Stream) -> Vec<Vec<String>> {
 fn known() -> BTreeSet<String> {
     let mut plain = Stream::of_frames((4, 4), super::closed::Ratio::ONE);
     let mut known: BTreeSet<String> = PIXELS.iter().map(|word| (*word).to_owned()).collect();
+    known.extend(["auto", "unknown"].map(str::to_owned));
     for pairs in [&SPACES[..], &TRANSFERS, &PRIMARIES, &RANGES, &MATRICES] {
         known.extend(pairs.iter().map(|(_, word)| (*word).to_owned()));
     }
