@@ -74,6 +74,7 @@ fn released(options: &WheelOptions) -> Result<(Environment, PathBuf)> {
 ///
 /// # Errors
 /// As pip.
+#[cfg(unix)]
 pub fn unpack_for_windows(package: &str, folder: &Path) -> Result<()> {
     let _turn = turn()?;
     let mut pip = Environment::tools()?.program("python");

@@ -81,9 +81,11 @@ pub const AARCH64: Need = Need {
 };
 
 /// 64-bit Windows with MinGW's libraries, as compilers name it.
+#[cfg(unix)]
 pub const WINDOWS_TARGET: &str = "x86_64-pc-windows-gnu";
 
 /// Linker and libraries for Windows.
+#[cfg(unix)]
 pub const MINGW: Need = Need {
     what: "MinGW",
     present: || program("x86_64-w64-mingw32-gcc"),
@@ -91,6 +93,7 @@ pub const MINGW: Need = Need {
 };
 
 /// What runs programs for Windows.
+#[cfg(unix)]
 pub const WINE: Need = Need {
     what: "Wine",
     present: || program("wine") && program("wineserver"),

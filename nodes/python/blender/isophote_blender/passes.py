@@ -123,7 +123,9 @@ def _save(scene: bpy.types.Scene, image: bpy.types.Image, file: Path, format: st
             if not is_light:
                 # It takes view, look and exposure of the scene along, where it was not so before.
                 settings.color_management = "OVERRIDE"
-                settings.display_settings.display_device = _DISPLAY
+                with contextlib.suppress(TypeError):
+                    # A studio's own configuration may have none of that name.
+                    settings.display_settings.display_device = _DISPLAY
             elif settings.color_management == "OVERRIDE":
                 settings.linear_colorspace_settings.name = working_space()[1]
             save(scene, image, file, format, "32" if is_light else "16", "NONE")

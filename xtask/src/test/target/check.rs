@@ -7,8 +7,9 @@ use crate::tools::{cargo_command, heading, run as run_command, target_dir};
 /// Targets whose types are checked.
 const CHECKED: [&str; 2] = ["aarch64-apple-darwin", "x86_64-pc-windows-msvc"];
 
-/// Packages that are checked for them: all that users install but the wheel, which asks the interpreter of the target.
-const INSTALLED: [&str; 3] = ["isophote", "isophote-plugin", "isophote-program"];
+/// Packages that are checked for them: all that users install but the wheel, which asks the interpreter of the target, and what
+/// packs it on such machines.
+const PACKAGES: [&str; 5] = ["isophote", "isophote-plugin", "isophote-program", "isophote-dist", "xtask"];
 
 /// Checks types for all of them.
 ///
@@ -23,7 +24,7 @@ fn check(target: &str) -> Result<()> {
     setup::ensure(&[&C_COMPILER])?;
     heading(target);
     let mut check = cargo_command(&["check", "--quiet", "--target", target]);
-    check.args(INSTALLED.iter().flat_map(|package| ["--package", package]));
+    check.args(PACKAGES.iter().flat_map(|package| ["--package", package]));
     check.env("CARGO_TARGET_DIR", target_dir("checks"));
     if !setup::has_target(target) {
         setup::ensure(&[&STD_SOURCES])?;
