@@ -29,6 +29,10 @@ impl Resident {
 
 /// Bytes of a line of the system's account of this process.
 fn status(name: &str) -> Option<u64> {
+    if !cfg!(target_os = "linux") {
+        // Wine opens Linux's files for programs of Windows, and this one is the account of whoever opens it.
+        return None;
+    }
     let status = fs::read_to_string("/proc/self/status").ok()?;
     let line = status.lines().find_map(|line| line.strip_prefix(name))?;
     Some(line.trim().strip_suffix("kB")?.trim().parse::<u64>().ok()? * 1024)
