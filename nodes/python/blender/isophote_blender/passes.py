@@ -51,15 +51,18 @@ class Frame:
 
 def working_space() -> tuple[str, str]:
     """The space of the light of scenes in this file, by the library's name and Blender's; before Blender 5 there was one."""
+    name = _working_space()
     colors = getattr(bpy.data, "colorspace", None)
-    if colors is None:
-        return "linear", "Linear Rec.709"
-    space = _WORKING.get(colors.working_space_interop_id)
+    space = "linear" if colors is None else _WORKING.get(colors.working_space_interop_id)
     if space is None:
-        raise NoRender(
-            f"the file's working space {colors.working_space} is not known; choose 'As displayed', or another working space"
-        )
-    return space, colors.working_space
+        raise NoRender(f"the file's working space {name} is not known; choose 'As displayed', or another working space")
+    return space, name
+
+
+def _working_space() -> str:
+    """Blender's name for it, whether or not the library knows it."""
+    colors = getattr(bpy.data, "colorspace", None)
+    return "Linear Rec.709" if colors is None else colors.working_space
 
 
 def enable(view_layer: bpy.types.ViewLayer) -> None:
@@ -127,7 +130,7 @@ def _save(scene: bpy.types.Scene, image: bpy.types.Image, file: Path, format: st
                     # A studio's own configuration may have none of that name.
                     settings.display_settings.display_device = _DISPLAY
             elif settings.color_management == "OVERRIDE":
-                settings.linear_colorspace_settings.name = working_space()[1]
+                settings.linear_colorspace_settings.name = _working_space()
             save(scene, image, file, format, "32" if is_light else "16", "NONE")
     except RuntimeError as error:
         raise NoRender(f"the render cannot be read: {error}; render the image first") from error
