@@ -6,6 +6,7 @@ use isophote::frames::Frames;
 use isophote::graph::GraphInput;
 use isophote::request::Guides;
 use isophote::spec::{ImageKind, NodeSpec, Param, Port, Unit};
+use isophote::things::ThingRule;
 use isophote::{ColourSpace, Graph, NodeId, Request, Value};
 
 /// A node in a graph that can be planned, with the nodes that stand before it.
@@ -264,6 +265,27 @@ pub fn request_without_rest(kind: Kind, width: u32, height: u32) -> Request {
 pub fn on_materials(spec: &NodeSpec) -> Option<Setting> {
     let takes = spec.inputs.iter().any(|port| GraphInput::from_id(port.id).is_some_and(is_material));
     takes.then(|| Setting { label: "on materials".into(), values: Vec::new() })
+}
+
+/// For nodes whose lines and places rules for things direct: their defaults.
+pub fn ruled(spec: &NodeSpec) -> Option<Setting> {
+    spec.input("line_paint")?;
+    Some(Setting { label: "by rules".into(), values: Vec::new() })
+}
+
+/// Rules for the objects of [`pictures`](crate::pictures), more than a kernel takes at once.
+pub fn rules() -> Vec<ThingRule> {
+    let rule = |number: u32| ThingRule {
+        numbers: vec![number, number + 2],
+        control: [Some(0.8), None, (number == 1).then_some(0.0), Some(0.3)],
+        line_color: (number % 2 == 0).then_some([0.8, 0.1, 0.2, 0.6]),
+    };
+    (0..40).map(rule).collect()
+}
+
+/// As [`request`] with numbers of objects alone.
+pub fn request_of_numbers(kind: Kind, width: u32, height: u32) -> Request {
+    Request { guides: Guides { object_id: true, ..Guides::NONE }, ..request(kind, width, height, true) }
 }
 
 /// As [`request`] with all guides, materials too.

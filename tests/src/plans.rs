@@ -5,6 +5,7 @@ use crate::pictures::Kind;
 use crate::run;
 use isophote::Request;
 use isophote::spec::{ImageKind, NodeSpec};
+use isophote::things::ThingRule;
 use isophote_engine::Plan;
 use isophote_engine::plan::Pass;
 use std::collections::BTreeSet;
@@ -47,6 +48,7 @@ struct Variant {
     /// Request of the full picture.
     request: FullRequest,
     scale: f32,
+    rules: Vec<ThingRule>,
 }
 
 /// All cases, the smallest pictures first.
@@ -67,7 +69,8 @@ fn variants(spec: &'static NodeSpec) -> Vec<Variant> {
     let mut all = Vec::new();
     let mut add = |setting: &Setting, wired, kind, guides, scale| {
         let request = if guides { with_guides } else { without_guides };
-        all.push(Variant { setting: setting.clone(), wired, kind, guides, request, scale });
+        let rules = Vec::new();
+        all.push(Variant { setting: setting.clone(), wired, kind, guides, request, scale, rules });
     };
     let settings = cases::settings(spec, RANDOM_SETS);
     let Some((default, others)) = settings.split_first() else { return all };
@@ -84,15 +87,18 @@ fn variants(spec: &'static NodeSpec) -> Vec<Variant> {
     for kind in Kind::ALL {
         add(default, false, kind, false, 0.5);
     }
-    let others: [(_, FullRequest); 6] = [
-        (cases::carrying(spec), cases::request_without_rest),
-        (cases::fading(spec), with_guides),
-        (cases::by_distance(spec), with_guides),
-        (cases::dotted(spec), with_guides),
-        (cases::in_sets(spec), with_guides),
-        (cases::on_materials(spec), cases::request_on_materials),
+    let plain = Vec::new;
+    let others: [(_, FullRequest, _); 8] = [
+        (cases::carrying(spec), cases::request_without_rest, plain()),
+        (cases::fading(spec), with_guides, plain()),
+        (cases::by_distance(spec), with_guides, plain()),
+        (cases::dotted(spec), with_guides, plain()),
+        (cases::in_sets(spec), with_guides, plain()),
+        (cases::on_materials(spec), cases::request_on_materials, plain()),
+        (cases::ruled(spec), cases::request_on_materials, cases::rules()),
+        (cases::ruled(spec), cases::request_of_numbers, cases::rules()),
     ];
-    for (setting, request) in others {
+    for (setting, request, rules) in others {
         all.extend(setting.into_iter().flat_map(|setting| {
             Kind::ALL.map(|kind| Variant {
                 setting: setting.clone(),
@@ -101,6 +107,7 @@ fn variants(spec: &'static NodeSpec) -> Vec<Variant> {
                 guides: true,
                 request,
                 scale: 1.0,
+                rules: rules.clone(),
             })
         }));
     }
@@ -120,6 +127,7 @@ fn planned(spec: &'static NodeSpec, variant: &Variant, size: [u32; 2]) -> Option
     let ([width, height], &Variant { wired, kind, guides, scale, request, .. }) = (size, variant);
     let mut setup = cases::setup(spec, wired);
     variant.setting.apply(&mut setup.graph, setup.node);
+    setup.graph.set_rules(variant.rules.clone());
     let full = request(kind, width, height);
     let request = Request { scale, ..full };
     let plan = run::planned(&setup.graph, request).plan().clone();

@@ -8,6 +8,7 @@ use crate::declare::value::Value;
 use crate::error::{Error, Result, nearest};
 pub use crate::guides::GraphInput;
 use crate::registry;
+use crate::things::ThingRule;
 use isophote_engine::program::Precision;
 
 /// Origin of an input port's picture.
@@ -80,6 +81,7 @@ pub struct Graph {
     order: Vec<usize>,
     output: Option<usize>,
     precision: Precision,
+    rules: Vec<ThingRule>,
 }
 
 impl Graph {
@@ -96,6 +98,17 @@ impl Graph {
     /// Sets how precisely graphics devices compute it.
     pub fn set_precision(&mut self, precision: Precision) {
         self.precision = precision;
+    }
+
+    /// Rules for things, which count where a host gives numbers of objects: what they say is added to its control map and its
+    /// colours of lines. They are a preset's, and no part of what is saved.
+    pub fn rules(&self) -> &[ThingRule] {
+        &self.rules
+    }
+
+    /// Sets the rules for things; the last one counts.
+    pub fn set_rules(&mut self, rules: Vec<ThingRule>) {
+        self.rules = rules;
     }
 
     /// A graph of one node, its inputs connected to the graph's inputs of the same name, its output

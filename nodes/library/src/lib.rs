@@ -22,6 +22,7 @@ pub mod plan;
 pub mod preset;
 pub mod registry;
 mod stages;
+pub mod things;
 
 pub use colour_space::ColourSpace;
 pub use declare::value::Value;

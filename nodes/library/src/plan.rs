@@ -7,3 +7,4 @@ pub mod lowered;
 pub mod planned;
 pub mod request;
 pub mod sequence;
+mod things;

@@ -12,5 +12,6 @@ mod materials;
 mod result;
 mod shader_directives;
 mod smoothing;
+mod thing_rules;
 mod toon_shading;
 mod uniforms;

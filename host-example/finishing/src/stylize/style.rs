@@ -377,10 +377,16 @@ fn open(library: &Library, style: &OsStr) -> Result<(Tracks, Vec<ObjectRule>)> {
     }
 }
 
-/// The style of the text of a file; `preset` is what it says, if it is no graph.
+/// The style of the text of a file; `preset` is what it says, if it is no graph. Rules for things are left out: they are
+/// followed by what things cover of pixels, of which the library knows no more than whose number a pixel has.
 fn open_text(library: &Library, path: &Path, text: &str, preset: Option<&Preset>) -> Result<Tracks> {
     let graph = preset.map_or(Ok(None), |preset| graph_beside(library, path, preset))?;
     let place = path.display().to_string();
+    let plain = match preset.filter(|preset| !preset.objects.is_empty()) {
+        Some(preset) => Some(preset::text(&Preset { objects: Vec::new(), ..preset.clone() })?),
+        None => None,
+    };
+    let text = plain.as_deref().unwrap_or(text);
     library.style_from_json(&place, text, graph.as_deref()).map_err(|e| e.at(&place, FIX))
 }
 

@@ -7,6 +7,7 @@ use crate::graph::neighbours::needs_of;
 use crate::graph::{Graph, GraphInput, Node, Upstream};
 use crate::kernels::colour::{add_light, colour_export, colour_import, emission, mix, mix_by_mask};
 use crate::plan::request::Request;
+use crate::plan::things::Ruled;
 use isophote_engine::{ImageId, PlanBuilder};
 
 /// Working memory of a description, kept so that editing allocates nothing.
@@ -105,11 +106,15 @@ impl Describing<'_> {
             Upstream::Node(n) => self.scratch.results[self.place(frame, n)],
             // What is handed in was made from the rest.
             Upstream::Input(input) if self.request.frames.is_handed(frame) && !is_besides(input) => None,
-            Upstream::Input(input) if self.request.guides.has(input) => {
-                Some(graph_input(self.builder, input, self.request))
-            }
-            Upstream::Input(_) => None,
+            Upstream::Input(input) => self.picture(input),
         }
+    }
+
+    /// A picture that enters, or that rules for things make.
+    fn picture(&mut self, input: GraphInput) -> Option<ImageId> {
+        let given = self.request.guides.has(input).then(|| graph_input(self.builder, input, self.request));
+        let ruled = Ruled { rules: self.graph.rules(), request: self.request };
+        if ruled.makes(input) { Some(ruled.pass(self.builder, input, given)) } else { given }
     }
 
     /// Describes a node at one frame.

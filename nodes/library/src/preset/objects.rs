@@ -6,6 +6,7 @@ use super::fault::Fault;
 use crate::declare::value::color_from_text;
 use crate::error::nearest_name;
 use crate::kernels::shared::control::value_of;
+use crate::things::ThingRule;
 use serde::{Deserialize, Serialize};
 use serde_json::{Map, Value};
 
@@ -102,6 +103,15 @@ impl ObjectRule {
         faults.extend(rule.keys().filter(|key| !is_known(key)).map(|key| unknown(place, key)));
         let control = control(lines, factors);
         (faults.len() == before).then_some(Self { rule, things, control })
+    }
+
+    /// The rule by numbers of objects; none where it finds things in another way, or gives them a look of their own, which is for
+    /// hosts to follow.
+    pub fn by_number(&self) -> Option<ThingRule> {
+        let numbers = ThingRule::numbers_of(&self.things).filter(|_| !self.rule.contains_key(LOOK))?;
+        let color = self.rule.get(LINE_COLOR).and_then(Value::as_str);
+        let line_color = color.and_then(|text| color_from_text(text).ok());
+        Some(ThingRule { numbers, control: self.control, line_color })
     }
 
     /// Adds rules to a file, if there are any.

@@ -7,6 +7,7 @@ use super::keyframes::Animated;
 use super::lengths::Lengths;
 use super::looks::{self, id_of_look};
 use super::names;
+use super::objects::ObjectRule;
 use crate::declare::param::Param;
 use crate::graph::{Graph, NodeId};
 use crate::registry;
@@ -18,6 +19,7 @@ pub struct Settings {
     /// True where the style is node 0, and the others feed it.
     is_single: bool,
     animated: Vec<Animated>,
+    left_out: Vec<String>,
 }
 
 /// Opens the node of this id, or the look that is named `look:ID`.
@@ -77,7 +79,11 @@ fn follow(
 ) -> Result<(Graph, Settings), Fault> {
     let (mut graph, is_single) = inside(place, &preset.style, graph)?;
     let lengths = preset.lengths.unwrap_or_default();
-    let mut settings = Settings { lengths, is_single, animated: Vec::new() };
+    let by_number = |rule: &ObjectRule| rule.by_number().ok_or_else(|| rule.things.clone());
+    let (rules, left_out): (Vec<_>, Vec<_>) = preset.objects.iter().map(by_number).partition(Result::is_ok);
+    graph.set_rules(rules.into_iter().flatten().collect());
+    let left_out = left_out.into_iter().filter_map(Result::err).collect();
+    let mut settings = Settings { lengths, is_single, animated: Vec::new(), left_out };
     for (name, track) in &preset.params {
         settings.follow(&mut graph, place, (name, track), faults);
     }
@@ -120,6 +126,12 @@ impl Settings {
     /// Meaning of the lengths of parameters.
     pub fn lengths(&self) -> Lengths {
         self.lengths
+    }
+
+    /// Things whose rules the graph does not follow, in the words of their rules: they are not told by numbers, or have looks of
+    /// their own.
+    pub fn left_out(&self) -> &[String] {
+        &self.left_out
     }
 
     /// Sets a parameter for all frames, by the name that a preset has for it. Returns its node.
