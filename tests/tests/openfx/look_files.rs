@@ -7,7 +7,7 @@ use isophote::Graph;
 use isophote_abi::openfx::*;
 use isophote_tests::ofx::effect::Wanted;
 use isophote_tests::ofx::host::Host;
-use isophote_tests::ofx::picture::Layout;
+use isophote_tests::ofx::picture::{Layout, Picture};
 use isophote_tests::ofx::plugin::Binary;
 use isophote_tests::ofx::properties::Value;
 use isophote_tests::ofx::state::Behaviour;
@@ -113,4 +113,59 @@ pub fn files_are_read_again_when_they_change_or_the_user_asks(binary: &Binary) {
     instance.touch("reload");
     of_file.shows(Some(&graph(4)), "");
     host.no_faults();
+}
+
+/// Rules of a preset for things count where their numbers are connected; those by name cannot, and are told of.
+pub fn rules_for_things_follow_their_numbers(binary: &Binary) {
+    let host = Host::new(Behaviour::default());
+    let instance = in_host(&host, binary, LOOK_EFFECT, CONTEXTS[1]);
+    let of_file = OfFile { instance: &instance, host: &host };
+    let folder = tempfile::TempDir::new().expect("a folder");
+    let file = |name: &str, rules: &str| {
+        let path = folder.path().join(name);
+        std::fs::write(&path, format!(r#"{{"style": "cartoon", "objects": [{rules}]}}"#)).expect("a file");
+        path
+    };
+    let rule =
+        r##"{"match": "id:3", "lines": false, "detail": 4}, {"match": "id:200", "line_color": "#d01020"}"##;
+    let (ruled, named) =
+        (file("ruled.json", rule), file("named.json", r#"{"match": "cryptomatte:hero", "lines": false}"#));
+    let (color, layout) = (source(Layout::default(), false).packed(), Layout::default());
+    let graph = |json: &str| isophote::preset::open_json("p.json", json, None).expect("it opens").0;
+    let plain_graph = graph(r#"{"style": "cartoon"}"#);
+    instance.edit("look", 0);
+    of_file.choose(&ruled);
+    let told = || host.inner.messages.lock().expect("messages").join("\n");
+    assert!(told().contains("Connect the clip Object id"), "{}", told());
+    assert!(instance.render(layout, SIZE).packed() == wanted(&plain_graph, layout));
+    let numbers = Layout { components: kOfxImageComponentAlpha, depth: kOfxBitDepthByte, ..layout };
+    let objects: Vec<u8> = (0..WIDTH * HEIGHT).map(|i| if i % WIDTH < WIDTH / 2 { 3 } else { 200 }).collect();
+    instance.connect("ObjectId", Picture::packed_in(numbers, WIDTH, HEIGHT, &objects));
+    of_file.choose(&ruled);
+    assert_eq!(told(), "");
+    let got = instance.render(layout, SIZE).packed();
+    let floats: Vec<u8> = objects.iter().flat_map(|n| f32::from(*n).to_ne_bytes()).collect();
+    let map = maps(&objects);
+    let paint: Vec<u8> = map.1.iter().flat_map(|v| v.to_ne_bytes()).collect();
+    let control: Vec<u8> = map.0.iter().flat_map(|v| v.to_ne_bytes()).collect();
+    let ids = Layout { components: kOfxImageComponentAlpha, ..layout };
+    let inputs = [
+        ("color", color.as_slice(), layout),
+        ("object_id", floats.as_slice(), ids),
+        ("control", control.as_slice(), layout),
+        ("line_paint", paint.as_slice(), layout),
+    ];
+    assert!(got == Through::of(&plain_graph, SIZE).c(&inputs, layout));
+    assert!(got != Through::of(&plain_graph, SIZE).c(&inputs[..2], layout));
+    of_file.choose(&named);
+    assert!(told().contains("cryptomatte:hero are left out"), "{}", told());
+    host.no_faults();
+}
+
+/// The control map and the colours of lines that the rules of the test say.
+fn maps(objects: &[u8]) -> (Vec<f32>, Vec<f32>) {
+    let control = objects.iter().flat_map(|n| if *n == 3 { [1.0, 0.5, 0.0, 0.5] } else { [0.5; 4] });
+    let red = isophote::value::color_from_text("#d01020").expect("a colour");
+    let paint = objects.iter().flat_map(|n| if *n == 200 { red } else { [0.0; 4] });
+    (control.collect(), paint.collect())
 }

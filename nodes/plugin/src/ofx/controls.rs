@@ -91,10 +91,15 @@ fn notice(host: &Host, instance: Handle, settings: &Settings, aloud: bool) {
     }
 }
 
-/// Tells the user why an instance shows no look.
+/// Tells the user why an instance shows no look, or what of it is left out.
 fn tell(host: &Host, instance: Handle, settings: &Settings) {
     if let Some(fault) = &settings.look.fault {
-        host.show_failure(instance, fault);
+        return host.show_failure(instance, fault);
+    }
+    // Another file may leave other rules out.
+    host.rules_are_followed(instance);
+    if let Some(left_out) = &settings.look.left_out {
+        host.warn_of_rules(instance, left_out);
     }
 }
 

@@ -189,10 +189,24 @@ impl Host {
     /// Tells the user that the graphics card does not compute an effect, until it does: where messages stay on the effect and
     /// stop nobody, and not again while it is shown.
     pub fn warn_of_card(&self, effect: Handle, message: &str) {
+        self.warn(effect, Shown::Card, message);
+    }
+
+    /// Tells the user, in the same way, of rules for things that a look does not follow.
+    pub fn warn_of_rules(&self, effect: Handle, message: &str) {
+        self.warn(effect, Shown::Rules, message);
+    }
+
+    fn warn(&self, effect: Handle, what: Shown, message: &str) {
         let Some(show) = self.messages().and_then(|messages| messages.setPersistentMessage) else { return };
-        if lock(&self.showing).insert(effect.addr(), Shown::Card) != Some(Shown::Card) {
+        if lock(&self.showing).insert(effect.addr(), what) != Some(what) {
             say(show, effect, kOfxMessageWarning, message);
         }
+    }
+
+    /// Takes the message about rules for things back, if the effect shows it.
+    pub fn rules_are_followed(&self, effect: Handle) {
+        self.clear(effect, &[Shown::Rules]);
     }
 
     /// Takes the message about the graphics card back, if the effect shows it.
@@ -214,7 +228,7 @@ impl Host {
     pub fn forget(&self, effect: Handle) {
         lock(&self.noticed).remove(&effect.addr());
         lock(&self.before).remove(&effect.addr());
-        self.clear(effect, &[Shown::Failure, Shown::Notice, Shown::Card]);
+        self.clear(effect, &[Shown::Failure, Shown::Notice, Shown::Card, Shown::Rules]);
     }
 
     /// Sets values of an instance. What the host tells of them meanwhile is no news.
@@ -264,6 +278,8 @@ enum Shown {
     Failure,
     /// That the CPU computes it in place of the graphics card.
     Card,
+    /// That it leaves rules for things out.
+    Rules,
     /// Anything else.
     Notice,
 }

@@ -5,6 +5,7 @@ use super::host::Host;
 use super::preset_files::{self, Opened};
 use super::shipped;
 use super::values::Values;
+use isophote::graph::GraphInput;
 use isophote::preset::Settings;
 use isophote::spec::{MIX, Param};
 use isophote::{Graph, Value, registry};
@@ -44,6 +45,8 @@ pub struct Shown {
     pub is_file: bool,
     /// Reason why the source is passed on instead, and what to do, for people.
     pub fault: Option<String>,
+    /// Rules for things that are not followed, and what to do, for people.
+    pub left_out: Option<String>,
 }
 
 /// The look of an instance at the time of its values.
@@ -51,7 +54,10 @@ pub fn shown(host: &Host, instance: Handle, values: &Values<'_>) -> Shown {
     let option = values.index(LOOK).unwrap_or(DEFAULT);
     let is_file = option == 0;
     let found = if is_file {
-        from_file(host, instance, values).and_then(|opened| at_frame(&opened.graph, &opened.settings, values))
+        from_file(host, instance, values).and_then(|opened| {
+            let shown = at_frame(&opened.graph, &opened.settings, values)?;
+            Ok(Shown { left_out: left_out(host, instance, &opened), ..shown })
+        })
     } else {
         let shipped = shipped::all().get(option - 1).ok_or_else(|| UNKNOWN.to_owned());
         shipped.and_then(|shipped| at_frame(&shipped.graph, &shipped.settings, values))
@@ -62,6 +68,7 @@ pub fn shown(host: &Host, instance: Handle, values: &Values<'_>) -> Shown {
         varies: false,
         is_file,
         fault: Some(fault),
+        left_out: None,
     })
 }
 
@@ -86,6 +93,21 @@ fn from_file(host: &Host, instance: Handle, values: &Values<'_>) -> Result<std::
     Ok(opened)
 }
 
+/// The rules for things of a file that are not followed, and what to do.
+fn left_out(host: &Host, instance: Handle, opened: &Opened) -> Option<String> {
+    let things = opened.settings.left_out();
+    if !things.is_empty() {
+        let things = things.join(", ");
+        return Some(format!(
+            "Rules for {things} are left out: here things have numbers, as in id:3, and no looks of their own."
+        ));
+    }
+    let needs_numbers = !opened.graph.rules().is_empty();
+    let is_missing = guide_clip(GraphInput::ObjectId).is_none_or(|name| !is_connected(host, instance, name));
+    (needs_numbers && is_missing)
+        .then(|| "The look has rules for things by number. Connect the clip Object id.".to_owned())
+}
+
 /// The file that is chosen.
 fn path(values: &Values<'_>) -> Option<PathBuf> {
     let text = values.text(FILE)?.into_string().ok()?;
@@ -99,7 +121,7 @@ fn at_frame(graph: &Graph, settings: &Settings, values: &Values<'_>) -> Result<S
     let varies = settings.at_frame(&mut graph, frame).map_err(|fault| fault.to_string())?;
     steady(&mut graph, values).map_err(|error| error.to_string())?;
     let in_pixels = settings.lengths().reference_height() == 0;
-    Ok(Shown { graph, in_pixels, varies, is_file: false, fault: None })
+    Ok(Shown { graph, in_pixels, varies, is_file: false, fault: None, left_out: None })
 }
 
 /// Gives nodes the steadiness of the effect, unless theirs is greater.

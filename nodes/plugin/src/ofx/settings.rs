@@ -57,11 +57,13 @@ pub struct OfLook {
     pub is_file: bool,
     /// Reason why the source is passed on as it is, and what to do, for people.
     pub fault: Option<String>,
+    /// Rules for things that are not followed, and what to do, for people.
+    pub left_out: Option<String>,
 }
 
 impl Default for OfLook {
     fn default() -> Self {
-        Self { mix: 1.0, varies: false, is_file: false, fault: None }
+        Self { mix: 1.0, varies: false, is_file: false, fault: None, left_out: None }
     }
 }
 
@@ -143,7 +145,13 @@ impl Settings {
             graph: shown.graph,
             ids: Vec::new(),
             reference_height: if shown.in_pixels { 0 } else { self.reference_height },
-            look: OfLook { mix, varies: shown.varies, is_file: shown.is_file, fault: shown.fault },
+            look: OfLook {
+                mix,
+                varies: shown.varies,
+                is_file: shown.is_file,
+                fault: shown.fault,
+                left_out: shown.left_out,
+            },
             least: if is_source { [0.0; 2] } else { [f32::INFINITY; 2] },
             ..self
         }
