@@ -1254,6 +1254,10 @@ typedef struct IsophotePresetsApi {
                                  struct IsophoteFault *fault);
   // [any-thread] Opens a preset, or a graph as `graph_create_from_json` takes it. `graph` is the text of the graph file
   // that the preset names, or null where it names none. The caller owns the style and destroys it.
+  //
+  // Rules of a preset for things by number, such as `id:3`, count in requests with numbers of objects: what they say is
+  // added to the control map and to the colours of lines. Rules by name, and looks of things, are for the host to
+  // follow, which learns of them by `read`; it opens the preset without its objects if it follows all of them.
   IsophoteStatus (ISOPHOTE_ABI *style_create_from_json)(const char *json,
                                            const char *place,
                                            const char *graph,

@@ -87,6 +87,21 @@ def test_rules_for_things_are_kept(tmp_path: Path) -> None:
         isophote.Preset.from_dict(wrong)
 
 
+def test_rules_by_number_follow_object_ids(small: np.ndarray) -> None:
+    height, width = small.shape[:2]
+    ids = np.broadcast_to(np.where(np.arange(width) < width // 2, 3, 5), (height, width)).astype(np.float32)
+    rules = [{"match": "id:3", "lines": False}, {"match": "id:5,7", "line_color": "#d01020"}]
+    preset = {"style": "cartoon", "objects": rules}
+    control = np.full((height, width, 4), 0.5, np.float32)
+    control[:, : width // 2, 2] = 0
+    paint = np.zeros((height, width, 4), np.float32)
+    paint[:, width // 2 :] = (0xD0 / 255, 0x10 / 255, 0x20 / 255, 1)
+    expected = isophote.apply("cartoon", small, object_id=ids, control=control, line_paint=paint)
+    assert np.array_equal(isophote.apply(preset, small, object_id=ids), expected)
+    assert not np.array_equal(isophote.apply("cartoon", small, object_id=ids), expected)
+    assert np.array_equal(isophote.apply(preset, small), isophote.apply("cartoon", small))
+
+
 def test_graphs_are_the_same_files(small: np.ndarray, host: Path, tmp_path: Path) -> None:
     for file in sorted((ROOT / "host-example/graphs").glob("*.json")):
         result = isophote.apply(file, small, frame=1)
