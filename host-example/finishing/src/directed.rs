@@ -3,12 +3,13 @@
 
 use std::path::Path;
 
-use crate::apply::objects::{self, Covered, Rule};
+use crate::apply::objects::{Rule, Ruled};
 use crate::processor::Processor;
 use crate::stylize::style::Style;
 use isophote_files::error::Result;
 use isophote_loader::Library;
 use isophote_pictures::exr::OnUnknown;
+use isophote_pictures::meaning::Meaning;
 use isophote_pictures::mix::{self, Encoding};
 use isophote_pictures::pixels::{Pixels, Samples};
 use isophote_pictures::space::Space;
@@ -29,6 +30,8 @@ pub struct Directed {
 pub struct Followed {
     /// The control map that they are; nothing where they ask for none.
     pub control: Option<Pixels>,
+    /// The colours of lines that they ask for, of linear light; nothing where they ask for none.
+    pub line_paint: Option<Pixels>,
     /// By rule, where its look is.
     pub masks: Vec<Pixels>,
 }
@@ -93,23 +96,12 @@ impl Directed {
         painted: Option<&[f32]>,
         depth: Option<&[f32]>,
     ) -> Followed {
-        let wide = width as usize;
-        let covered = |(rule, coverage): (&Rule, &'_ Vec<f32>)| {
-            if rule.has_lines { objects::with_lines(coverage, wide, depth) } else { coverage.clone() }
-        };
-        let masks = self.rules.iter().zip(coverage).map(covered);
-        let masks = masks.filter_map(|mask| Pixels::new(width, height, 1, Samples::F32(mask))).collect();
-        if self.rules.iter().all(Rule::is_neutral) {
-            return Followed { control: None, masks };
-        }
-        let rules: Vec<Covered<'_>> = self
-            .rules
-            .iter()
-            .zip(coverage)
-            .map(|(rule, coverage)| Covered { coverage: Some(coverage), control: rule.control })
-            .collect();
-        let map = objects::map(&rules, wide, painted, depth);
-        Followed { control: Pixels::new(width, height, 4, Samples::F32(map)), masks }
+        let mask = |mask: &Vec<f32>| Pixels::new(width, height, 1, Samples::F32(mask.clone()));
+        let masks = coverage.iter().filter_map(mask).collect();
+        let coverage: Vec<Option<&[f32]>> = coverage.iter().map(|mask| Some(mask.as_slice())).collect();
+        let ruled = Ruled { rules: &self.rules, coverage: &coverage, size: (width, height), depth };
+        let line_paint = ruled.line_paint(&Meaning::light(), None);
+        Followed { control: ruled.control(painted), line_paint, masks }
     }
 
     /// A frame with the looks of things over it, of which `process` makes each; nothing where that was cancelled.

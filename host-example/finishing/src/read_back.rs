@@ -129,12 +129,13 @@ impl ReadBack {
             image.map(|(_, pixels)| pixels.to_f32())
         };
         let (painted, depth) = (numbers(Guide::Control), numbers(Guide::Depth));
-        let Followed { control, masks } =
+        let Followed { control, line_paint, masks } =
             directed.follow(coverage, own.size, painted.as_deref(), depth.as_deref());
         own.masks = masks;
-        if let Some(control) = control {
-            own.images.retain(|(name, _)| *name != Guide::Control.id());
-            own.images.push((Guide::Control.id(), control));
+        for (guide, made) in [(Guide::Control, control), (Guide::LinePaint, line_paint)] {
+            let Some(made) = made else { continue };
+            own.images.retain(|(name, _)| *name != guide.id());
+            own.images.push((guide.id(), made));
         }
     }
 

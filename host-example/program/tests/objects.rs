@@ -192,7 +192,11 @@ fn lines_of_things_have_colours_of_their_own() {
     let kinds = ["in.exr", "out.exr", "--set", "line_colors=kinds"];
     succeeds(&mut apply(folder.path(), ("cartoon", without), &kinds));
     assert!(red(&rgb(&at("out.exr")), &|_| true) > SIZE.1, "all kinds of its lines have it");
-    fails(&mut apply(folder.path(), ("watercolor", without), &["in.exr", "out.exr"]), 2, &["line_color"]);
+    fails(
+        &mut apply(folder.path(), ("watercolor", without), &["in.exr", "out.exr"]),
+        2,
+        &["one colour for all"],
+    );
     let none = r#"{"match": "id:1", "line_color": "reddish"}"#;
     fails(
         &mut apply(folder.path(), ("cartoon", none), &["in.exr", "out.exr"]),

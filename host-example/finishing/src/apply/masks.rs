@@ -9,7 +9,7 @@ use std::sync::{Mutex, PoisonError};
 use isophote_exr_edit::Window;
 
 use super::materials::{Laid, of_guides};
-use super::objects::{self, Covered, Rule};
+use super::objects::{Rule, Ruled};
 use super::painted::Painted;
 use super::tasks::Tasks;
 use isophote_files::error::{Error, Result};
@@ -39,6 +39,8 @@ pub struct Masks {
     materials: Vec<Laid>,
     /// What rules for things say. Where the things are, the last masks say.
     rules: Vec<Rule>,
+    /// Space that somebody names for the pictures.
+    space: Option<Space>,
 }
 
 /// A painted map.
@@ -106,6 +108,7 @@ impl Masks {
             maps: Vec::new(),
             materials: Vec::new(),
             rules: Vec::new(),
+            space: None,
         })
     }
 
@@ -127,10 +130,11 @@ impl Masks {
         Self { materials, ..self }
     }
 
-    /// The same with rules for things, of which the last choices say where they are.
+    /// The same with rules for things, of which the last choices say where they are, for pictures in a space that `space` names,
+    /// or that their files say.
     #[must_use]
-    pub fn with_rules(self, rules: Vec<Rule>) -> Self {
-        Self { rules, ..self }
+    pub fn with_rules(self, rules: Vec<Rule>, space: Option<Space>) -> Self {
+        Self { rules, space, ..self }
     }
 
     /// Makes sure that all frames have their files; those of a video are not known.
@@ -215,38 +219,31 @@ impl Masks {
         Ok(())
     }
 
-    /// Makes a control map of the rules for things, and lets masks of lines reach as far as these.
+    /// Makes a control map of the rules for things, and colours of lines.
     fn follow_rules(&self, picture: &mut Picture) {
         let guide = |wanted: Guide| {
             let found = picture.guides.iter().find(|(name, _)| *name == wanted.id());
             found.map(|(_, pixels)| pixels.to_f32())
         };
-        let (width, height) = (picture.pixels.width(), picture.pixels.height());
         let first = self.masks.len() - self.rules.len();
         let coverage: Vec<Option<Vec<f32>>> =
             picture.masks[first..].iter().map(|mask| mask.as_ref().map(Pixels::to_f32)).collect();
         if coverage.iter().all(Option::is_none) {
             return;
         }
-        let rules: Vec<Covered<'_>> = coverage
-            .iter()
-            .zip(&self.rules)
-            .map(|(coverage, rule)| Covered { coverage: coverage.as_deref(), control: rule.control })
-            .collect();
-        let (painted, depth) = (guide(Guide::Control), guide(Guide::Depth));
-        for ((mask, rule), own) in picture.masks[first..].iter_mut().zip(&self.rules).zip(&coverage) {
-            if let Some(own) = own.as_ref().filter(|_| rule.has_lines) {
-                let reached = objects::with_lines(own, width as usize, depth.as_deref());
-                *mask = Pixels::new(width, height, 1, Samples::F32(reached));
-            }
+        let coverage: Vec<Option<&[f32]>> = coverage.iter().map(Option::as_deref).collect();
+        let (size, depth) = ((picture.pixels.width(), picture.pixels.height()), guide(Guide::Depth));
+        let ruled = Ruled { rules: &self.rules, coverage: &coverage, size, depth: depth.as_deref() };
+        let (control, paint) = (guide(Guide::Control), guide(Guide::LinePaint));
+        let meaning = of_guides(&picture.meaning, self.space);
+        let made = [
+            (Guide::Control, ruled.control(control.as_deref())),
+            (Guide::LinePaint, ruled.line_paint(&meaning, paint.as_deref())),
+        ];
+        for (guide, map) in made.into_iter().filter_map(|(guide, map)| Some((guide, map?))) {
+            picture.guides.retain(|(name, _)| *name != guide.id());
+            picture.guides.push((guide.id(), map));
         }
-        if self.rules.iter().all(Rule::is_neutral) {
-            return;
-        }
-        let map = objects::map(&rules, width as usize, painted.as_deref(), depth.as_deref());
-        let id = Guide::Control.id();
-        picture.guides.retain(|(name, _)| *name != id);
-        picture.guides.extend(Pixels::new(width, height, 4, Samples::F32(map)).map(|map| (id, map)));
     }
 }
 

@@ -26,34 +26,26 @@ fn has_look(rule: &ObjectRule) -> bool {
     rule.rule.contains_key(LOOK)
 }
 
-/// True where the lines of a rule's things have a colour of their own in the preset's own look.
-pub fn has_lines(rule: &ObjectRule) -> bool {
-    rule.rule.contains_key(LINE_COLOR) && !has_look(rule)
+/// Colour of the lines of a rule's things in the preset's own look, gamma-encoded RGBA, if they have one.
+pub fn line_color(rule: &ObjectRule) -> Option<[f32; 4]> {
+    let text = rule.rule.get(LINE_COLOR)?.as_str()?;
+    if has_look(rule) { None } else { preset::color(text) }
 }
 
-/// Looks that rules of the preset of `style` give to things, each with the place of its rule: looks of their own, and the style
-/// once more, by its `name`, palette and settings, with lines of another colour. The last lies over those before it.
+/// Looks that rules of the preset of `style` give to things, each with the place of its rule, in the colours of a `palette`. The last
+/// lies over those before it.
 ///
 /// # Errors
-/// As [`Style::load_in`]; [`Error::Input`] for a look that has rules itself.
-pub fn looks(
-    library: &Library,
-    (name, palette, settings): (&Path, Option<&Colours>, &[Setting]),
-    style: &Style,
-) -> Result<Vec<(usize, Style)>> {
-    let mut looks: Vec<(usize, Style)> = own_looks(library, Path::new(&style.name), &style.objects)
-        .map(|(number, look)| Ok((number, look?)))
-        .collect::<Result<_>>()?;
-    for (_, look) in &mut looks {
-        palette.map_or(Ok(()), |palette| look.end_in(palette))?;
-    }
-    for (number, rule) in style.objects.iter().enumerate().filter(|(_, rule)| has_lines(rule)) {
-        let mut look = in_colour(Style::load_in(library, name, palette, settings)?, rule)?;
-        look.objects.clear();
-        looks.push((number, look));
-    }
-    looks.sort_by_key(|(number, _)| *number);
-    Ok(looks)
+/// As [`Style::load`]; [`Error::Input`] for a look that has rules itself.
+pub fn looks(library: &Library, palette: Option<&Colours>, style: &Style) -> Result<Vec<(usize, Style)>> {
+    let looks = own_looks(library, Path::new(&style.name), &style.objects);
+    looks
+        .map(|(number, look)| {
+            let mut look = look?;
+            palette.map_or(Ok(()), |palette| look.end_in(palette))?;
+            Ok((number, look))
+        })
+        .collect()
 }
 
 /// A style whose lines have the colour that a rule says, if it says one.
@@ -95,13 +87,19 @@ impl Style {
     /// # Errors
     /// As [`preset::things`]; [`Error::Input`] for rules that the style does not follow.
     pub fn things(&self) -> Result<Vec<MaskSource>> {
+        let refused =
+            |problem: &str, fix: &str| Err(Error::input(format!("{}: objects", self.name), problem, fix));
+        let has_color = |rule: &ObjectRule| line_color(rule).is_some();
         let needs_map = |rule: &ObjectRule| {
-            !(has_look(rule) || has_lines(rule)) || rule.control.iter().any(Option::is_some)
+            !(has_look(rule) || has_color(rule)) || rule.control.iter().any(Option::is_some)
         };
         if self.objects.iter().any(needs_map) && !self.takes(Guide::Control.id())? {
             let problem = "are rules that the style does not follow";
-            let fix = "choose another style, or connect @control in its graph";
-            return Err(Error::input(format!("{}: objects", self.name), problem, fix));
+            return refused(problem, "choose another style, or connect @control in its graph");
+        }
+        if self.objects.iter().any(has_color) && !self.takes(Guide::LinePaint.id())? {
+            let problem = "are colours of lines, and the style's lines have one colour for all";
+            return refused(problem, "choose another style, or connect @line_paint in its graph");
         }
         preset::things(&self.name, &self.objects).collect()
     }

@@ -6,6 +6,7 @@ use clap::{Args, ValueHint};
 
 use isophote_finishing::apply::filter::MaskedStyle;
 use isophote_finishing::apply::painted::{PAINTED, Painted};
+use isophote_finishing::stylize::things;
 use isophote_pictures::exr::Guide;
 
 use super::material_args::MaterialArgs;
@@ -63,8 +64,14 @@ impl PaintedArgs {
         let mut guides: Vec<Guide> = self.paths().into_iter().map(|(painted, _)| painted.guide).collect();
         let has_rules = looks.iter().any(|look| !look.style.objects.is_empty());
         guides.extend(self.materials.named().into_iter().map(|(kind, _)| kind.guide()));
-        if has_rules && !guides.contains(&Guide::Control) {
-            guides.push(Guide::Control);
+        let has_colors =
+            looks.iter().flat_map(|look| &look.style.objects).any(|rule| things::line_color(rule).is_some());
+        for (guide, _) in
+            [(Guide::Control, has_rules), (Guide::LinePaint, has_colors)].iter().filter(|(_, has)| *has)
+        {
+            if !guides.contains(guide) {
+                guides.push(*guide);
+            }
         }
         guides
     }

@@ -166,7 +166,7 @@ impl RenderArgs {
     fn styles(&self, library: &Library) -> Result<(Style, Vec<(usize, Style)>)> {
         let palette = self.palette.read(library)?;
         let mut style = Style::load_in(library, &self.style, palette.as_ref(), &self.set)?;
-        let mut own = things::looks(library, (&self.style, palette.as_ref(), &self.set), &style)?;
+        let mut own = things::looks(library, palette.as_ref(), &style)?;
         let mut styles: Vec<&mut Style> =
             std::iter::once(&mut style).chain(own.iter_mut().map(|(_, style)| style)).collect();
         for style in &mut styles {

@@ -124,6 +124,8 @@ pub(crate) fn paint(scope: &mut Scope<'_>, flow: &FlowDog, opacity: f32, line: [
 
 /// RGB and opacity of lines at each pixel by the kind of lines that geometry draws there.
 fn by_kind(scope: &mut Scope<'_>, flow: &FlowDog, opacity: f32, line: [f32; 4]) -> Option<ImageId> {
+    // Not all styles draw kinds of lines in colours of their own.
+    scope.spec.param(LINE_COLORS.id)?;
     if scope.option::<LineColors>(LINE_COLORS.id) == LineColors::One {
         return None;
     }

@@ -41,7 +41,7 @@ pub fn guides() -> impl Iterator<Item = GraphInput> {
 }
 
 /// Guides that effects of nodes came to take when projects of users existed, in the order in which they came.
-const LATER: [(&str, GraphInput); 8] = [
+const LATER: [(&str, GraphInput); 9] = [
     ("cartoon", GraphInput::RestPosition),
     ("blueprint", GraphInput::RestPosition),
     ("blueprint", GraphInput::Paper),
@@ -50,6 +50,7 @@ const LATER: [(&str, GraphInput); 8] = [
     ("cartoon", GraphInput::Specular),
     ("cartoon", GraphInput::LinePaint),
     ("blueprint", GraphInput::LinePaint),
+    ("halftone", GraphInput::LinePaint),
 ];
 
 /// The guides among these of the effect of a node, in the order of its inputs: those that came later are the last, since

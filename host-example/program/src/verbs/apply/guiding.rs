@@ -65,7 +65,7 @@ impl ApplyArgs {
         let rules = looks.iter().flat_map(|look| &look.style.objects);
         let rules = rules.map(Rule::from);
         let masks = Masks::new(choices, self.mask_from.as_deref(), self.on_unknown)?;
-        Ok(masks.with_maps(&paths, self.space)?.with_materials(laid).with_rules(rules.collect()))
+        Ok(masks.with_maps(&paths, self.space)?.with_materials(laid).with_rules(rules.collect(), self.space))
     }
 
     /// The files of motion vectors.

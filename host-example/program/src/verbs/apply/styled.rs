@@ -52,7 +52,7 @@ impl ApplyArgs {
         let palette = palette.as_ref();
         let looks = if entries.is_empty() {
             let style = Style::load_in(library, name, palette, &self.set)?;
-            let things = self.looks_of_things(library, name, palette, &style)?;
+            let things = self.looks_of_things(library, palette, &style)?;
             let mask = self.mask.as_ref().and_then(|_| masks.next());
             std::iter::once(MaskedStyle { style, mask }).chain(things).collect()
         } else {
@@ -74,13 +74,12 @@ impl ApplyArgs {
     fn looks_of_things(
         &self,
         library: &Library,
-        name: &Path,
         palette: Option<&Colours>,
         style: &Style,
     ) -> Result<Vec<MaskedStyle>> {
-        let looks = things::looks(library, (name, palette, &self.set), style)?;
+        let looks = things::looks(library, palette, style)?;
         if self.mask.is_some() && !looks.is_empty() {
-            let problem = "the preset's rules give things looks or lines of their own, which no mask covers";
+            let problem = "the preset's rules give things looks of their own, which no mask covers";
             return Err(Error::input("--mask", problem, "leave it out, or list looks by --layered"));
         }
         Ok(looks.into_iter().map(|(number, style)| MaskedStyle { style, mask: Some(number) }).collect())

@@ -7,11 +7,11 @@ use self::inks::{Inks, Press};
 use crate::declare::ports;
 use crate::declare::spec::{NodeSpec, Param, STEADINESS, Scope, WINDOW};
 use crate::declare::value::Value;
-use crate::kernels::colour::composite_lines::{self, Params as Composite};
 use crate::kernels::colour::halftone_screen::{self, Print, Shape};
 use crate::kernels::colour::{ink_separation, lightness, rgb_to_lab};
 use crate::stages::abstraction::{self, Abstraction};
 use crate::stages::control::Control;
+use crate::stages::line_sets::Inked;
 use crate::stages::steady::{Agreement, COLOUR_AGREEMENT, steadied};
 use crate::stages::{
     ADVANCED, LOOK, difference_of_gaussians as dog, flow_dog, line_context, line_sets, lines, palette, tone,
@@ -30,7 +30,7 @@ pub static NODE: NodeSpec = NodeSpec {
           pixel, not of each cell, so that small things cut through dots. Lines, where asked for, are printed solid over \
           the screens, and outlines, creases and borders of objects follow normals, depth and object ids.",
     section: "1.2",
-    inputs: &[ports::COLOR, flow_dog::NORMAL, flow_dog::DEPTH, flow_dog::OBJECT_ID],
+    inputs: &[ports::COLOR, flow_dog::NORMAL, flow_dog::DEPTH, flow_dog::OBJECT_ID, ports::LINE_PAINT],
     output: ports::color_output("The print."),
     own_params: &[
         Param::choice("shape", "Shape", Shape::Dots.selected())
@@ -179,8 +179,7 @@ fn build(scope: &mut Scope<'_>) -> ImageId {
     let print = printed(scope, smooth);
     let edges = line_sets::tapered(scope, &flow, edges, |scope| lines::oriented(scope, guide_weight));
     let edges = line_sets::gapped(scope, &flow, edges);
-    let line = scope.color("line_color");
-    composite_lines::pass(scope.plan, print, edges, &Composite { line, paper: [0.0; 4] })
+    Inked::new(scope, &flow, edges).over(scope, print)
 }
 
 /// The picture in CIELAB, smoothed and as it is, and the tensor that the smoothing follows.
