@@ -23,8 +23,9 @@
 //! never does. Whole numbers are rounded.
 //!
 //! `objects` are rules for things in the picture, such as `[{"match": "cryptomatte:hero/*", "detail": 2, "lines": false}]`:
-//! factors from 1/4 to 4 on `detail`, `line_width`, `line_amount` and `medium`, or no `lines`. Where several match, the last
-//! one counts. A host that knows where things are makes a control map of them.
+//! factors from 1/4 to 4 on `detail`, `line_width`, `line_amount` and `medium`, no `lines`, or a `line_color`. Where several match,
+//! the last one counts. Rules by number (`id:3`) are the graph's that is opened, and count where a host gives numbers of objects. A
+//! host that knows things by name, or what they cover of pixels, makes maps of all of them, and opens the preset without.
 //!
 //! This is the only reader of the format. It reads no files: whoever has them hands in their texts.
 

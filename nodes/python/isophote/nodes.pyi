@@ -1171,6 +1171,7 @@ def halftone(
     normal: Any = None,
     depth: Any = None,
     object_id: Any = None,
+    line_paint: Any = None,
     mask: Any = None,
     flow: Any = None,
     motion: Any = None,
@@ -1250,6 +1251,8 @@ def halftone(
         depth: Distance from the camera; jumps draw lines, relative to the distance and never on
             planes.
         object_id: Object numbers; borders between objects draw lines.
+        line_paint: Colours of lines: a line has the colour that is painted where it lies, as far as
+            that is opaque, and its own where nothing is painted.
         mask: How much of the result is used, 0..=1, times `mix`; all of it when open.
         flow: A flow map (see `flow_map`) that bends the orientation which the node follows, if it
             follows any.

@@ -1,6 +1,6 @@
 //! Rules of a preset for things in a picture: how much detail they have, how wide, how many and of which colour their lines
-//! are, how strong the medium is on them, and whether they have a look of their own. A host that knows where things are makes a control map of
-//! them, and lays the looks over the picture there.
+//! are, how strong the medium is on them, and whether they have a look of their own. Those by number are the
+//! graph's; a host that knows where other things are makes maps of their rules, and lays the looks over the picture there.
 
 use super::fault::Fault;
 use crate::declare::value::color_from_text;

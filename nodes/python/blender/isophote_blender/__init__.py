@@ -1,12 +1,12 @@
 """Stylizes finished renders of Blender: their passes go through a style of Isophote and come back as an image.
 
-The settings are in the render properties, generated from the library's catalogue. `stylize` does the work, `passes` knows how
-Blender gives passes away.
+The settings are in the render properties, generated from the library's catalogue; rules for objects are among theirs. `stylize`
+does the work, `passes` knows how Blender gives passes away.
 """
 
-from . import operators, panels, settings
+from . import operators, panels, rules, settings
 
-_PARTS = (settings, operators, panels)
+_PARTS = (settings, rules, operators, panels)
 
 
 def register() -> None:

@@ -5,7 +5,7 @@ from bpy.props import EnumProperty
 
 import isophote
 
-from . import passes, stylize
+from . import passes, rules, stylize
 from .settings import STYLES, use
 
 _LOOKS = {id: look for id, look in isophote.looks().items() if look.style in STYLES}
@@ -21,6 +21,13 @@ def shown(text: object) -> str:
     return "".join(c if c.isprintable() else c.encode("unicode_escape").decode() for c in str(text))
 
 
+def _warn_of_rules(operator: bpy.types.Operator, context: bpy.types.Context) -> None:
+    """Warns of rules that cannot be followed."""
+    if names := rules.unnumbered(context.scene):
+        text = f"no rule for {', '.join(names)}: press Enable Passes, which numbers objects, and render again"
+        operator.report({"WARNING"}, shown(text))
+
+
 class ISOPHOTE_OT_stylize(bpy.types.Operator):
     """Stylize the finished render; the result is the image 'Stylized Render'"""
 
@@ -29,6 +36,7 @@ class ISOPHOTE_OT_stylize(bpy.types.Operator):
 
     def execute(self, context: bpy.types.Context) -> set[str]:
         """Does it at once."""
+        _warn_of_rules(self, context)
         try:
             image = stylize.still(context)
         except _FAILURES as failure:
@@ -46,6 +54,7 @@ class ISOPHOTE_OT_stylize_animation(bpy.types.Operator):
 
     def execute(self, context: bpy.types.Context) -> set[str]:
         """Does it at once, as scripts and Blender without a window want it."""
+        _warn_of_rules(self, context)
         try:
             for done, count, file in stylize.animation(context):
                 print(shown(f"Isophote: {done} of {count}: {file}"))
@@ -56,6 +65,7 @@ class ISOPHOTE_OT_stylize_animation(bpy.types.Operator):
 
     def invoke(self, context: bpy.types.Context, event: bpy.types.Event) -> set[str]:
         """Does a frame at a time, so that the window answers between them."""
+        _warn_of_rules(self, context)
         self._frames = stylize.animation(context)
         self._timer = context.window_manager.event_timer_add(0.01, window=context.window)
         context.window_manager.progress_begin(0, 1)

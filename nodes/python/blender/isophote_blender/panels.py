@@ -1,7 +1,9 @@
-"""The settings in the render properties: one panel, and one below it for every group of the style's parameters."""
+"""The settings in the render properties: one panel, and one below it for every group of the style's parameters. Rules are among
+the properties of objects."""
 
 import bpy
 
+from .rules import FACTORS
 from .settings import STYLES, group_name
 
 
@@ -64,7 +66,40 @@ def _panel(number: int, heading: str) -> type:
     return type(members["bl_idname"], (bpy.types.Panel,), members)
 
 
-_CLASSES = (ISOPHOTE_PT_style, *(_panel(number, heading) for number, heading in enumerate(_headings())))
+class ISOPHOTE_PT_rule(bpy.types.Panel):
+    """How an object is drawn, among its properties."""
+
+    bl_label = "Isophote"
+    bl_idname = "ISOPHOTE_PT_rule"
+    bl_space_type = "PROPERTIES"
+    bl_region_type = "WINDOW"
+    bl_context = "object"
+    bl_options = {"DEFAULT_CLOSED"}
+
+    @classmethod
+    def poll(cls, context: bpy.types.Context) -> bool:
+        """True where there is an object to draw."""
+        return context.object is not None and context.object.type not in {"CAMERA", "LIGHT", "LIGHT_PROBE", "SPEAKER"}
+
+    def draw_header(self, context: bpy.types.Context) -> None:
+        """Draws the switch."""
+        self.layout.prop(context.object.isophote, "enabled", text="")
+
+    def draw(self, context: bpy.types.Context) -> None:
+        """Draws it."""
+        layout, rule = self.layout, context.object.isophote
+        layout.use_property_split = True
+        layout.active = rule.enabled
+        layout.prop(rule, "lines")
+        for factor in FACTORS:
+            if rule.lines or factor != "line_amount":
+                layout.prop(rule, factor)
+        layout.prop(rule, "has_line_color")
+        if rule.has_line_color:
+            layout.prop(rule, "line_color")
+
+
+_CLASSES = (ISOPHOTE_PT_rule, ISOPHOTE_PT_style, *(_panel(number, heading) for number, heading in enumerate(_headings())))
 
 
 def register() -> None:

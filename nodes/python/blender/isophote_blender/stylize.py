@@ -8,7 +8,7 @@ import numpy as np
 
 import isophote
 
-from . import passes
+from . import passes, rules
 from .settings import ISOPHOTE_PG_settings, values
 
 IMAGE = "Stylized Render"
@@ -22,6 +22,11 @@ def _space(settings: ISOPHOTE_PG_settings) -> dict[str, str]:
     return {"color_space": "srgb", "alpha_mode": "straight"}
 
 
+def _style(scene: bpy.types.Scene, params: dict[str, isophote.Value]) -> isophote.Style:
+    """The style of a scene with the rules of its objects."""
+    return isophote.Style({"style": scene.isophote.style, "objects": rules.of(scene)}, **params)
+
+
 def still(context: bpy.types.Context) -> bpy.types.Image:
     """Stylizes the render that is finished."""
     scene, settings = context.scene, context.scene.isophote
@@ -29,7 +34,7 @@ def still(context: bpy.types.Context) -> bpy.types.Image:
     guides = {name: guide for name, guide in frame.guides.items() if not name.startswith("motion")}
     result = _canvas(frame)
     isophote.apply(
-        isophote.Style(settings.style, **values(settings)),
+        _style(scene, values(settings)),
         frame.color,
         out=result[::-1],
         frame=scene.frame_current,
@@ -67,11 +72,11 @@ def animation(context: bpy.types.Context) -> Iterator[tuple[int, int, Path]]:
         return frame.color if name == "color" else frame.guides.get(name)
 
     try:
-        style = isophote.Style(settings.style, **values(settings))
+        style = _style(scene, values(settings))
         sequence = None
         for done, number in enumerate(numbers):
             # Animated settings may look farther around in one frame than in another.
-            _, future = isophote.Style(settings.style, **chosen.get(number, values(settings))).frames
+            _, future = _style(scene, chosen.get(number, values(settings))).frames
             for ahead in numbers[done : done + future + 1]:
                 if ahead not in rendered:
                     render(ahead)

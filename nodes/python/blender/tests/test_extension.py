@@ -81,6 +81,39 @@ def test_looks_set_every_parameter(scene: Any, extension: ModuleType) -> None:
         assert chosen.to_json() == expected.to_json(), id
 
 
+def test_objects_are_drawn_by_their_rules(scene: Any, extension: ModuleType) -> None:
+    bpy.ops.render.render()
+    ball = scene.objects["ball"]
+    ids = extension.passes.read(scene, "ViewLayer", "display").guides["object_id"][..., 0]
+    inside = ids == ball.pass_index
+    scene.isophote.lengths, scene.isophote.params_cartoon.line_width = "pixels", 2
+
+    def stylized() -> np.ndarray:
+        assert bpy.ops.isophote.stylize() == {"FINISHED"}
+        return shown().copy()
+
+    def red(pixels: np.ndarray) -> int:
+        return int((pixels[..., 0] > 2 * pixels[..., 1] + 0.1).sum())
+
+    plain = stylized()
+    rule = ball.isophote
+    rule.line_color = (0.8, 0, 0)
+    rule.has_line_color = True
+    assert np.array_equal(stylized(), plain), "rules that are off change nothing"
+    rule.enabled = True
+    assert extension.rules.of(scene) == [{"match": f"id:{ball.pass_index}", "line_color": "#cc0000"}]
+    coloured = stylized()
+    assert red(plain) == 0 and red(coloured) > 50
+    rule.lines, rule.has_line_color, rule.detail = False, False, 2
+    assert extension.rules.of(scene) == [{"match": f"id:{ball.pass_index}", "lines": False, "detail": 2.0}]
+    without = stylized()
+    assert without[inside].min(axis=-1).mean() > plain[inside].min(axis=-1).mean()
+    # What no number tells from other things has no rule.
+    ball.pass_index = 0
+    assert extension.rules.of(scene) == [] and extension.rules.unnumbered(scene) == ["ball"]
+    assert np.array_equal(stylized(), plain)
+
+
 def test_passes_are_what_the_library_means(scene: Any, extension: ModuleType) -> None:
     scene.frame_set(5)
     before = [getattr(scene.render.image_settings, name) for name in ("file_format", "color_mode", "color_depth")]
