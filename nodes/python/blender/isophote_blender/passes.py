@@ -14,6 +14,7 @@ import bpy
 import numpy as np
 
 import isophote
+from isophote._library import native
 
 from . import exr
 
@@ -25,6 +26,18 @@ _WANTED = {
     "Vector": "vector",
     "IndexOB": "object_id",
     "Object Index": "object_id",
+    "DiffCol": "diffuse_color",
+    "Diffuse Color": "diffuse_color",
+    "DiffDir": "diffuse_direct",
+    "Diffuse Direct": "diffuse_direct",
+    "DiffInd": "diffuse_indirect",
+    "Diffuse Indirect": "diffuse_indirect",
+    "GlossCol": "glossy_color",
+    "Glossy Color": "glossy_color",
+    "GlossDir": "glossy_direct",
+    "Glossy Direct": "glossy_direct",
+    "GlossInd": "glossy_indirect",
+    "Glossy Indirect": "glossy_indirect",
 }
 
 _WORKING = {"lin_rec709_scene": "linear", "lin_rec2020_scene": "rec2020", "lin_ap1_scene": "acescg"}
@@ -67,8 +80,9 @@ def _working_space() -> str:
 
 def enable(view_layer: bpy.types.ViewLayer) -> None:
     """Lets renders have all passes that styles can use."""
-    for name in ("use_pass_z", "use_pass_normal", "use_pass_object_index", "use_pass_vector"):
-        setattr(view_layer, name, True)
+    light = [f"{kind}_{part}" for kind in ("diffuse", "glossy") for part in ("color", "direct", "indirect")]
+    for name in ("z", "normal", "object_index", "vector", *light):
+        setattr(view_layer, f"use_pass_{name}", True)
 
 
 def number(scene: bpy.types.Scene) -> int:
@@ -97,7 +111,9 @@ def read(scene: bpy.types.Scene, layer: str, colors: str) -> Frame:
             file = Path(folder) / "display.png"
             _save(scene, image, file, "PNG")
             color = _picture(file)
-    return Frame(color, _guides(scene, found))
+    guides = _guides(scene, found)
+    guides.update({name: _lit(light, color, colors) for name, light in _light(scene, found, colors).items()})
+    return Frame(color, guides)
 
 
 def _guides(scene: bpy.types.Scene, found: dict[str, np.ndarray]) -> dict[str, np.ndarray]:
@@ -116,6 +132,34 @@ def _guides(scene: bpy.types.Scene, found: dict[str, np.ndarray]) -> dict[str, n
     if "vector" in found and found["vector"].shape[2] == 4:
         guides.update(isophote.motion(found["vector"], convention="blender"))
     return guides
+
+
+def _light(scene: bpy.types.Scene, found: dict[str, np.ndarray], colors: str) -> dict[str, np.ndarray]:
+    """Colours of surfaces, and the light that they reflect: Blender writes light without their colours, in two parts."""
+    light = {}
+    # What is shown is as bright as the exposure says.
+    exposure = np.float32(1 if colors == "linear" else 2**scene.view_settings.exposure)
+    for name, kind in (("diffuse", "diffuse"), ("specular", "glossy")):
+        color, direct = found.get(f"{kind}_color"), found.get(f"{kind}_direct")
+        if color is None or direct is None:
+            continue
+        indirect = found.get(f"{kind}_indirect")
+        light[name] = exposure * color[..., :3] * (direct if indirect is None else direct + indirect)[..., :3]
+        if name == "diffuse":
+            light["albedo"] = color[..., :3]
+    return light
+
+
+def _lit(light: np.ndarray, color: np.ndarray, colors: str) -> np.ndarray:
+    """Colours of surfaces, or light that they reflect, in the numbers of the picture and with its alpha."""
+    alpha = color[..., 3:]
+    if colors == "linear":
+        return np.concatenate((light, alpha), axis=2)
+    # Numbers of displays are not multiplied by alpha. A style says itself how light is shown: no view transform does.
+    straight = np.divide(light, alpha, out=np.zeros_like(light), where=alpha > 0)
+    shown = np.concatenate((straight, alpha), axis=2)
+    native.change_space(shown, working_space()[0], "srgb", False)
+    return shown
 
 
 def _save(scene: bpy.types.Scene, image: bpy.types.Image, file: Path, format: str) -> None:

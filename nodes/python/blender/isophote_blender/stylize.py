@@ -9,7 +9,7 @@ import numpy as np
 import isophote
 
 from . import passes, rules
-from .settings import ISOPHOTE_PG_settings, values
+from .settings import STYLES, ISOPHOTE_PG_settings, values
 
 IMAGE = "Stylized Render"
 """The image that results come back as."""
@@ -27,10 +27,20 @@ def _style(scene: bpy.types.Scene, params: dict[str, isophote.Value]) -> isophot
     return isophote.Style({"style": scene.isophote.style, "objects": rules.of(scene)}, **params)
 
 
+def _frame(scene: bpy.types.Scene, layer: str) -> passes.Frame:
+    """The frame that is rendered, with what the style can use of it."""
+    settings = scene.isophote
+    frame = passes.read(scene, layer, settings.colors)
+    read = {port.id for port in STYLES[settings.style].inputs}
+    # Frames around are kept while an animation is rendered. Motion says how they move, whatever is drawn.
+    frame.guides = {name: guide for name, guide in frame.guides.items() if name in read or name.startswith("motion")}
+    return frame
+
+
 def still(context: bpy.types.Context) -> bpy.types.Image:
     """Stylizes the render that is finished."""
     scene, settings = context.scene, context.scene.isophote
-    frame = passes.read(scene, context.view_layer.name, settings.colors)
+    frame = _frame(scene, context.view_layer.name)
     guides = {name: guide for name, guide in frame.guides.items() if not name.startswith("motion")}
     result = _canvas(frame)
     isophote.apply(
@@ -62,7 +72,7 @@ def animation(context: bpy.types.Context) -> Iterator[tuple[int, int, Path]]:
     def render(number: int) -> None:
         scene.frame_set(number)
         bpy.ops.render.render(scene=scene.name)
-        rendered[number] = passes.read(scene, layer, settings.colors)
+        rendered[number] = _frame(scene, layer)
         chosen[number] = values(settings)
 
     def source(name: str, number: int) -> np.ndarray | None:

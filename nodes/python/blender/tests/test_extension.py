@@ -114,6 +114,39 @@ def test_objects_are_drawn_by_their_rules(scene: Any, extension: ModuleType) -> 
     assert np.array_equal(stylized(), plain)
 
 
+def test_light_is_cut_into_steps(scene: Any, extension: ModuleType) -> None:
+    paint = bpy.data.materials.new("paint")
+    paint.use_nodes = True
+    surface = next(node for node in paint.node_tree.nodes if node.type == "BSDF_PRINCIPLED")
+    surface.inputs["Base Color"].default_value = (0.5, 0.2, 0.1, 1)
+    surface.inputs["Roughness"].default_value = 1
+    ball = scene.objects["ball"]
+    ball.data.materials.append(paint)
+    bpy.ops.render.render()
+    frame = extension.passes.read(scene, "ViewLayer", "linear")
+    inside = frame.guides["object_id"][..., 0] == ball.pass_index
+    albedo, diffuse = (frame.guides[name][inside] for name in ("albedo", "diffuse"))
+    middle = np.median(albedo, axis=0)
+    assert middle == pytest.approx([0.5, 0.2, 0.1, 1], abs=0.01)
+    # Light has the colours of the surface in it, and is the picture where nothing shines.
+    lit = diffuse[:, 0] > 0.1
+    assert np.median(diffuse[lit, 1] / diffuse[lit, 0]) == pytest.approx(0.4, abs=0.02)
+    whole = diffuse + frame.guides["specular"][inside]
+    assert np.median(np.abs(whole - frame.color[inside])[:, :3]) < 0.01
+    scene.view_settings.exposure = 1
+    shown_frame = extension.passes.read(scene, "ViewLayer", "display")
+    scene.view_settings.exposure = 0
+    encoded = np.median(shown_frame.guides["albedo"][inside], axis=0)
+    assert encoded == pytest.approx([0.735, 0.485, 0.349, 1], abs=0.01)
+
+    settings = scene.isophote
+    settings.style = "toon_shading"
+    assert bpy.ops.isophote.stylize() == {"FINISHED"}
+    red = np.round(shown()[inside][:, 0], 2)
+    _, counts = np.unique(red, return_counts=True)
+    assert np.sort(counts)[-3:].sum() > 0.6 * inside.sum(), "few steps have most of the ball"
+
+
 def test_passes_are_what_the_library_means(scene: Any, extension: ModuleType) -> None:
     scene.frame_set(5)
     before = [getattr(scene.render.image_settings, name) for name in ("file_format", "color_mode", "color_depth")]
@@ -153,7 +186,7 @@ def test_a_still_comes_back_as_an_image(scene: Any, extension: ModuleType, color
     assert bpy.ops.isophote.stylize() == {"FINISHED"}
     frame = extension.passes.read(scene, "ViewLayer", colors)
     guides = {name: guide for name, guide in frame.guides.items() if "motion" not in name}
-    assert set(guides) == {"depth", "normal", "object_id"}
+    assert set(guides) == {"depth", "normal", "object_id", "albedo", "diffuse", "specular"}
     space = {"display": ("srgb", "straight"), "linear": ("linear", "premultiplied")}[colors]
     common = {"color_space": space[0], "alpha_mode": space[1], "lengths": "pixels", "posterize": 6, "detail": np.float32(0.4)}
     out = np.empty((*frame.color.shape[:2], 4), np.float32)
