@@ -6,7 +6,9 @@ use std::process::Command;
 
 use exr::prelude::*;
 use isophote_finishing::stylize::preset::Title;
-use isophote_loader::Library;
+use isophote_loader::abi::{ISOPHOTE_SPACE_LINEAR, IsophoteRequest};
+use isophote_loader::{Control, Input, Library};
+use isophote_pictures::pixels::{Pixels, Precision, Samples};
 use isophote_window::state::look::EditedLook;
 use isophote_window::state::outcome::{Opened, Outcome};
 use isophote_window::state::session::Session;
@@ -203,6 +205,47 @@ fn lines_of_things_have_colours_of_their_own() {
         2,
         &["object 1", "no colour"],
     );
+}
+
+/// The library follows rules by number itself, where the program makes maps of what things cover.
+#[test]
+fn rules_by_number_are_those_of_the_library() {
+    let folder = folder();
+    let at = |name: &str| folder.path().join(name);
+    let rules = r##"{"match": "id:1", "line_color": "#c02010", "line_width": 2}, {"match": "id:3", "lines": false, "detail": 0.5}"##;
+    let is_left = |at: usize| at % SIZE.0 < SIZE.0 / 2;
+    let value = |at: usize| ((at % SIZE.0 / 5 + at / SIZE.0 / 5) % 2) as f32 * 0.5 + 0.2;
+    let number = |at: usize| if is_left(at) { 1.0 } else { 3.0 };
+    let distance = |at: usize| if is_left(at) { 2.0 } else { 6.0 };
+    let channel = |name: &str, value: &dyn Fn(usize) -> f32| {
+        (name.to_owned(), FlatSamples::F32((0..PIXELS).map(value).collect()))
+    };
+    let mut channels = ["R", "G", "B"].map(|name| channel(name, &value)).to_vec();
+    channels.extend([channel("object_id.id", &number), channel("Z", &distance)]);
+    save(&at("in.exr"), vec![("", channels, Default::default())]);
+    succeeds(&mut apply(folder.path(), ("cartoon", rules), &["in.exr", "out.exr"]));
+
+    let library = Library::from_file(support::library()).expect("the library");
+    let json = format!(r#"{{"style": "cartoon", "lengths": "pixels", "objects": [{rules}]}}"#);
+    let style = library.style_from_json("rules.json", &json, None).expect("it opens");
+    let size = (SIZE.0 as u32, SIZE.1 as u32);
+    let picture = |channels, value: &dyn Fn(usize) -> f32| {
+        let numbers = (0..PIXELS).flat_map(|at| std::iter::repeat_n(value(at), channels as usize)).collect();
+        Pixels::new(size.0, size.1, channels, Samples::F32(numbers)).expect("as many")
+    };
+    let (color, ids, depth) = (picture(3, &value), picture(1, &number), picture(1, &distance));
+    let inputs = [("color", &color), ("object_id", &ids), ("depth", &depth)];
+    let inputs = inputs.map(|(name, pixels)| Input { name, pixels });
+    let guides = library.guide_bits(["object_id", "depth"]).expect("they are known");
+    let usual = library.request(size).expect("the size is possible");
+    let request = IsophoteRequest { space: ISOPHOTE_SPACE_LINEAR, guides, ..usual };
+    let mut result = Pixels::zeroed(size.0, size.1, 3, Precision::F32);
+    let mut graph = style.graph().expect("a graph");
+    graph.process(None, &request, &inputs, &mut result, &mut Control::default()).expect("it is computed");
+    let wanted = result.to_f32();
+    let apart =
+        rgb(&at("out.exr")).concat().iter().zip(&wanted).map(|(a, b)| (a - b).abs()).fold(0.0, f32::max);
+    assert!(apart < 1e-5, "{apart}");
 }
 
 #[test]

@@ -15,7 +15,9 @@ const NEUTRAL: f32 = 0.5;
 const AMOUNT: usize = 2;
 /// Distance in pixels, of a picture 1080 lines high, over which lines beside a thing follow its rules and not those of what is
 /// farther away.
-const REACH: f32 = 3.0;
+const REACH: f32 = 5.0;
+/// Least of it in pixels: no line is narrower than a pixel on a small picture.
+const LEAST_REACH: f32 = 2.0;
 /// Part of a distance from which on something is farther away.
 const BEHIND: f32 = 0.01;
 
@@ -138,7 +140,7 @@ fn refine(map: &mut [f32], painted: Option<&[f32]>) {
 /// The map with the values of the nearest thing within reach: a line between two things lies on both.
 fn of_nearest(map: &[f32], width: usize, depth: &[f32]) -> Vec<f32> {
     let height = depth.len() / width.max(1);
-    let reach = (REACH * height as f32 / 1080.0).round().max(1.0) as usize;
+    let reach = (REACH * height as f32 / 1080.0).round().max(LEAST_REACH) as usize;
     let known = |depth: &f32| if depth.is_finite() && *depth > 0.0 { *depth } else { f32::INFINITY };
     let own: Vec<(f32, usize)> = depth.iter().map(known).zip(0..).collect();
     // Rows, then columns: the nearest of the nearest.
@@ -233,10 +235,10 @@ mod tests {
             let map = row(&[(&coverage, none)], Some(depth), |r| r.control(None));
             map.chunks_exact(4).map(|pixel| pixel[2]).collect()
         };
-        assert_eq!(amounts(&[1.0, 1.0, 1.0, 5.0, 5.0, 5.0]), [0.0, 0.0, 0.0, 0.0, 0.5, 0.5]);
-        assert_eq!(amounts(&[5.0, 5.0, 5.0, 1.0, 1.0, 1.0]), [0.0, 0.0, 0.5, 0.5, 0.5, 0.5]);
+        assert_eq!(amounts(&[1.0, 1.0, 1.0, 5.0, 5.0, 5.0]), [0.0, 0.0, 0.0, 0.0, 0.0, 0.5]);
+        assert_eq!(amounts(&[5.0, 5.0, 5.0, 1.0, 1.0, 1.0]), [0.0, 0.5, 0.5, 0.5, 0.5, 0.5]);
         // A surface that leads away is one thing, and what has no depth is behind all.
         assert_eq!(amounts(&[1.0, 1.001, 1.002, 1.003, 1.004, 1.005]), [0.0, 0.0, 0.0, 0.5, 0.5, 0.5]);
-        assert_eq!(amounts(&[0.0, 0.0, f32::NAN, 3.0, 3.0, 3.0]), [0.0, 0.0, 0.5, 0.5, 0.5, 0.5]);
+        assert_eq!(amounts(&[0.0, 0.0, f32::NAN, 3.0, 3.0, 3.0]), [0.0, 0.5, 0.5, 0.5, 0.5, 0.5]);
     }
 }

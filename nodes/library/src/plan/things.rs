@@ -11,9 +11,9 @@ use isophote_engine::{ImageId, PlanBuilder};
 
 /// Distance over which lines beside a thing follow its rules and not those of what is farther away, pixels of a picture 1080
 /// lines high.
-const REACH: f32 = 3.0;
-/// Farthest that it may be in pixels.
-const MOST_REACH: f32 = 32.0;
+const REACH: f32 = 5.0;
+/// Least and most of it in pixels: no line is narrower than a pixel on a small picture.
+const REACHES: [f32; 2] = [2.0, 32.0];
 
 /// Inputs of a graph that its rules make.
 #[derive(Clone, Copy, Debug)]
@@ -73,7 +73,7 @@ impl Ruled<'_> {
             0 => height as f32,
             height => height as f32 * scale,
         };
-        (REACH * canonical / 1080.0).round().clamp(1.0, MOST_REACH) as u32
+        (REACH * canonical / 1080.0).round().clamp(REACHES[0], REACHES[1]) as u32
     }
 }
 
