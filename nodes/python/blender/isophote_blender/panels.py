@@ -3,6 +3,7 @@ the properties of objects."""
 
 import bpy
 
+from .materials import MATERIALS
 from .rules import FACTORS
 from .settings import STYLES, group_name
 
@@ -26,6 +27,9 @@ class ISOPHOTE_PT_style(bpy.types.Panel):
         layout.operator("isophote.use_look", icon="VIEWZOOM")
         for name in ("colors", "lengths", "device"):
             layout.prop(settings, name)
+        for port in STYLES[settings.style].inputs:
+            if port.id in MATERIALS:
+                layout.template_ID(settings, port.id, open="image.open", text=MATERIALS[port.id][0])
         column = layout.column(align=True)
         column.operator("isophote.prepare", icon="RENDERLAYERS")
         column.operator("isophote.stylize", icon="RENDER_STILL")

@@ -13,6 +13,8 @@ from bpy.props import (
 
 import isophote
 
+from .materials import MATERIALS
+
 STYLES: dict[str, isophote.Node] = {
     id: node
     for id, node in isophote.catalogue().items()
@@ -101,6 +103,7 @@ class ISOPHOTE_PG_settings(bpy.types.PropertyGroup):
             subtype="FILE_PATH",
             options=_OUTPUT,
         ),
+        **{id: PointerProperty(name=name, description=hint, type=bpy.types.Image) for id, (name, hint) in MATERIALS.items()},
         **{group_name(id): PointerProperty(type=group) for id, group in _GROUPS.items()},
     }
 

@@ -8,7 +8,7 @@ import numpy as np
 
 import isophote
 
-from . import passes, rules
+from . import materials, passes, rules
 from .settings import STYLES, ISOPHOTE_PG_settings, values
 
 IMAGE = "Stylized Render"
@@ -34,6 +34,7 @@ def _frame(scene: bpy.types.Scene, layer: str) -> passes.Frame:
     read = {port.id for port in STYLES[settings.style].inputs}
     # Frames around are kept while an animation is rendered. Motion says how they move, whatever is drawn.
     frame.guides = {name: guide for name, guide in frame.guides.items() if name in read or name.startswith("motion")}
+    frame.guides.update(materials.on(scene, read, frame.color.shape[0]))
     return frame
 
 

@@ -51,6 +51,10 @@ def test_settings_are_those_of_the_catalogue(scene: Any, extension: ModuleType) 
             assert hasattr(owner, name)
             self.drawn.append(name)
 
+        def template_ID(self, owner: Any, name: str, open: str, text: str) -> None:
+            assert hasattr(owner, name) and hasattr(bpy.ops.image, open.split(".")[1]) and text
+            self.drawn.append(name)
+
         def operator(self, name: str, icon: str) -> None:
             assert hasattr(bpy.ops.isophote, name.split(".")[1])
 
@@ -145,6 +149,40 @@ def test_light_is_cut_into_steps(scene: Any, extension: ModuleType) -> None:
     red = np.round(shown()[inside][:, 0], 2)
     _, counts = np.unique(red, return_counts=True)
     assert np.sort(counts)[-3:].sum() > 0.6 * inside.sum(), "few steps have most of the ball"
+
+
+@pytest.mark.parametrize("colors", ["display", "linear"])
+def test_styles_draw_on_materials(scene: Any, extension: ModuleType, tmp_path: Path, colors: str) -> None:
+    settings = scene.isophote
+    settings.style, settings.colors = "ink", colors
+    bpy.ops.render.render()
+
+    def stylized() -> np.ndarray:
+        assert bpy.ops.isophote.stylize() == {"FINISHED"}
+        return shown().copy()
+
+    plain = stylized()
+    paper = bpy.data.images.new("paper", 240, 120)
+    paper.pixels.foreach_set(np.tile(np.float32([0.2, 0.6, 0.3, 1]), 240 * 120))
+    settings.paper = paper
+    green = stylized()
+    expected = [0.2, 0.6, 0.3] if colors == "display" else [0.0331, 0.3185, 0.0732]
+    light = green[..., 1] >= np.quantile(green[..., 1], 0.8)
+    assert np.median(green[light][:, :3], axis=0) == pytest.approx(expected, abs=0.05)
+    assert not np.array_equal(plain, green)
+    scene.frame_start = scene.frame_end = scene.frame_current
+    settings.output = str(tmp_path / "####")
+    assert bpy.ops.isophote.stylize_animation() == {"FINISHED"}
+    assert np.array_equal(shown(), green), "frames of animations lie on it, too"
+    # As large as its pixels on 1080 lines, where the render has 90.
+    over = extension.materials.on(scene, {"paper"}, 90)["paper"]
+    assert over.shape == (10, 20, 4) and tuple(paper.size) == (240, 120)
+    assert "paper.001" not in bpy.data.images
+    settings.style = "cartoon"
+    assert extension.materials.on(scene, {"color"}, 90) == {}
+    settings.paper = None
+    settings.style = "ink"
+    assert np.array_equal(stylized(), plain)
 
 
 def test_passes_are_what_the_library_means(scene: Any, extension: ModuleType) -> None:
