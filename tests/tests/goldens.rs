@@ -1,5 +1,5 @@
-//! Golden images: each node on a generated test card, and the two styles on a frame of the demo
-//! scene, as they were last looked at and found right.
+//! Golden images: each node on a generated test card, two styles on a frame of the demo scene, and a cartoon on forms that a
+//! renderer knows, as they were last looked at and found right.
 //!
 //! `cargo xtask bless` makes them anew. Nothing else does: a missing one is a failure. What differs is written to `target/isophote-tests`.
 
@@ -8,13 +8,14 @@ use isophote::graph::GraphInput;
 use isophote::registry;
 use isophote::request::Guides;
 use isophote::spec::{ImageKind, NodeSpec};
-use isophote::{Planned, Request, Value};
+use isophote::things::ThingRule;
+use isophote::{Graph, Planned, Request, Value};
 use isophote_engine::cpu::Control;
 use isophote_engine::plan::Port;
 use isophote_engine::{Image, Plan, Rect};
 use isophote_tests::pictures::{self, from_fn};
 use isophote_tests::trials::Trials;
-use isophote_tests::{cases, device, png, run};
+use isophote_tests::{cases, device, png, run, scenery};
 use std::path::{Path, PathBuf};
 
 /// Steps of 8 bits that a value may be off before it counts.
@@ -60,7 +61,64 @@ fn shown(spec: &NodeSpec, image: &Image) -> Image {
     })
 }
 
-fn plan(spec: &'static NodeSpec, input: &Image) -> Planned {
+/// Cartoons of forms that a renderer knows: their names, settings, and guides beside normals, depth and numbers of objects.
+const OF_FORMS: [(&str, &[(&str, &str)], &[GraphInput]); 4] = [
+    (
+        "cartoon-sets",
+        &[("line_colors", "kinds"), ("line_gap", "8"), ("taper", "8"), ("line_width", "3")],
+        &[],
+    ),
+    ("cartoon-dots", &[("dots", "1"), ("dot_spacing", "7")], &[]),
+    ("cartoon-light", &[("shading", "light")], &[GraphInput::Albedo, GraphInput::Diffuse]),
+    (RULED, &[("line_width", "3")], &[]),
+];
+
+/// The one whose things have rules.
+const RULED: &str = "cartoon-ruled";
+
+/// Rules for the forms: red lines on the large ball, none on the small one, wide ones on the roof.
+fn rules() -> Vec<ThingRule> {
+    let rule = |number, control, line_color| ThingRule { numbers: vec![number], control, line_color };
+    vec![
+        rule(1, [None; 4], Some([0.8, 0.1, 0.1, 1.0])),
+        rule(2, [None, None, Some(0.0), None], None),
+        rule(5, [None, Some(0.6), None, None], Some([0.1, 0.2, 0.7, 1.0])),
+    ]
+}
+
+/// A picture of the forms by its name.
+fn form(name: &str) -> Image {
+    let known = |name: &str| {
+        scenery::forms().iter().find(|(known, _)| *known == name).map(|(_, image)| image.clone())
+    };
+    let color = || known("color").unwrap();
+    match name {
+        // Surfaces of one colour, which have all light that is seen.
+        "albedo" => from_fn(color().width(), color().height(), |_, _| [0.45, 0.4, 0.4, 1.0]),
+        "diffuse" => color(),
+        name => known(name).unwrap(),
+    }
+}
+
+/// The plan of a cartoon of the forms.
+fn plan_of_forms(name: &str) -> Option<Planned> {
+    let (_, settings, more) = OF_FORMS.iter().find(|(known, ..)| *known == name)?;
+    let mut graph = Graph::single("cartoon").unwrap();
+    let node = graph.node(0).unwrap();
+    settings.iter().for_each(|(param, value)| graph.set_text(node, param, value).unwrap());
+    if name == RULED {
+        graph.set_rules(rules());
+    }
+    let known = [GraphInput::Normal, GraphInput::Depth, GraphInput::ObjectId];
+    let guides = Guides::of(|guide| known.contains(&guide) || more.contains(&guide));
+    let color = form("color");
+    Some(run::planned(&graph, Request { guides, ..Request::new(color.width(), color.height()) }))
+}
+
+fn plan(Golden { name, spec, .. }: &Golden, input: &Image) -> Planned {
+    if let Some(planned) = plan_of_forms(name) {
+        return planned;
+    }
     let setup = cases::setup(spec, false);
     // The frame of the scene is small: half the lengths suit its detail.
     let scale = if input.width() > 200 { 0.5 } else { 1.0 };
@@ -78,9 +136,13 @@ fn is_of_time(spec: &NodeSpec) -> bool {
     is_steady || spec.output.kind == ImageKind::Motion
 }
 
-/// Inputs of a plan: the picture; or where it knows of time a camera that moves over it, with noise on each frame.
-fn inputs(spec: &NodeSpec, plan: &Plan, picture: &Image) -> Vec<(String, Image)> {
+/// Inputs of a plan: the forms as a renderer knows them; the picture; or where it knows of time a camera that moves over it, with noise on each frame.
+fn inputs(Golden { name, spec, .. }: &Golden, plan: &Plan, picture: &Image) -> Vec<(String, Image)> {
+    let is_of_forms = OF_FORMS.iter().any(|(known, ..)| known == name);
     let enters = |port: &Port| {
+        if is_of_forms {
+            return form(&port.name);
+        }
         let way = match GraphInput::from_id(port.base()) {
             Some(GraphInput::Motion) => -1.0,
             Some(GraphInput::MotionForward) => 1.0,
@@ -155,6 +217,13 @@ fn all() -> Vec<Golden> {
         let spec = registry::find(style).unwrap();
         all.push(Golden { name: format!("{style}-on-scene"), spec, input: scene });
     }
+    let cartoon = registry::find("cartoon").unwrap();
+    let of_forms = |(name, ..): &(&str, _, _)| Golden {
+        name: (*name).to_owned(),
+        spec: cartoon,
+        input: || form("color"),
+    };
+    all.extend(OF_FORMS.iter().map(of_forms));
     all
 }
 
@@ -172,8 +241,8 @@ pub fn add(trials: &mut Trials) {
 
 fn the_cpu_gives_the_golden_image(golden: &Golden) -> Vec<String> {
     let input = (golden.input)();
-    let planned = plan(golden.spec, &input);
-    let inputs = inputs(golden.spec, planned.plan(), &input);
+    let planned = plan(golden, &input);
+    let inputs = inputs(golden, planned.plan(), &input);
     let named: Vec<(&str, Image)> =
         inputs.iter().map(|(name, image)| (name.as_str(), image.clone())).collect();
     let result = run::whole(planned.plan(), &named);
@@ -186,9 +255,9 @@ fn the_gpu_gives_the_golden_image(golden: &Golden) -> Option<Vec<String>> {
     }
     let mut gpu = device::executor(&golden.name)?;
     let input = (golden.input)();
-    let planned = plan(golden.spec, &input);
+    let planned = plan(golden, &input);
     let region = Rect::of_size(input.width(), input.height());
-    let inputs = inputs(golden.spec, planned.plan(), &input);
+    let inputs = inputs(golden, planned.plan(), &input);
     let named: Vec<(&str, &Image)> = inputs.iter().map(|(name, image)| (name.as_str(), image)).collect();
     let images = gpu.run_images(planned.plan(), &named, region, Control::default()).unwrap();
     Some(check(&golden.name, "gpu", &shown(golden.spec, &images[0])).into_iter().collect())
