@@ -111,8 +111,8 @@ fn shipped(node: &Node) -> Vec<String> {
 }
 
 impl Style {
-    /// Makes the style of `name` as [`Style::load`] does, with the colours of a palette where there is one: a style that has
-    /// no node for it gets one at its end. Settings come after them.
+    /// Makes the style of `name` as [`Style::load`] does, with the colours of a palette where there is one: one that ships is given to
+    /// a node that draws with such by itself, and otherwise a style that has no node for it gets one at its end. Settings come after them.
     ///
     /// # Errors
     /// As [`Style::load`] and [`Style::colour_by`].
@@ -124,16 +124,47 @@ impl Style {
     ) -> Result<Self> {
         let Some(palette) = palette else { return Self::load(library, name, settings) };
         let mut style = Self::load(library, name, &[])?;
-        style.end_in(palette)?;
+        // Settings of a node need it.
+        if settings.iter().any(|setting| setting.node.as_deref() == Some(NODE)) {
+            style.end_in(palette)?;
+        } else {
+            style.draw_in(palette)?;
+        }
         settings.iter().try_for_each(|setting| style.set(setting))?;
         Ok(style)
+    }
+
+    /// Draws in the colours of a palette: by its only node where that draws by itself with such as ship, otherwise by a node at its end.
+    ///
+    /// # Errors
+    /// As [`Style::colour_by`].
+    pub fn draw_in(&mut self, palette: &Colours) -> Result<()> {
+        match self.own_setting(palette)? {
+            Some(own) => self.set(&own),
+            None => self.end_in(palette),
+        }
+    }
+
+    /// Setting of its only node that makes it draw with a palette that ships.
+    fn own_setting(&self, palette: &Colours) -> Result<Option<Setting>> {
+        let Colours::Shipped(id) = palette else { return Ok(None) };
+        if self.graph.count() != 1 {
+            return Ok(None);
+        }
+        let spec = self.graph.spec(0).map_err(|e| e.at(&self.name, FIX))?;
+        let has = |options: &[Choice]| options.iter().any(|option| option.id == *id);
+        let draws = |param: &Param| {
+            param.id == NODE && matches!(&param.kind, ParamKind::Choice { options, .. } if has(options))
+        };
+        let own = || Setting { node: None, param: NODE.into(), value: id.clone() };
+        Ok(spec.params.iter().any(draws).then(own))
     }
 
     /// Draws its result in the colours of a palette, by a node of its own where it has none and yields colours.
     ///
     /// # Errors
     /// As [`Style::colour_by`].
-    pub fn end_in(&mut self, palette: &Colours) -> Result<()> {
+    fn end_in(&mut self, palette: &Colours) -> Result<()> {
         let is_masked = self.takes("mask")?;
         let Self { graph, name, kind, .. } = self;
         end_in_palette(graph, *kind, is_masked).map_err(|e| e.at(name, FIX))?;
@@ -148,11 +179,14 @@ impl Style {
         self.palette_settings(palette)?.iter().try_for_each(|setting| self.set(setting))
     }
 
-    /// Settings that give its nodes `palette` the colours of a palette.
+    /// Settings that give it the colours of a palette: its only node, where that draws by itself with such as ship, or its nodes `palette`.
     ///
     /// # Errors
-    /// [`Error::Input`] where it has no such node.
+    /// [`Error::Input`] where it has neither.
     pub fn palette_settings(&self, palette: &Colours) -> Result<Vec<Setting>> {
+        if let Some(own) = self.own_setting(palette)? {
+            return Ok(vec![own]);
+        }
         let refused = |e: isophote_loader::Error| e.at(&self.name, FIX);
         let mut settings = Vec::new();
         for node in 0..self.graph.count() {

@@ -42,7 +42,7 @@ pub fn looks(library: &Library, palette: Option<&Colours>, style: &Style) -> Res
     looks
         .map(|(number, look)| {
             let mut look = look?;
-            palette.map_or(Ok(()), |palette| look.end_in(palette))?;
+            palette.map_or(Ok(()), |palette| look.draw_in(palette))?;
             Ok((number, look))
         })
         .collect()

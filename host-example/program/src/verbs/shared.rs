@@ -80,8 +80,9 @@ pub struct PrecisionArgs {
 #[derive(Args, Clone, Debug)]
 pub struct PaletteArgs {
     /// A file whose colours the result has and no others: a palette (.gpl of GIMP, .hex, .ase, .aco, .pal or .json), or a
-    /// picture, such as a strip of colours or a photograph; or one that ships, by its id, such as gouache. A style without
-    /// the node palette gets one at its end; --set palette.dither=bayer and the like say how it draws.
+    /// picture, such as a strip of colours or a photograph; or one that ships, by its id, such as gouache, which styles with a
+    /// palette of their own draw or print with. Others get the node palette at their end; --set palette.dither=bayer and the like
+    /// say how it draws.
     #[arg(long, value_name = "FILE|NAME", value_hint = ValueHint::FilePath)]
     pub palette: Option<PathBuf>,
     /// Number of colours that are taken from the palette or found in the picture [default: all of a palette, 8 of a photograph].
