@@ -11,7 +11,6 @@ use isophote_loader::Library;
 use isophote_pictures::exr::OnUnknown;
 use isophote_pictures::mix::{self, Encoding};
 use isophote_pictures::pixels::{Pixels, Samples};
-use isophote_pictures::space::Space;
 use isophote_scene::Scene;
 
 /// Rules of a style for the things of one scene.
@@ -54,6 +53,14 @@ impl Directed {
         let sources = style.things()?.into_iter();
         let names = [objects.as_slice(), &materials];
         let things = sources.map(|source| source.among(file, names, on_unknown)).collect::<Result<_>>()?;
+        Ok(Some(Self { things, ..Self::covered(library, style, looks)? }))
+    }
+
+    /// The rules of a style for pictures of which is known what their things cover, with the looks that they give to things.
+    ///
+    /// # Errors
+    /// [`isophote_files::error::Error::Input`] where looks are no colours.
+    pub fn covered(library: &Library, style: &Style, looks: Vec<(usize, Style)>) -> Result<Self> {
         if !looks.is_empty() {
             style.must_cover()?;
         }
@@ -62,7 +69,8 @@ impl Directed {
             Ok((number, Processor::new(library, look)?))
         };
         let looks = looks.into_iter().map(made).collect::<Result<_>>()?;
-        Ok(Some(Self { rules: style.objects.iter().map(Rule::from).collect(), things, looks }))
+        let rules = style.objects.iter().map(Rule::from).collect();
+        Ok(Self { rules, things: Vec::new(), looks })
     }
 
     /// The looks of things.
@@ -112,17 +120,16 @@ impl Directed {
         Followed { control: Pixels::new(width, height, 4, Samples::F32(map)), masks }
     }
 
-    /// A frame with the looks of things over it, of which `process` makes each; nothing where that was cancelled.
+    /// A frame of this encoding with the looks of things over it, of which `process` makes each; nothing where that was cancelled.
     ///
     /// # Errors
     /// Those of `process`.
     pub fn lay_over(
         &mut self,
         frame: Pixels,
-        masks: &[Pixels],
+        (masks, encoding): (&[Pixels], Encoding),
         mut process: impl FnMut(&mut Processor) -> Result<Option<Pixels>>,
     ) -> Result<Option<Pixels>> {
-        let encoding = Encoding { is_premultiplied: true, space: Space::Linear };
         let mut below = frame;
         for (number, look) in &mut self.looks {
             let Some(above) = process(look)? else { return Ok(None) };

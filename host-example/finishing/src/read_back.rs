@@ -12,7 +12,9 @@ use isophote_loader::{AsImage, Control, Library};
 use isophote_pictures::exr::Guide;
 use isophote_pictures::floats::Picture;
 use isophote_pictures::meaning::ImageState;
+use isophote_pictures::mix::Encoding;
 use isophote_pictures::pixels::{Pixels, Samples};
+use isophote_pictures::space::Space;
 use isophote_render::gpu::Gpu;
 use isophote_render::readback::Readback;
 use isophote_render::targets::{Target, Targets};
@@ -164,7 +166,8 @@ impl ReadBack {
         };
         let mut pixels = process(&mut self.processor)?.ok_or_else(nothing)?;
         if let Some(directed) = &mut self.directed {
-            pixels = directed.lay_over(pixels, &own.masks, process)?.ok_or_else(nothing)?;
+            let encoding = Encoding { is_premultiplied: true, space: Space::Linear };
+            pixels = directed.lay_over(pixels, (&own.masks, encoding), process)?.ok_or_else(nothing)?;
         }
         let (width, height, channels) = (pixels.width(), pixels.height(), pixels.channels() as usize);
         Ok(Picture { width, height, channels, data: pixels.to_f32() })

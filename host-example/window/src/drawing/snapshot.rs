@@ -5,6 +5,8 @@ use std::sync::Arc;
 use super::source::SceneSource;
 use crate::jobs::worker::{Wake, Worker};
 use crate::state::document::frame::{Frame, GuideImage};
+use crate::state::scenery::Scenery;
+use crate::state::things::Sampled;
 use isophote_files::error::{Error, Result};
 use isophote_finishing::apply::picture_request::PictureRequest;
 use isophote_pictures::exr::Guide;
@@ -12,13 +14,22 @@ use isophote_pictures::meaning::ImageState;
 use isophote_pictures::space::Space;
 use isophote_render::gpu::Gpu;
 use isophote_render::readback::decode;
+use isophote_render::samples::SAMPLES;
 use isophote_render::targets::Target;
 
 /// Copies frames and turns them into numbers on a thread of its own.
 pub struct Snapshots<F> {
-    worker: Worker<Copied, Result<Frame>>,
+    worker: Worker<Copied, Result<Snapshot>>,
     /// State that the last one shows.
     taken: Option<F>,
+}
+
+/// A frame in main memory.
+pub struct Snapshot {
+    /// The frame.
+    pub frame: Frame,
+    /// Things that samples of its pixels show, where these were asked for.
+    pub sampled: Option<Sampled>,
 }
 
 /// A frame in buffers that are being mapped.
@@ -27,6 +38,8 @@ struct Copied {
     size: (u32, u32),
     color: Buffer,
     guides: Vec<(Guide, Buffer)>,
+    /// Numbers of things in samples of it.
+    samples: Vec<Buffer>,
 }
 
 /// A texture in a buffer.
@@ -44,7 +57,7 @@ impl<F: PartialEq> Snapshots<F> {
     /// # Errors
     /// As [`Worker::new`].
     pub fn new(wake: &Wake) -> Result<Self> {
-        let worker = Worker::new("snapshot", Arc::clone(wake), |copied: Copied| copied.frame())?;
+        let worker = Worker::new("snapshot", Arc::clone(wake), |copied: Copied| copied.snapshot())?;
         Ok(Self { worker, taken: None })
     }
 
@@ -53,8 +66,14 @@ impl<F: PartialEq> Snapshots<F> {
         self.taken.as_ref() == Some(state)
     }
 
-    /// Copies what was rendered last, which shows this.
-    pub fn take(&mut self, gpu: &Gpu, source: &SceneSource, state: F) {
+    /// Copies what was rendered last of a scene, which shows this; with things in samples of its pixels, where that is wanted.
+    pub fn take(
+        &mut self,
+        gpu: &Gpu,
+        (source, scenery): (&mut SceneSource, &Scenery),
+        state: F,
+        is_sampled: bool,
+    ) {
         let targets = source.targets();
         let mut encoder = gpu.device.create_command_encoder(&Default::default());
         let mut copied = |target: &Target| Buffer::copied(gpu, &mut encoder, &target.texture);
@@ -70,25 +89,57 @@ impl<F: PartialEq> Snapshots<F> {
         guides.extend(names.into_iter().zip(light).map(|(guide, target)| (guide, copied(target))));
         let color = copied(&targets.color);
         gpu.queue.submit([encoder.finish()]);
-        for buffer in guides.iter().map(|(_, buffer)| buffer).chain([&color]) {
+        let size = (targets.width, targets.height);
+        let samples = if is_sampled { samples(gpu, source, scenery) } else { Vec::new() };
+        for buffer in guides.iter().map(|(_, buffer)| buffer).chain([&color]).chain(&samples) {
             // Success shows when it is read.
             buffer.buffer.map_async(wgpu::MapMode::Read, .., |_| {});
         }
-        let size = (targets.width, targets.height);
-        self.worker.ask(Copied { gpu: gpu.clone(), size, color, guides });
+        self.worker.ask(Copied { gpu: gpu.clone(), size, color, guides, samples });
         self.taken = Some(state);
     }
 
     /// The frame, when it is there.
-    pub fn answer(&mut self) -> Option<Result<Frame>> {
+    pub fn answer(&mut self) -> Option<Result<Snapshot>> {
         self.worker.answer()
     }
 }
 
+/// Draws samples of the pixels of the frame that was rendered last, and copies which things they show.
+fn samples(gpu: &Gpu, source: &mut SceneSource, scenery: &Scenery) -> Vec<Buffer> {
+    let mut record = |record: &mut dyn FnMut(&mut SceneSource, &mut wgpu::CommandEncoder)| {
+        let mut encoder = gpu.device.create_command_encoder(&Default::default());
+        record(source, &mut encoder);
+        gpu.queue.submit([encoder.finish()]);
+    };
+    let mut samples = Vec::with_capacity(SAMPLES as usize);
+    for sample in 0..SAMPLES {
+        record(&mut |source, encoder| {
+            source.encode_sample(encoder, scenery, sample);
+            samples.push(Buffer::copied(gpu, encoder, &source.targets().object_id.texture));
+        });
+    }
+    record(&mut |source, encoder| source.encode_again(encoder, scenery));
+    samples
+}
+
 impl Copied {
-    fn frame(&self) -> Result<Frame> {
+    /// The frame; each buffer is given back once it is read.
+    fn snapshot(mut self) -> Result<Snapshot> {
         // Whether that went well shows below.
         let _ = self.gpu.device.poll(wgpu::PollType::Wait { submission_index: None, timeout: None });
+        let mut sampled: Option<Sampled> = None;
+        for buffer in self.samples.drain(..) {
+            let numbers = buffer.numbers()?;
+            match &mut sampled {
+                Some(sampled) => sampled.add(&numbers),
+                None => sampled = Some(Sampled::new(numbers)),
+            }
+        }
+        Ok(Snapshot { frame: self.frame()?, sampled })
+    }
+
+    fn frame(&self) -> Result<Frame> {
         let color = self.color.numbers()?.as_chunks::<4>().0.to_vec();
         let pixels = color.len().max(1);
         let guides = self.guides.iter().map(|(guide, buffer)| {
