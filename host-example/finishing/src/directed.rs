@@ -17,7 +17,7 @@ use isophote_scene::Scene;
 #[derive(Debug)]
 pub struct Directed {
     rules: Vec<Rule>,
-    /// By rule and by thing: true where the rule is for it.
+    /// By rule and by thing of a scene: true where the rule is for it.
     things: Vec<Vec<bool>>,
     /// Looks that rules give to things, each with the place of its rule. The last lies over those before it.
     looks: Vec<(usize, Processor)>,

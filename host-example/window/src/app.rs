@@ -187,6 +187,7 @@ impl App {
         let always =
             session.record.limit.is_some() || session.open.scenery().is_some_and(|scenery| scenery.playing);
         let drawn = stage.draw(window, session, always)?;
+        let is_sampling = stage.is_sampling();
         session.record.hold(Hold { controls, looks, drawing: started.elapsed() - controls - looks });
         let delay = delay.filter(|delay| *delay < Duration::from_secs(3600));
         self.due = delay.map(|delay| Instant::now() + delay);
@@ -197,7 +198,7 @@ impl App {
         if self.session.open.playback().is_some_and(Playback::is_waiting) {
             self.want(Duration::from_millis(20));
         }
-        if is_told || !self.late.is_empty() || self.session.work.busy != was_busy {
+        if is_told || is_sampling || !self.late.is_empty() || self.session.work.busy != was_busy {
             self.want(Duration::ZERO);
         }
         Ok(())

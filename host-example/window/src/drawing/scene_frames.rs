@@ -102,20 +102,39 @@ impl SceneFrames {
         shown == state && (has_samples || !is_sampled)
     }
 
-    /// Reads back what was rendered last of a scene; with samples of its pixels, where these are wanted.
+    /// Reads back what was rendered last. Where samples of its pixels are wanted, these are drawn by [`SceneFrames::sample`].
     pub fn take(
         &mut self,
         gpu: &Gpu,
-        scene: (&mut SceneSource, &Scenery),
+        source: &SceneSource,
         (state, origin): (FrameState, Origin),
         is_sampled: bool,
     ) {
         self.next = Some(Next { state, origin, since: Instant::now(), is_sampled });
-        self.snapshots.take(gpu, scene, state, is_sampled);
+        self.snapshots.take(gpu, source, state, is_sampled);
+    }
+
+    /// True while samples are still to be drawn of the next frame.
+    pub fn is_sampling(&self) -> bool {
+        self.snapshots.is_sampling()
+    }
+
+    /// Draws some more of them.
+    pub fn sample(&mut self, gpu: &Gpu, scene: (&mut SceneSource, &Scenery)) {
+        self.snapshots.sample(gpu, scene);
+    }
+
+    /// Takes another frame for the next one where samples are still to be drawn of it.
+    pub fn give_up(&mut self) {
+        if self.is_sampling() {
+            self.snapshots.give_up();
+            self.next = None;
+        }
     }
 
     /// Forgets all frames.
     pub fn forget(&mut self) {
+        self.give_up();
         self.present = None;
     }
 

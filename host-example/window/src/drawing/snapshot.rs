@@ -1,5 +1,6 @@
 //! The present frame of a scene on its way from the device to main memory, with what is known beside its colour.
 
+use std::ops::Range;
 use std::sync::Arc;
 
 use super::source::SceneSource;
@@ -17,11 +18,16 @@ use isophote_render::readback::decode;
 use isophote_render::samples::SAMPLES;
 use isophote_render::targets::Target;
 
+/// Samples of a frame that are drawn at once. Between them the window is drawn.
+const AT_ONCE: u32 = 4;
+
 /// Copies frames and turns them into numbers on a thread of its own.
 pub struct Snapshots<F> {
     worker: Worker<Copied, Result<Snapshot>>,
     /// State that the last one shows.
     taken: Option<F>,
+    /// A frame of which samples are still to be drawn.
+    begun: Option<Copied>,
 }
 
 /// A frame in main memory.
@@ -58,7 +64,7 @@ impl<F: PartialEq> Snapshots<F> {
     /// As [`Worker::new`].
     pub fn new(wake: &Wake) -> Result<Self> {
         let worker = Worker::new("snapshot", Arc::clone(wake), |copied: Copied| copied.snapshot())?;
-        Ok(Self { worker, taken: None })
+        Ok(Self { worker, taken: None, begun: None })
     }
 
     /// True where the last one shows this.
@@ -66,14 +72,9 @@ impl<F: PartialEq> Snapshots<F> {
         self.taken.as_ref() == Some(state)
     }
 
-    /// Copies what was rendered last of a scene, which shows this; with things in samples of its pixels, where that is wanted.
-    pub fn take(
-        &mut self,
-        gpu: &Gpu,
-        (source, scenery): (&mut SceneSource, &Scenery),
-        state: F,
-        is_sampled: bool,
-    ) {
+    /// Copies what was rendered last, which shows this. Where things in samples of its pixels are wanted, these are drawn by
+    /// [`Snapshots::sample`].
+    pub fn take(&mut self, gpu: &Gpu, source: &SceneSource, state: F, is_sampled: bool) {
         let targets = source.targets();
         let mut encoder = gpu.device.create_command_encoder(&Default::default());
         let mut copied = |target: &Target| Buffer::copied(gpu, &mut encoder, &target.texture);
@@ -90,13 +91,46 @@ impl<F: PartialEq> Snapshots<F> {
         let color = copied(&targets.color);
         gpu.queue.submit([encoder.finish()]);
         let size = (targets.width, targets.height);
-        let samples = if is_sampled { samples(gpu, source, scenery) } else { Vec::new() };
-        for buffer in guides.iter().map(|(_, buffer)| buffer).chain([&color]).chain(&samples) {
+        let copied = Copied { gpu: gpu.clone(), size, color, guides, samples: Vec::new() };
+        self.taken = Some(state);
+        match is_sampled {
+            true => self.begun = Some(copied),
+            false => self.finish(copied),
+        }
+    }
+
+    /// True while samples are still to be drawn of a frame.
+    pub fn is_sampling(&self) -> bool {
+        self.begun.is_some()
+    }
+
+    /// Draws some more of them, of the frame that was rendered last of a scene.
+    pub fn sample(&mut self, gpu: &Gpu, (source, scenery): (&mut SceneSource, &Scenery)) {
+        let Some(mut copied) = self.begun.take() else { return };
+        let first = copied.samples.len() as u32;
+        let end = (first + AT_ONCE).min(SAMPLES);
+        copied.samples.extend(samples(gpu, (source, scenery), first..end));
+        match end {
+            SAMPLES => self.finish(copied),
+            _ => self.begun = Some(copied),
+        }
+    }
+
+    /// Takes the frame no more of which samples are still to be drawn.
+    pub fn give_up(&mut self) {
+        if self.begun.take().is_some() {
+            self.taken = None;
+        }
+    }
+
+    /// Has a frame read that is copied whole.
+    fn finish(&mut self, copied: Copied) {
+        let Copied { color, guides, samples, .. } = &copied;
+        for buffer in guides.iter().map(|(_, buffer)| buffer).chain([color]).chain(samples) {
             // Success shows when it is read.
             buffer.buffer.map_async(wgpu::MapMode::Read, .., |_| {});
         }
-        self.worker.ask(Copied { gpu: gpu.clone(), size, color, guides, samples });
-        self.taken = Some(state);
+        self.worker.ask(copied);
     }
 
     /// The frame, when it is there.
@@ -105,15 +139,15 @@ impl<F: PartialEq> Snapshots<F> {
     }
 }
 
-/// Draws samples of the pixels of the frame that was rendered last, and copies which things they show.
-fn samples(gpu: &Gpu, source: &mut SceneSource, scenery: &Scenery) -> Vec<Buffer> {
+/// Draws some of the samples of the frame that was rendered last, and copies which things they show.
+fn samples(gpu: &Gpu, (source, scenery): (&mut SceneSource, &Scenery), numbers: Range<u32>) -> Vec<Buffer> {
     let mut record = |record: &mut dyn FnMut(&mut SceneSource, &mut wgpu::CommandEncoder)| {
         let mut encoder = gpu.device.create_command_encoder(&Default::default());
         record(source, &mut encoder);
         gpu.queue.submit([encoder.finish()]);
     };
-    let mut samples = Vec::with_capacity(SAMPLES as usize);
-    for sample in 0..SAMPLES {
+    let mut samples = Vec::with_capacity(numbers.len());
+    for sample in numbers {
         record(&mut |source, encoder| {
             source.encode_sample(encoder, scenery, sample);
             samples.push(Buffer::copied(gpu, encoder, &source.targets().object_id.texture));

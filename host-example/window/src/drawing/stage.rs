@@ -275,7 +275,7 @@ impl Stage {
                 source.encode(&mut encoder, scenery);
                 self.gpu.queue.submit([encoder.finish()]);
             }
-            self.snapshots.take(&self.gpu, (source, scenery), state, false);
+            self.snapshots.take(&self.gpu, source, state, false);
         }
         Ok(taken.transpose()?.map(|taken| taken.frame))
     }

@@ -49,8 +49,8 @@ impl Ruled {
     }
 }
 
-/// Coverage of the things of each rule, from 0 to 1 by pixel; nothing where there are none.
-type Coverage = Vec<Option<Vec<f32>>>;
+/// Coverage of the things of each rule, from 0 to 1 by pixel; empty where nothing is known of any.
+type Coverage = Arc<[Vec<f32>]>;
 
 /// A frame that rules were followed on last, and what came of it; nothing where they are for nothing in it.
 #[derive(Debug)]
@@ -96,7 +96,6 @@ impl Rules {
     /// Gives memory back.
     pub fn rest(&mut self) {
         (self.last, self.from_file) = (None, None);
-        self.news.clear();
     }
 
     /// Rules of a look, whose style this is, for things; nothing where it has none.
@@ -140,32 +139,24 @@ impl Rules {
         if let Some(last) = self.last.as_ref().filter(is_known) {
             return Ok(last.ruled.clone());
         }
-        let ruled = match things {
-            Things::Scene { sampled, .. } => {
-                ruled(directed, frame, &counted(directed, frame, sampled.as_deref()))
-            }
-            Things::File { info, number } => {
-                let coverage = self.of_file(look, style.things()?, (frame, info, *number))?;
-                let known = |covered: &Option<Vec<f32>>| {
-                    covered.clone().unwrap_or_else(|| vec![0.0; frame.color.len()])
-                };
-                let is_any = coverage.iter().any(Option::is_some);
-                let all: Vec<_> = coverage.iter().filter(|_| is_any).map(known).collect();
-                if is_any { ruled(directed, frame, &all) } else { None }
-            }
+        let coverage = match things {
+            Things::Scene { sampled, .. } => counted(directed, frame, sampled.as_deref()),
+            Things::File { info, number } => self.of_file(look, style.things()?, (frame, info, *number))?,
         };
+        let ruled = (!coverage.is_empty()).then(|| ruled(directed, frame, &coverage));
         self.last = Some(Last { of: Arc::clone(frame), objects: objects.clone(), ruled: ruled.clone() });
         Ok(ruled)
     }
 
-    /// Coverage of a frame by the things of its file, which is kept until another is asked for.
+    /// Coverage of a frame by the things of rules, as its file says, which is kept until another is asked for; empty where it knows
+    /// none of them.
     fn of_file(
         &mut self,
         look: &EditedLook,
         sources: Vec<MaskSource>,
         (frame, info, number): (&Frame, &Arc<Info>, Option<i64>),
-    ) -> Result<&Coverage> {
-        let Some(file) = info.file_of(number) else { return Ok(const { &Vec::new() }) };
+    ) -> Result<Coverage> {
+        let Some(file) = info.file_of(number) else { return Ok(Coverage::default()) };
         let size = (frame.width, frame.height);
         let known = self.from_file.take().filter(|known| {
             Arc::ptr_eq(&known.info, info)
@@ -175,15 +166,19 @@ impl Rules {
             Some(known) => known,
             None => {
                 let masks = self.masks(look, &sources, (info, &file, number))?;
-                let fitting = |mask: &Pixels| {
-                    let own = (mask.width(), mask.height());
-                    reduce::numbers(&mask.to_f32(), own, size, reduce::whole(size))
+                let fitting = |mask: &Option<Pixels>| match mask {
+                    Some(mask) => {
+                        let own = (mask.width(), mask.height());
+                        reduce::numbers(&mask.to_f32(), own, size, reduce::whole(size))
+                    }
+                    None => vec![0.0; frame.color.len()],
                 };
-                let coverage = masks.iter().map(|mask| mask.as_ref().map(fitting)).collect();
+                let is_any = masks.iter().any(Option::is_some);
+                let coverage = if is_any { masks.iter().map(fitting).collect() } else { Coverage::default() };
                 FromFile { file, info: Arc::clone(info), sources, size, coverage }
             }
         };
-        Ok(&self.from_file.insert(read).coverage)
+        Ok(Arc::clone(&self.from_file.insert(read).coverage))
     }
 
     /// Masks of the things of rules in a file. Those that it does not have are told of.
@@ -231,7 +226,7 @@ impl Rules {
         }
         self.told.retain(|(known, _)| known.are_of_same(things));
         self.told.push((things.unsampled(), sources.to_vec()));
-        self.news.push(format!("A rule of {} is for nothing here: {problem}", look.name));
+        self.news.push(format!("{} has a rule for something that is not here: {problem}", look.name));
     }
 }
 
@@ -254,7 +249,7 @@ pub fn looks_of_things(library: &Library, look: &EditedLook, style: &Style) -> R
 }
 
 /// Coverage of a frame by the things of each rule, counted in samples of its pixels.
-fn counted(directed: &Directed, frame: &Frame, sampled: Option<&Sampled>) -> Vec<Vec<f32>> {
+fn counted(directed: &Directed, frame: &Frame, sampled: Option<&Sampled>) -> Coverage {
     let mut coverage = Vec::new();
     match (sampled, frame.guide(Guide::ObjectId)) {
         (Some(sampled), _) => {
@@ -263,11 +258,11 @@ fn counted(directed: &Directed, frame: &Frame, sampled: Option<&Sampled>) -> Vec
         (None, Some(numbers)) => directed.count(&mut coverage, &numbers.data, 1),
         (None, None) => {}
     }
-    coverage
+    coverage.into()
 }
 
 /// A frame as rules direct it whose things cover so much of it.
-fn ruled(directed: &Directed, frame: &Arc<Frame>, coverage: &[Vec<f32>]) -> Option<Ruled> {
+fn ruled(directed: &Directed, frame: &Arc<Frame>, coverage: &[Vec<f32>]) -> Ruled {
     let size = (frame.width, frame.height);
     let guide = |guide: Guide| frame.guide(guide).map(|image| image.data.as_slice());
     let Followed { control, masks } =
@@ -279,7 +274,7 @@ fn ruled(directed: &Directed, frame: &Arc<Frame>, coverage: &[Vec<f32>]) -> Opti
         Some(control) => Arc::new(frame.painted(Some(control), frame.mask.clone())),
         None => Arc::clone(frame),
     };
-    Some(Ruled { frame, masks: masks.into() })
+    Ruled { frame, masks: masks.into() }
 }
 
 /// Masks of things in the file of a document, and why one of them is missing.

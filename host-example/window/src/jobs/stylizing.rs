@@ -132,6 +132,9 @@ impl Stylist {
         }
         let Some(style) = look.style(&self.library)? else { return Ok(()) };
         let directed = self.rules.directed(look, &style, things.as_ref())?;
+        if directed.is_none() {
+            self.rules.rest();
+        }
         let processor = Processor::new(&self.library, style)?;
         self.known = Some(Known { look: look.clone(), shot: *shot, processor, directed });
         Ok(())

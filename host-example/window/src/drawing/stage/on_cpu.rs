@@ -61,11 +61,10 @@ impl Stage {
     pub(super) fn follow_on_cpu(&mut self, session: &Session) -> Result<Option<(About, Error)>> {
         let looks = looks(session)?;
         let looks = looks.each_ref().map(Option::as_ref);
-        if session.open.scenery().is_some() {
-            if let Err(problem) = self.frames.collect() {
-                return Ok(Some((About::Other, problem)));
-            }
-        } else {
+        if let Err(problem) = self.frames.collect() {
+            return Ok(Some((About::Other, problem)));
+        }
+        if session.open.scenery().is_none() {
             self.frames.forget();
         }
         // What is covered is made when it is seen.
@@ -88,6 +87,11 @@ impl Stage {
         let collected = self.frames.collect();
         self.frames.forget();
         collected.err().map(|problem| (About::Other, problem))
+    }
+
+    /// True while a frame of a scene is drawn in parts, between which the window is drawn.
+    pub fn is_sampling(&self) -> bool {
+        self.frames.is_sampling()
     }
 
     /// Sentences about rules of looks that are for nothing in what is open, since the last call.
@@ -125,17 +129,24 @@ impl Stage {
 
     /// Renders the scene in this state, and reads it back for looks.
     fn render(&mut self, session: &Session, state: FrameState, has_looks: bool) -> Result<()> {
-        let is_late = self.processed.finishes() || self.frames.is_busy();
         // While it moves, one sample of a pixel is enough.
         let is_sampled = self.is_ruled && !self.moves;
-        let is_there =
-            if has_looks { self.frames.shows(&state, is_sampled) } else { self.rendered == Some(state) };
+        let is_known = has_looks && self.frames.shows(&state, is_sampled);
+        if !is_known {
+            self.frames.give_up();
+        }
+        let is_late = self.processed.finishes() || self.frames.is_busy();
         let origin = self.sources.origin().cloned();
         let (Some(LookInput::Scene(source)), Some(scenery), Some(origin)) =
             (self.sources.present_mut(), session.open.scenery(), origin)
         else {
             return Ok(());
         };
+        if is_known {
+            self.frames.sample(&self.gpu, (source, scenery));
+            return Ok(());
+        }
+        let is_there = !has_looks && self.rendered == Some(state);
         if is_there || has_looks && is_late {
             return Ok(());
         }
@@ -147,7 +158,7 @@ impl Stage {
         self.gpu.queue.submit([encoder.finish()]);
         self.rendered = Some(state);
         if has_looks {
-            self.frames.take(&self.gpu, (source, scenery), (state, origin), is_sampled);
+            self.frames.take(&self.gpu, source, (state, origin), is_sampled);
         }
         Ok(())
     }
@@ -180,7 +191,7 @@ impl Stage {
         let is_at_rest = self.made.as_ref().is_some_and(|made| made.request.scale >= 1.0);
         let is_begun = matches!(self.progress, Progress::Wanted | Progress::Begun(_));
         let is_moved = self.moves && session.open.scenery().is_some();
-        if self.progress().is_some() && !is_moved {
+        if (self.progress().is_some() || self.is_sampling()) && !is_moved {
             return Some("Stylizing");
         }
         if self.sources.is_busy() {

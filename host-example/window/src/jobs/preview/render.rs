@@ -110,10 +110,13 @@ impl Renderer {
         cancelled: &(dyn Fn() -> bool + Sync),
     ) -> Result<Option<Pixels>> {
         style.at_frame(picture.frame.number.unwrap_or_default())?;
-        let request = self.request(picture, size, style)?;
         let refused = |e: isophote_loader::Error| e.at(&style.name, "choose another look");
+        let mut guides = style.usable_guides(&self.library)?;
+        guides.retain(|guide| frame.guide(*guide).is_some());
+        // Looks read farther where a control map widens their lines.
+        let bits = self.library.guide_bits(guides.iter().map(|guide| guide.id())).map_err(refused)?;
+        let request = IsophoteRequest { guides: bits, ..self.request(picture, size, style)? };
         let read = style.graph.support(&request, part).map_err(refused)?;
-        let guides = style.usable_guides(&self.library)?;
         let mut control = Control { threads: self.threads, cancelled: Some(cancelled), ..Control::default() };
         let frame = self.read(frame, size, read);
         let color = pixels(frame, 4, frame.color.as_flattened())?;
