@@ -49,6 +49,9 @@ pub struct Stylist {
     room: Room,
 }
 
+/// Images of inputs, by their names and the numbers of frames.
+type Images<'a, 'i> = &'a (dyn Fn(&str, i64) -> Option<Image<'i>> + 'a);
+
 /// A look that can be computed.
 #[derive(Debug)]
 struct Known {
@@ -186,7 +189,7 @@ impl Known {
     /// A frame in the look, with those of things over it; nothing where it was cancelled.
     fn made<'i>(
         &mut self,
-        (request, image): (&IsophoteRequest, &dyn Fn(&str, i64) -> Option<Image<'i>>),
+        (request, image): (&IsophoteRequest, Images<'_, 'i>),
         ruled: Option<&Ruled>,
         control: &mut Control<'_>,
     ) -> Result<Option<Pixels>> {
