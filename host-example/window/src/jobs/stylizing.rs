@@ -129,8 +129,12 @@ impl Stylist {
         if self.known.as_ref().is_some_and(|known| (&known.look, known.shot) == (look, *shot)) {
             return Ok(());
         }
-        let is_of_shot = self.known.take().is_some_and(|known| known.shot == *shot);
-        if !is_of_shot {
+        // Frames before are kept as rules direct them.
+        let goes_on = self
+            .known
+            .take()
+            .is_some_and(|known| known.shot == *shot && known.look.preset.objects == look.preset.objects);
+        if !goes_on {
             self.past.clear();
         }
         let Some(style) = look.style(&self.library)? else { return Ok(()) };
