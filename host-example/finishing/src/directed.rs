@@ -8,30 +8,42 @@ use crate::processor::Processor;
 use crate::stylize::style::Style;
 use isophote_files::error::Result;
 use isophote_loader::Library;
-use isophote_pictures::exr::OnUnknown;
-use isophote_pictures::meaning::Meaning;
+use isophote_pictures::exr::{Guide, OnUnknown};
+use isophote_pictures::meaning::{Alpha, Meaning};
 use isophote_pictures::mix::{self, Encoding};
 use isophote_pictures::pixels::{Pixels, Samples};
-use isophote_pictures::space::Space;
 use isophote_scene::Scene;
 
 /// Rules of a style for the things of one scene.
 #[derive(Debug)]
 pub struct Directed {
     rules: Vec<Rule>,
-    /// By rule and by thing: true where the rule is for it.
+    /// By rule and by thing of a scene: true where the rule is for it.
     things: Vec<Vec<bool>>,
     /// Looks that rules give to things, each with the place of its rule. The last lies over those before it.
     looks: Vec<(usize, Processor)>,
 }
 
+/// Numbers of a frame that rules are followed on, by pixel.
+#[derive(Clone, Copy, Debug)]
+pub struct Given<'a> {
+    /// Columns and rows.
+    pub size: (u32, u32),
+    /// Meaning of its colours.
+    pub encoding: Encoding,
+    /// A control map that was painted for it.
+    pub control: Option<&'a [f32]>,
+    /// Colours of lines that were painted for it.
+    pub line_paint: Option<&'a [f32]>,
+    /// Distances.
+    pub depth: Option<&'a [f32]>,
+}
+
 /// What rules say of a frame.
 #[derive(Debug)]
 pub struct Followed {
-    /// The control map that they are; nothing where they ask for none.
-    pub control: Option<Pixels>,
-    /// The colours of lines that they ask for, of linear light; nothing where they ask for none.
-    pub line_paint: Option<Pixels>,
+    /// The control map and the colours of lines that they are, as far as they ask for such.
+    pub maps: Vec<(Guide, Pixels)>,
     /// By rule, where its look is.
     pub masks: Vec<Pixels>,
 }
@@ -57,6 +69,14 @@ impl Directed {
         let sources = style.things()?.into_iter();
         let names = [objects.as_slice(), &materials];
         let things = sources.map(|source| source.among(file, names, on_unknown)).collect::<Result<_>>()?;
+        Ok(Some(Self { things, ..Self::covered(library, style, looks)? }))
+    }
+
+    /// The rules of a style for pictures of which is known what their things cover, with the looks that they give to things.
+    ///
+    /// # Errors
+    /// [`isophote_files::error::Error::Input`] where looks are no colours.
+    pub fn covered(library: &Library, style: &Style, looks: Vec<(usize, Style)>) -> Result<Self> {
         if !looks.is_empty() {
             style.must_cover()?;
         }
@@ -65,7 +85,8 @@ impl Directed {
             Ok((number, Processor::new(library, look)?))
         };
         let looks = looks.into_iter().map(made).collect::<Result<_>>()?;
-        Ok(Some(Self { rules: style.objects.iter().map(Rule::from).collect(), things, looks }))
+        let rules = style.objects.iter().map(Rule::from).collect();
+        Ok(Self { rules, things: Vec::new(), looks })
     }
 
     /// The looks of things.
@@ -88,33 +109,32 @@ impl Directed {
         }
     }
 
-    /// What the rules say of a frame of a size, by what their things cover of it, over what was `painted` for it.
-    pub fn follow(
-        &self,
-        coverage: &[Vec<f32>],
-        (width, height): (u32, u32),
-        painted: Option<&[f32]>,
-        depth: Option<&[f32]>,
-    ) -> Followed {
-        let mask = |mask: &Vec<f32>| Pixels::new(width, height, 1, Samples::F32(mask.clone()));
+    /// What the rules say of a frame, by what their things cover of it, over what was painted for it.
+    pub fn follow(&self, coverage: &[Vec<f32>], given: &Given<'_>) -> Followed {
+        let Given { size, encoding, control, line_paint, depth } = *given;
+        let mask = |mask: &Vec<f32>| Pixels::new(size.0, size.1, 1, Samples::F32(mask.clone()));
         let masks = coverage.iter().filter_map(mask).collect();
         let coverage: Vec<Option<&[f32]>> = coverage.iter().map(|mask| Some(mask.as_slice())).collect();
-        let ruled = Ruled { rules: &self.rules, coverage: &coverage, size: (width, height), depth };
-        let line_paint = ruled.line_paint(&Meaning::light(), None);
-        Followed { control: ruled.control(painted), line_paint, masks }
+        let alpha = if encoding.is_premultiplied { Alpha::Premultiplied } else { Alpha::Straight };
+        let meaning = Meaning { alpha, ..Meaning::display().named(Some(encoding.space)) };
+        let ruled = Ruled { rules: &self.rules, coverage: &coverage, size, depth };
+        let maps = [
+            (Guide::Control, ruled.control(control)),
+            (Guide::LinePaint, ruled.line_paint(&meaning, line_paint)),
+        ];
+        Followed { maps: maps.into_iter().filter_map(|(guide, map)| Some((guide, map?))).collect(), masks }
     }
 
-    /// A frame with the looks of things over it, of which `process` makes each; nothing where that was cancelled.
+    /// A frame of this encoding with the looks of things over it, of which `process` makes each; nothing where that was cancelled.
     ///
     /// # Errors
     /// Those of `process`.
     pub fn lay_over(
         &mut self,
         frame: Pixels,
-        masks: &[Pixels],
+        (masks, encoding): (&[Pixels], Encoding),
         mut process: impl FnMut(&mut Processor) -> Result<Option<Pixels>>,
     ) -> Result<Option<Pixels>> {
-        let encoding = Encoding { is_premultiplied: true, space: Space::Linear };
         let mut below = frame;
         for (number, look) in &mut self.looks {
             let Some(above) = process(look)? else { return Ok(None) };

@@ -49,6 +49,11 @@ impl Processor {
         &self.style
     }
 
+    /// The style, to be computed in another way.
+    pub fn style_mut(&mut self) -> &mut Style {
+        &mut self.style
+    }
+
     /// Guides that the style can use.
     pub fn guides(&self) -> &[Guide] {
         &self.guides

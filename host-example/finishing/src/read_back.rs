@@ -2,7 +2,7 @@
 
 use std::collections::VecDeque;
 
-use crate::directed::{Directed, Followed};
+use crate::directed::{Directed, Followed, Given};
 use crate::processor::Processor;
 use crate::stylize::frame_request;
 use crate::stylize::style::Style;
@@ -12,10 +12,15 @@ use isophote_loader::{AsImage, Control, Library};
 use isophote_pictures::exr::Guide;
 use isophote_pictures::floats::Picture;
 use isophote_pictures::meaning::ImageState;
+use isophote_pictures::mix::Encoding;
 use isophote_pictures::pixels::{Pixels, Samples};
+use isophote_pictures::space::Space;
 use isophote_render::gpu::Gpu;
 use isophote_render::readback::Readback;
 use isophote_render::targets::{Target, Targets};
+
+/// Meaning of the colours that renderers draw.
+const LIGHT: Encoding = Encoding { is_premultiplied: true, space: Space::Linear };
 
 /// A style, and the frames that it reads.
 #[derive(Debug)]
@@ -128,14 +133,19 @@ impl ReadBack {
             let image = own.images.iter().find(|(name, _)| *name == guide.id());
             image.map(|(_, pixels)| pixels.to_f32())
         };
-        let (painted, depth) = (numbers(Guide::Control), numbers(Guide::Depth));
-        let Followed { control, line_paint, masks } =
-            directed.follow(coverage, own.size, painted.as_deref(), depth.as_deref());
+        let [control, line_paint, depth] = [Guide::Control, Guide::LinePaint, Guide::Depth].map(numbers);
+        let given = Given {
+            size: own.size,
+            encoding: LIGHT,
+            control: control.as_deref(),
+            line_paint: line_paint.as_deref(),
+            depth: depth.as_deref(),
+        };
+        let Followed { maps, masks } = directed.follow(coverage, &given);
         own.masks = masks;
-        for (guide, made) in [(Guide::Control, control), (Guide::LinePaint, line_paint)] {
-            let Some(made) = made else { continue };
+        for (guide, map) in maps {
             own.images.retain(|(name, _)| *name != guide.id());
-            own.images.push((guide.id(), made));
+            own.images.push((guide.id(), map));
         }
     }
 
@@ -165,7 +175,7 @@ impl ReadBack {
         };
         let mut pixels = process(&mut self.processor)?.ok_or_else(nothing)?;
         if let Some(directed) = &mut self.directed {
-            pixels = directed.lay_over(pixels, &own.masks, process)?.ok_or_else(nothing)?;
+            pixels = directed.lay_over(pixels, (&own.masks, LIGHT), process)?.ok_or_else(nothing)?;
         }
         let (width, height, channels) = (pixels.width(), pixels.height(), pixels.channels() as usize);
         Ok(Picture { width, height, channels, data: pixels.to_f32() })

@@ -24,14 +24,12 @@ use isophote_render::gpu::Gpu;
 use isophote_render::lighting::Lighting;
 use isophote_render::readback::Readback;
 use isophote_render::renderer::Renderer;
+use isophote_render::samples::{self, SAMPLES};
 use isophote_render::targets::{Target, Targets};
 use isophote_scene::Scene;
 use isophote_scene::camera::{Direction, Framing, Orbit, View, Viewpoint};
 use isophote_scene::pose::Pose;
 use wgpu::util::DeviceExt;
-
-/// Samples of a pixel that a Cryptomatte is made of, a power of 2.
-const SAMPLES: u32 = 16;
 
 /// Options of a shot, which say what is rendered of a scene.
 #[derive(Clone, Debug)]
@@ -331,12 +329,9 @@ impl Shot {
 
     /// Numbers of things that one of the samples of the frame drawn last shows.
     fn sample(&mut self, sample: u32, view: &View) -> Result<Vec<f32>> {
-        // Places in a pixel by Hammersley: no two of them in one row or column.
-        let place = [sample, sample.reverse_bits() >> (32 - SAMPLES.ilog2())];
-        let shift = place.map(|step| (step as f32 + 0.5) / SAMPLES as f32 - 0.5);
         let mut encoder = self.gpu.device.create_command_encoder(&Default::default());
         let shown = (&self.scene, &self.pose, view, &self.lighting);
-        self.renderer.encode_shifted(&mut encoder, shown, shift);
+        self.renderer.encode_shifted(&mut encoder, shown, samples::shift(sample));
         self.gpu.queue.submit([encoder.finish()]);
         let numbers = self.readback.read(&self.gpu, &self.renderer.targets().object_id.texture)?;
         Ok(numbers.data)

@@ -162,7 +162,7 @@ fn the_cpu_gives_the_window_what_it_gives_apply() {
             Document::open(&path, &Options::default()).expect("a picture").wait(1).expect("a picture");
         let size = (frame.width, frame.height);
         let expected = applied(&path, "cartoon", None, Backend::Cpu);
-        let task = Task { look: look.clone(), frame, share: 1.0, size, shot };
+        let task = Task { look: look.clone(), frame, things: None, share: 1.0, size, shot };
         let own = stylist.stylize(&task, &mut Control::default()).expect("a result").expect("a picture");
         let own = own.converted(expected.precision());
         assert!(own == expected, "{} is another picture", path.display());

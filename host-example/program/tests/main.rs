@@ -27,6 +27,7 @@ mod places;
 mod presets;
 mod rendered_mattes;
 mod replacing;
+mod ruled_looks;
 mod ruled_scenes;
 mod sequence;
 mod several;

@@ -1,32 +1,16 @@
 //! Rules of presets for things of scenes, while these are rendered.
 
-use std::fs;
 use std::path::Path;
 use std::process::Command;
 
 use exr::prelude::read_first_flat_layer_from_file;
 
-use crate::support::{self, fails, folder, isophote, succeeds};
+use crate::support::{fails, folder, isophote, ruled_cubes, succeeds};
 
 /// Rules of all kinds: for a map, for a look and for colours of lines, by names of objects and of materials.
 const RULES: &str = r##"{"match": "cryptomatte:hero", "lines": false, "detail": 4},
     {"match": "cryptomatte:p*", "look": {"style": "watercolor"}, "medium": 2},
     {"match": "material:skin", "line_color": "#c03018", "line_width": 2}"##;
-
-/// Two cubes of one mesh, the right one behind the left one, and a preset of these rules.
-fn prepare(folder: &Path, rules: &str) {
-    let file = support::cube(folder);
-    let mut json: serde_json::Value =
-        serde_json::from_str(&fs::read_to_string(&file).expect("it was written")).expect("JSON");
-    let node =
-        |name: &str, place: [f32; 3]| serde_json::json!({"name": name, "mesh": 0, "translation": place});
-    json["nodes"] = [node("hero", [-0.6, 0.0, 0.5]), node("prop", [0.8, 0.3, -1.5])].into();
-    json["scenes"][0]["nodes"] = [0, 1].into();
-    json["materials"][0]["name"] = "skin".into();
-    fs::write(&file, json.to_string()).expect("the folder is writable");
-    let preset = format!(r#"{{"style": "cartoon", "objects": [{rules}]}}"#);
-    fs::write(folder.join("rules.json"), preset).expect("the folder is writable");
-}
 
 fn command(folder: &Path, arguments: &str) -> Command {
     let mut command = isophote();
@@ -66,7 +50,7 @@ fn scenes_follow_rules_as_files_of_them_do() {
     let folder = folder();
     let folder = folder.path();
     for rules in RULES.split(",\n").chain([RULES]) {
-        prepare(folder, rules);
+        ruled_cubes(folder, rules);
         render(folder, "plain.exr", "--cryptomatte");
         succeeds(&mut command(folder, "apply --preset rules.json plain.exr applied.exr"));
         render(folder, "ruled.exr", "--style rules.json");
@@ -82,7 +66,7 @@ fn scenes_follow_rules_as_files_of_them_do() {
 fn all_else_that_is_known_of_frames_stays() {
     let folder = folder();
     let folder = folder.path();
-    prepare(folder, RULES);
+    ruled_cubes(folder, RULES);
     let turning = "--frames 2-3 --turntable --style rules.json --steadiness 0.5";
     render(folder, "ruled.####.exr", turning);
     render(folder, "cartoon.####.exr", &turning.replace("rules.json", "cartoon"));
@@ -99,7 +83,7 @@ fn all_else_that_is_known_of_frames_stays() {
 #[test]
 fn names_that_a_scene_does_not_have_are_refused() {
     let folder = folder();
-    prepare(folder.path(), r#"{"match": "cryptomatte:heroo", "lines": false}"#);
+    ruled_cubes(folder.path(), r#"{"match": "cryptomatte:heroo", "lines": false}"#);
     let mut command = command(folder.path(), "render cube.gltf ruled.png --size 96x64 --style rules.json");
     fails(&mut command, 2, &["cube.gltf", "did you mean hero?"]);
     assert!(!folder.path().join("ruled.png").exists());

@@ -278,7 +278,7 @@ fn looks_follow_what_is_painted_as_apply_does() {
             maps::write(kind, maps, SIZE, &at(&format!("{}.png", kind.option()))).expect("it is saved");
         }
         let own = EditedLook::clone(session.look());
-        let task = Task { look: own, frame: Arc::clone(frame), share, size: SIZE, shot: 1 };
+        let task = Task { look: own, frame: Arc::clone(frame), things: None, share, size: SIZE, shot: 1 };
         let mut stylist = Stylist::new(session.library.clone());
         let made = stylist.stylize(&task, &mut Control::default()).expect("a result").expect("not cancelled");
         let made: Vec<u8> = made.to_f32().iter().map(|v| (v * 255.0).round() as u8).collect();

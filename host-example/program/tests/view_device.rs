@@ -3,6 +3,7 @@
 
 mod directed;
 mod named;
+mod ruled;
 
 use std::cell::RefCell;
 use std::path::{Path, PathBuf};

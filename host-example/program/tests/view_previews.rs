@@ -40,7 +40,7 @@ fn picture(width: u32, height: u32) -> Arc<Picture> {
     support::picture(width, height).save(&file).expect("the folder is writable");
     let document = Document::open(&file, &Options::default()).expect("a picture");
     let frame = document.wait(1).expect("a picture");
-    Arc::new(Picture { frame, size: (width, height), exposure: 1.0 })
+    Arc::new(Picture { frame, things: None, size: (width, height), exposure: 1.0 })
 }
 
 fn rendered(picture: &Picture, order: &Order) -> ColorImage {
@@ -144,7 +144,7 @@ fn steady_and_animated_looks_have_previews_and_alpha_shows_squares() {
     let file = folder.path().join("clear.png");
     clear.save(&file).expect("the folder is writable");
     let frame = Document::open(&file, &Options::default()).and_then(|d| d.wait(1)).expect("a picture");
-    let clear = Picture { frame, size: (32, 16), exposure: 1.0 };
+    let clear = Picture { frame, things: None, size: (32, 16), exposure: 1.0 };
     let image = rendered(&clear, &Order::whole(self::look("none"), (32, 16), 1));
     assert!(image.pixels[0] != image.pixels[8] && image.pixels[0].r() == image.pixels[0].g());
 }

@@ -9,6 +9,7 @@
 //! | [`background`] | sky, colour or surroundings behind the scene |
 //! | [`targets`] | textures that a frame is drawn into |
 //! | [`present`] | pass that puts a picture on a window |
+//! | [`samples`] | places within pixels at which things are counted |
 //! | [`readback`] | textures to pictures in main memory |
 //! | [`timestamps`] | times of passes on the device |
 //! | [`buffers`], [`layouts`], [`pipelines`] | objects of the device, and how they are bound |
@@ -30,6 +31,7 @@ pub mod present;
 pub mod readback;
 pub mod renderer;
 mod rest;
+pub mod samples;
 mod shadow;
 pub mod targets;
 #[cfg(test)]

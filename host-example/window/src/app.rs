@@ -174,9 +174,12 @@ impl App {
         if let Some(frames) = self.background.frames(session) {
             session.take_over(frames);
         }
+        self.pace.is_slow = stage.takes_its_time(session);
         let scale = self.pace.scale(session);
-        let problems = stage.follow(session, scale)?;
+        let (problems, news) = (stage.follow(session, scale)?, stage.news());
         problems.iter().for_each(|(subject, problem)| session.notes.complain_of(*subject, problem));
+        let is_told = !problems.is_empty() || !news.is_empty();
+        news.into_iter().for_each(|sentence| session.notes.say(sentence));
         let was_busy = session.work.busy;
         session.work.busy = stage.doing(session).or(self.background.busy());
         session.work.share = stage.progress();
@@ -184,6 +187,7 @@ impl App {
         let always =
             session.record.limit.is_some() || session.open.scenery().is_some_and(|scenery| scenery.playing);
         let drawn = stage.draw(window, session, always)?;
+        let is_sampling = stage.is_sampling();
         session.record.hold(Hold { controls, looks, drawing: started.elapsed() - controls - looks });
         let delay = delay.filter(|delay| *delay < Duration::from_secs(3600));
         self.due = delay.map(|delay| Instant::now() + delay);
@@ -194,7 +198,7 @@ impl App {
         if self.session.open.playback().is_some_and(Playback::is_waiting) {
             self.want(Duration::from_millis(20));
         }
-        if !problems.is_empty() || !self.late.is_empty() || self.session.work.busy != was_busy {
+        if is_told || is_sampling || !self.late.is_empty() || self.session.work.busy != was_busy {
             self.want(Duration::ZERO);
         }
         Ok(())

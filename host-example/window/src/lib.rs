@@ -8,8 +8,8 @@
 //! | `app` | the window's events, and when a frame is drawn | `keys`, `opening`, `clicks`, `desktop`, `pace`, `access` |
 //! | `widgets` | the controls | one file each |
 //! | `drawing` | what lives on the device | `stage`, `shown`, `made`, `screen`, `sources`, `source`, `pictures`, `snapshot`, `origin`, `scene_frames`, `live_look`, `processed`, `canvas`, `counter`, `probe`, `panel` |
-//! | `jobs` | work beside the window | `background`, `worker`, `opening`, `dialogs`, `document`, `reader`, `exporting`, `export`, `reveal`, `look_work`, `folder`, `listing`, `preview`, `stylizing`, `watch`, `idle` |
-//! | `state` | all that is known of what is shown, steps back, and the window's end | `session`, `open`, `folder`, `histogram`, `scenery`, `document`, `playback`, `looks`, `look`, `resetting`, `chain`, `values`, `expression`, `viewport`, `probed`, `dialogs`, `leaving`, `plan`, `formats`, `batch`, `running`, `work`, `outcome`, `progress`, `history`, `file_steps`, `command`, `notes`, `record`, `settings` |
+//! | `jobs` | work beside the window | `background`, `worker`, `opening`, `dialogs`, `document`, `reader`, `exporting`, `export`, `reveal`, `look_work`, `folder`, `listing`, `preview`, `stylizing`, `ruled`, `watch`, `idle` |
+//! | `state` | all that is known of what is shown, steps back, and the window's end | `session`, `open`, `folder`, `histogram`, `scenery`, `document`, `playback`, `looks`, `look`, `resetting`, `chain`, `values`, `expression`, `viewport`, `probed`, `dialogs`, `leaving`, `plan`, `formats`, `batch`, `running`, `work`, `outcome`, `progress`, `history`, `file_steps`, `command`, `rules`, `things`, `notes`, `record`, `settings` |
 //! | | what comes with the program to try looks on | `demo`, `samples` |
 //! | | looks to choose from | `browser`, `preview`, `comparison`, `saving` |
 

@@ -56,6 +56,7 @@ impl MatteChoice {
                         return Err(Error::file(scene, problem, Manifest::of(names).advice(&wanted.text)));
                     }
                     OnUnknown::Empty => output::warn(format_args!("{}: {problem}", scene.display())),
+                    OnUnknown::Quiet => {}
                 }
             }
         }

@@ -38,6 +38,9 @@ pub enum OnUnknown {
     Fail,
     /// The name covers nothing there.
     Empty,
+    /// The same without a warning, for whoever has told of it.
+    #[value(skip)]
+    Quiet,
 }
 
 impl FromStr for MaskSource {
@@ -201,6 +204,7 @@ impl ChosenMask {
                     return Err(Fault::Choice { problem: problem.clone(), fix: fix.clone() });
                 }
                 OnUnknown::Empty => output::warn(format_args!("{}: {problem}", path.display())),
+                OnUnknown::Quiet => {}
             }
         }
         Ok(mask)

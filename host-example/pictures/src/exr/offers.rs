@@ -18,6 +18,8 @@ pub struct Offers {
     pub view: Option<String>,
     /// Guides of that view with the names of the channels that they are made of.
     pub guides: Vec<(Guide, Vec<String>)>,
+    /// True where there are Cryptomattes.
+    pub has_mattes: bool,
 }
 
 /// A layer.
@@ -34,7 +36,7 @@ pub struct Layer {
 /// Choices that a file offers of which `chosen` was chosen.
 pub fn offers(exr: &File, chosen: &[Chosen]) -> Offers {
     let mattes = mattes(exr);
-    let mut offers = Offers::default();
+    let mut offers = Offers { has_mattes: !mattes.is_empty(), ..Offers::default() };
     for group in groups(exr) {
         // What is not asked for by name is the main layer, which must be a picture by itself.
         if group.picture(exr, !group.layer.is_empty()).is_none() || !exr.can_decode(group.part) {

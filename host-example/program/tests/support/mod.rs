@@ -168,6 +168,21 @@ pub fn cube(folder: &Path) -> PathBuf {
     file
 }
 
+/// Two cubes of one mesh, the right one behind the left one, in the file `cube.gltf`, and a preset of these rules for things.
+pub fn ruled_cubes(folder: &Path, rules: &str) {
+    let file = cube(folder);
+    let mut json: serde_json::Value =
+        serde_json::from_str(&fs::read_to_string(&file).expect("it was written")).expect("JSON");
+    let node =
+        |name: &str, place: [f32; 3]| serde_json::json!({"name": name, "mesh": 0, "translation": place});
+    json["nodes"] = [node("hero", [-0.6, 0.0, 0.5]), node("prop", [0.8, 0.3, -1.5])].into();
+    json["scenes"][0]["nodes"] = [0, 1].into();
+    json["materials"][0]["name"] = "skin".into();
+    fs::write(&file, json.to_string()).expect("the folder is writable");
+    let preset = format!(r#"{{"style": "cartoon", "objects": [{rules}]}}"#);
+    fs::write(folder.join("rules.json"), preset).expect("the folder is writable");
+}
+
 /// The glTF text of the cube, with its buffer at `uri` and normals after `length` bytes.
 pub fn cube_json(uri: &str, length: usize) -> String {
     format!(

@@ -8,23 +8,27 @@ use std::time::Duration;
 use isophote_finishing::apply::backend::Backend;
 use isophote_scene::Scene;
 use isophote_window::state::scenery::{Scenery, Staging};
+use isophote_window::state::session::Session;
 
 use super::{App, CANVAS, SIZE, Script, Step, alone, frames, is_at_rest, pause, session};
 use crate::support::window::screen;
 use crate::support::{controlled_cube, cube};
 
-type Seen = Rc<RefCell<Vec<Vec<u8>>>>;
+/// Pictures on the screen that were kept.
+pub type Seen = Rc<RefCell<Vec<Vec<u8>>>>;
 
-/// Shows a scene and keeps what is to be seen of it.
-fn shown(file: PathBuf, folder: &Path, seen: &Seen) -> Vec<(&'static str, Step)> {
+/// Does something by which another picture is shown, and keeps what is to be seen of it.
+pub fn shown(
+    folder: &Path,
+    seen: &Seen,
+    mut act: impl FnMut(&mut Session) + 'static,
+) -> Vec<(&'static str, Step)> {
     let (folder, seen) = (folder.to_owned(), Rc::clone(seen));
     let before = Rc::new(RefCell::new(0));
     let known = Rc::clone(&before);
     let open = move |app: &mut App| {
         *known.borrow_mut() = frames(app);
-        let scene = Scene::load(&file, None).unwrap();
-        let scenery = Scenery::new(scene, Staging::default(), 1.5);
-        app.session_mut().show_scene(scenery, None, "scene".into());
+        act(app.session_mut());
         true
     };
     let is_there = move |app: &mut App| is_at_rest(app) && frames(app) > *before.borrow();
@@ -33,11 +37,17 @@ fn shown(file: PathBuf, folder: &Path, seen: &Seen) -> Vec<(&'static str, Step)>
         true
     };
     vec![
-        ("a scene", Box::new(open)),
+        ("something else", Box::new(open)),
         ("its picture", Box::new(is_there)),
         ("the screen", Box::new(pause(Duration::from_millis(500)))),
+        ("its picture at rest", Box::new(is_at_rest)),
         ("what is seen", Box::new(keep)),
     ]
+}
+
+/// Bytes of the screen that are others.
+pub fn others(a: &[u8], b: &[u8]) -> usize {
+    a.iter().zip(b).filter(|(a, b)| a.abs_diff(**b) > 32).count()
 }
 
 fn followed(backend: Backend, folder: &Path) {
@@ -55,11 +65,17 @@ fn followed(backend: Backend, folder: &Path) {
         controlled_cube(&within("neutral"), "_CONTROL", |_| [0.5; 4]),
         controlled_cube(&within("directed"), "_CONTROL", |_| [0.5, 0.5, 0.0, 0.5]),
     ];
-    let steps = scenes.into_iter().flat_map(|file| shown(file, folder, &seen)).collect();
+    let opened = |file: PathBuf| {
+        shown(folder, &seen, move |session| {
+            let scene = Scene::load(&file, None).unwrap();
+            let scenery = Scenery::new(scene, Staging::default(), 1.5);
+            session.show_scene(scenery, None, "scene".into());
+        })
+    };
+    let steps = scenes.into_iter().flat_map(opened).collect();
     let app = Script::run(session, SIZE, steps);
     assert!(app.failure.is_none(), "{:?}", app.failure);
     let [plain, neutral, directed] = seen.take().try_into().unwrap();
-    let others = |a: &[u8], b: &[u8]| a.iter().zip(b).filter(|(a, b)| a.abs_diff(**b) > 32).count();
     assert_eq!(others(&plain, &neutral), 0, "0.5 changes nothing");
     let changed = others(&plain, &directed);
     assert!(changed > 500, "without lines {changed} bytes of the screen are others");

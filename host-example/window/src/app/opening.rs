@@ -42,7 +42,6 @@ impl App {
             window.set_visible(true);
         }
         self.session.record.adapter = stage.adapter();
-        self.pace.is_software = stage.is_software() || stage.computes_on_cpu();
         if self.session.open.has_picture() {
             // Nothing of it is on this device yet.
             self.session.work.busy = Some("Opening");

@@ -29,8 +29,8 @@ struct Appearance {
 /// Measured speed of the device.
 #[derive(Debug, Default)]
 pub struct Pace {
-    /// True where the processor draws.
-    pub is_software: bool,
+    /// True where a processor draws, or computes looks.
+    pub is_slow: bool,
     /// Seconds that a whole picture would take.
     whole: Option<f32>,
     scale: f32,
@@ -41,7 +41,7 @@ pub struct Pace {
 impl Pace {
     /// The size over that of the whole picture at which the next one is rendered.
     pub fn scale(&mut self, session: &Session) -> f32 {
-        if !self.is_software {
+        if !self.is_slow {
             return 1.0;
         }
         let scenery = session.open.scenery();
@@ -65,7 +65,7 @@ impl Pace {
 
     /// A frame was drawn, its picture in so much time; says when the next one is wanted at the latest.
     pub fn next(&mut self, drawn: Drawn, took: Duration) -> Option<Duration> {
-        if !self.is_software {
+        if !self.is_slow {
             return None;
         }
         if drawn == Drawn::Picture {

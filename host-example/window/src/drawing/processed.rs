@@ -1,8 +1,9 @@
-//! Looks that are computed on the CPU and put on the device, where the device's driver would compute there itself: first at
-//! the screen's size, then in full.
+//! Looks that are computed on the CPU and put on the device, where the device's driver would compute there itself, or where rules
+//! for things are followed: first at the screen's size, then in full.
 
 use std::sync::Arc;
 use std::sync::atomic::{AtomicU32, AtomicU64, Ordering};
+use std::sync::mpsc::{Receiver, Sender, channel};
 use std::time::{Duration, Instant};
 
 use super::origin::Origin;
@@ -12,6 +13,7 @@ use crate::jobs::stylizing::{Stylist, Task};
 use crate::jobs::worker::{Wake, Worker};
 use crate::state::document::frame::Frame;
 use crate::state::look::EditedLook;
+use crate::state::things::Things;
 use isophote_example::kernels::checked;
 use isophote_files::error::Result;
 use isophote_loader::abi::IsophoteRequest;
@@ -48,6 +50,8 @@ struct Finished {
 /// The looks of the window on the CPU.
 pub struct Processed {
     worker: Worker<Job, Answer>,
+    /// Sentences about rules of looks.
+    news: Receiver<String>,
     /// Number of the picture that is to go on; others are given up.
     allowed: Arc<AtomicU64>,
     /// Share of it that is done, as bits.
@@ -68,6 +72,8 @@ pub struct Processed {
 pub struct Subject<'s> {
     /// The picture.
     pub frame: &'s Arc<Frame>,
+    /// Things in it, where rules may be for them.
+    pub things: Option<Things>,
     /// Its size over that of the file's.
     pub share: f32,
     /// Origin of it.
@@ -108,15 +114,18 @@ impl Processed {
     /// As [`Worker::new`].
     pub fn new(gpu: &Gpu, library: &Library, wake: &Wake) -> Result<Self> {
         let (allowed, done) = (Arc::new(AtomicU64::new(0)), Arc::new(AtomicU32::new(0)));
+        let (sender, news) = channel();
         let own = (gpu.clone(), Arc::clone(&allowed), Arc::clone(&done));
         let mut stylist = Stylist::new(library.clone());
         let worker = Worker::new("stylizing", Arc::clone(wake), move |(number, wanted): Job| {
             let (gpu, allowed, done) = &own;
             let made = make(gpu, &mut stylist, &wanted, &|| allowed.load(Ordering::Relaxed) != number, done);
+            tell(&sender, &mut stylist);
             (wanted, made)
         })?;
         Ok(Self {
             worker,
+            news,
             allowed,
             done,
             asked: 0,
@@ -161,6 +170,7 @@ impl Processed {
             let task = Task {
                 look: look.clone(),
                 frame: Arc::clone(subject.frame),
+                things: subject.things.clone(),
                 share: subject.share,
                 size,
                 shot: self.shot,
@@ -200,6 +210,19 @@ impl Processed {
     pub fn wait(&mut self) {
         self.is_complete = false;
         self.rest();
+    }
+
+    /// Gives up all pictures, while looks are made elsewhere.
+    pub fn put_away(&mut self) {
+        self.rest();
+        // What was all but made is not wanted, either.
+        drop(self.worker.answer());
+        (self.shown, self.refused) = ([const { None }; 3], Vec::new());
+    }
+
+    /// Sentences about rules of looks that are for nothing in what is open, since the last call.
+    pub fn news(&self) -> Vec<String> {
+        self.news.try_iter().collect()
     }
 
     /// Gives up what is being made.
@@ -280,6 +303,14 @@ impl Drop for Processed {
     fn drop(&mut self) {
         // The thread is waited for.
         self.allowed.store(0, Ordering::Relaxed);
+    }
+}
+
+/// Hands on what the computation of a look has told.
+fn tell(to: &Sender<String>, stylist: &mut Stylist) {
+    for sentence in stylist.take_news() {
+        // Nobody hears it once the window is closed.
+        let _ = to.send(sentence);
     }
 }
 

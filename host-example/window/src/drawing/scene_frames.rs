@@ -5,12 +5,15 @@ use std::time::Instant;
 
 use super::made::FrameState;
 use super::origin::Origin;
-use super::snapshot::Snapshots;
+use super::snapshot::{Snapshot, Snapshots};
 use super::source::SceneSource;
 use crate::jobs::worker::Wake;
 use crate::state::document::frame::Frame;
 use crate::state::look::EditedLook;
+use crate::state::scenery::Scenery;
+use crate::state::things::Sampled;
 use isophote_files::error::Result;
+use isophote_finishing::stylize::things;
 use isophote_loader::Library;
 use isophote_loader::catalogue::Kind;
 use isophote_render::gpu::Gpu;
@@ -19,6 +22,8 @@ use isophote_render::gpu::Gpu;
 pub struct SceneFrame {
     /// The frame.
     pub frame: Arc<Frame>,
+    /// Things that samples of its pixels show, where these were drawn.
+    pub sampled: Option<Arc<Sampled>>,
     /// State that it shows.
     pub state: FrameState,
     /// Origin of it.
@@ -30,9 +35,17 @@ pub struct SceneFrame {
 /// The last frame of a scene that was read back, and the next one.
 pub struct SceneFrames {
     snapshots: Snapshots<FrameState>,
-    next: Option<(FrameState, Origin, Instant)>,
+    next: Option<Next>,
     present: Option<SceneFrame>,
     needs: Option<([Option<EditedLook>; 3], Needs)>,
+}
+
+/// The next frame, which is on its way.
+struct Next {
+    state: FrameState,
+    origin: Origin,
+    since: Instant,
+    is_sampled: bool,
 }
 
 /// Needs of looks beside the frame itself.
@@ -62,8 +75,10 @@ impl SceneFrames {
     pub fn collect(&mut self) -> Result<()> {
         let Some(frame) = self.snapshots.answer() else { return Ok(()) };
         let next = self.next.take();
-        let frame = Arc::new(frame?);
-        self.present = next.map(|(state, origin, since)| SceneFrame { frame, state, origin, since });
+        let Snapshot { frame, sampled } = frame?;
+        let (frame, sampled) = (Arc::new(frame), sampled.map(Arc::new));
+        self.present =
+            next.map(|Next { state, origin, since, .. }| SceneFrame { frame, sampled, state, origin, since });
         Ok(())
     }
 
@@ -77,22 +92,49 @@ impl SceneFrames {
         self.next.is_some()
     }
 
-    /// True where the last frame shows this, or the one that is on its way.
-    pub fn shows(&self, state: &FrameState) -> bool {
-        match &self.next {
-            Some((next, ..)) => next == state,
-            None => self.present.as_ref().is_some_and(|frame| frame.state == *state),
-        }
+    /// True where the last frame shows this, or the one that is on its way; with samples of its pixels, where these are wanted.
+    pub fn shows(&self, state: &FrameState, is_sampled: bool) -> bool {
+        let (shown, has_samples) = match (&self.next, &self.present) {
+            (Some(next), _) => (&next.state, next.is_sampled),
+            (None, Some(present)) => (&present.state, present.sampled.is_some()),
+            (None, None) => return false,
+        };
+        shown == state && (has_samples || !is_sampled)
     }
 
-    /// Reads back what was rendered last.
-    pub fn take(&mut self, gpu: &Gpu, source: &SceneSource, state: FrameState, origin: Origin) {
-        self.next = Some((state, origin, Instant::now()));
-        self.snapshots.take(gpu, source, state);
+    /// Reads back what was rendered last. Where samples of its pixels are wanted, these are drawn by [`SceneFrames::sample`].
+    pub fn take(
+        &mut self,
+        gpu: &Gpu,
+        source: &SceneSource,
+        (state, origin): (FrameState, Origin),
+        is_sampled: bool,
+    ) {
+        self.next = Some(Next { state, origin, since: Instant::now(), is_sampled });
+        self.snapshots.take(gpu, source, state, is_sampled);
+    }
+
+    /// True while samples are still to be drawn of the next frame.
+    pub fn is_sampling(&self) -> bool {
+        self.snapshots.is_sampling()
+    }
+
+    /// Draws some more of them.
+    pub fn sample(&mut self, gpu: &Gpu, scene: (&mut SceneSource, &Scenery)) {
+        self.snapshots.sample(gpu, scene);
+    }
+
+    /// Takes another frame for the next one where samples are still to be drawn of it.
+    pub fn give_up(&mut self) {
+        if self.is_sampling() {
+            self.snapshots.give_up();
+            self.next = None;
+        }
     }
 
     /// Forgets all frames.
     pub fn forget(&mut self) {
+        self.give_up();
         self.present = None;
     }
 
@@ -104,7 +146,11 @@ impl SceneFrames {
             return *needs;
         }
         let mut needs = Needs::default();
-        let styles = looks.into_iter().flatten().filter_map(|look| look.style(library).ok().flatten());
+        let styles = looks.into_iter().flatten().flat_map(|look| {
+            let Ok(Some(style)) = look.style(library) else { return Vec::new() };
+            let of_things = things::looks(library, None, &style).unwrap_or_default();
+            std::iter::once(style).chain(of_things.into_iter().map(|(_, style)| style)).collect()
+        });
         for style in styles {
             needs.past |= library.frames(&style.graph).is_ok_and(|frames| frames != [0, 0]);
             needs.light |= style.reads_light(library).is_ok_and(|reads| reads);

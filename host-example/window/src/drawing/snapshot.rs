@@ -1,10 +1,13 @@
 //! The present frame of a scene on its way from the device to main memory, with what is known beside its colour.
 
+use std::ops::Range;
 use std::sync::Arc;
 
 use super::source::SceneSource;
 use crate::jobs::worker::{Wake, Worker};
 use crate::state::document::frame::{Frame, GuideImage};
+use crate::state::scenery::Scenery;
+use crate::state::things::Sampled;
 use isophote_files::error::{Error, Result};
 use isophote_finishing::apply::picture_request::PictureRequest;
 use isophote_pictures::exr::Guide;
@@ -12,13 +15,27 @@ use isophote_pictures::meaning::ImageState;
 use isophote_pictures::space::Space;
 use isophote_render::gpu::Gpu;
 use isophote_render::readback::decode;
+use isophote_render::samples::SAMPLES;
 use isophote_render::targets::Target;
+
+/// Samples of a frame that are drawn at once. Between them the window is drawn.
+const AT_ONCE: u32 = 4;
 
 /// Copies frames and turns them into numbers on a thread of its own.
 pub struct Snapshots<F> {
-    worker: Worker<Copied, Result<Frame>>,
+    worker: Worker<Copied, Result<Snapshot>>,
     /// State that the last one shows.
     taken: Option<F>,
+    /// A frame of which samples are still to be drawn.
+    begun: Option<Copied>,
+}
+
+/// A frame in main memory.
+pub struct Snapshot {
+    /// The frame.
+    pub frame: Frame,
+    /// Things that samples of its pixels show, where these were asked for.
+    pub sampled: Option<Sampled>,
 }
 
 /// A frame in buffers that are being mapped.
@@ -27,6 +44,8 @@ struct Copied {
     size: (u32, u32),
     color: Buffer,
     guides: Vec<(Guide, Buffer)>,
+    /// Numbers of things in samples of it.
+    samples: Vec<Buffer>,
 }
 
 /// A texture in a buffer.
@@ -44,8 +63,8 @@ impl<F: PartialEq> Snapshots<F> {
     /// # Errors
     /// As [`Worker::new`].
     pub fn new(wake: &Wake) -> Result<Self> {
-        let worker = Worker::new("snapshot", Arc::clone(wake), |copied: Copied| copied.frame())?;
-        Ok(Self { worker, taken: None })
+        let worker = Worker::new("snapshot", Arc::clone(wake), |copied: Copied| copied.snapshot())?;
+        Ok(Self { worker, taken: None, begun: None })
     }
 
     /// True where the last one shows this.
@@ -53,8 +72,9 @@ impl<F: PartialEq> Snapshots<F> {
         self.taken.as_ref() == Some(state)
     }
 
-    /// Copies what was rendered last, which shows this.
-    pub fn take(&mut self, gpu: &Gpu, source: &SceneSource, state: F) {
+    /// Copies what was rendered last, which shows this. Where things in samples of its pixels are wanted, these are drawn by
+    /// [`Snapshots::sample`].
+    pub fn take(&mut self, gpu: &Gpu, source: &SceneSource, state: F, is_sampled: bool) {
         let targets = source.targets();
         let mut encoder = gpu.device.create_command_encoder(&Default::default());
         let mut copied = |target: &Target| Buffer::copied(gpu, &mut encoder, &target.texture);
@@ -70,25 +90,90 @@ impl<F: PartialEq> Snapshots<F> {
         guides.extend(names.into_iter().zip(light).map(|(guide, target)| (guide, copied(target))));
         let color = copied(&targets.color);
         gpu.queue.submit([encoder.finish()]);
-        for buffer in guides.iter().map(|(_, buffer)| buffer).chain([&color]) {
+        let size = (targets.width, targets.height);
+        let copied = Copied { gpu: gpu.clone(), size, color, guides, samples: Vec::new() };
+        self.taken = Some(state);
+        match is_sampled {
+            true => self.begun = Some(copied),
+            false => self.finish(copied),
+        }
+    }
+
+    /// True while samples are still to be drawn of a frame.
+    pub fn is_sampling(&self) -> bool {
+        self.begun.is_some()
+    }
+
+    /// Draws some more of them, of the frame that was rendered last of a scene.
+    pub fn sample(&mut self, gpu: &Gpu, (source, scenery): (&mut SceneSource, &Scenery)) {
+        let Some(mut copied) = self.begun.take() else { return };
+        let first = copied.samples.len() as u32;
+        let end = (first + AT_ONCE).min(SAMPLES);
+        copied.samples.extend(samples(gpu, (source, scenery), first..end));
+        match end {
+            SAMPLES => self.finish(copied),
+            _ => self.begun = Some(copied),
+        }
+    }
+
+    /// Takes the frame no more of which samples are still to be drawn.
+    pub fn give_up(&mut self) {
+        if self.begun.take().is_some() {
+            self.taken = None;
+        }
+    }
+
+    /// Has a frame read that is copied whole.
+    fn finish(&mut self, copied: Copied) {
+        let Copied { color, guides, samples, .. } = &copied;
+        for buffer in guides.iter().map(|(_, buffer)| buffer).chain([color]).chain(samples) {
             // Success shows when it is read.
             buffer.buffer.map_async(wgpu::MapMode::Read, .., |_| {});
         }
-        let size = (targets.width, targets.height);
-        self.worker.ask(Copied { gpu: gpu.clone(), size, color, guides });
-        self.taken = Some(state);
+        self.worker.ask(copied);
     }
 
     /// The frame, when it is there.
-    pub fn answer(&mut self) -> Option<Result<Frame>> {
+    pub fn answer(&mut self) -> Option<Result<Snapshot>> {
         self.worker.answer()
     }
 }
 
+/// Draws some of the samples of the frame that was rendered last, and copies which things they show.
+fn samples(gpu: &Gpu, (source, scenery): (&mut SceneSource, &Scenery), numbers: Range<u32>) -> Vec<Buffer> {
+    let mut record = |record: &mut dyn FnMut(&mut SceneSource, &mut wgpu::CommandEncoder)| {
+        let mut encoder = gpu.device.create_command_encoder(&Default::default());
+        record(source, &mut encoder);
+        gpu.queue.submit([encoder.finish()]);
+    };
+    let mut samples = Vec::with_capacity(numbers.len());
+    for sample in numbers {
+        record(&mut |source, encoder| {
+            source.encode_sample(encoder, scenery, sample);
+            samples.push(Buffer::copied(gpu, encoder, &source.targets().object_id.texture));
+        });
+    }
+    record(&mut |source, encoder| source.encode_again(encoder, scenery));
+    samples
+}
+
 impl Copied {
-    fn frame(&self) -> Result<Frame> {
+    /// The frame; each buffer is given back once it is read.
+    fn snapshot(mut self) -> Result<Snapshot> {
         // Whether that went well shows below.
         let _ = self.gpu.device.poll(wgpu::PollType::Wait { submission_index: None, timeout: None });
+        let mut sampled: Option<Sampled> = None;
+        for buffer in self.samples.drain(..) {
+            let numbers = buffer.numbers()?;
+            match &mut sampled {
+                Some(sampled) => sampled.add(&numbers),
+                None => sampled = Some(Sampled::new(numbers)),
+            }
+        }
+        Ok(Snapshot { frame: self.frame()?, sampled })
+    }
+
+    fn frame(&self) -> Result<Frame> {
         let color = self.color.numbers()?.as_chunks::<4>().0.to_vec();
         let pixels = color.len().max(1);
         let guides = self.guides.iter().map(|(guide, buffer)| {

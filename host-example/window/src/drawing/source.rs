@@ -14,6 +14,7 @@ use isophote_render::background::Background;
 use isophote_render::gpu::Gpu;
 use isophote_render::lighting::Lighting as Light;
 use isophote_render::renderer::Renderer;
+use isophote_render::samples;
 use isophote_render::targets::Targets;
 use isophote_scene::Scene;
 use isophote_scene::camera::View;
@@ -139,6 +140,19 @@ impl SceneSource {
     pub fn encode(&mut self, encoder: &mut wgpu::CommandEncoder, scenery: &Scenery) {
         let Scenery { scene, pose, .. } = scenery;
         self.renderer.encode(encoder, scene, pose, &scenery.view(), scenery.light());
+    }
+
+    /// Records one of the samples of the frame that was recorded last, whose encoder must have been submitted: which things it shows
+    /// is in the place of their numbers, until [`SceneSource::encode_again`].
+    pub fn encode_sample(&mut self, encoder: &mut wgpu::CommandEncoder, scenery: &Scenery, sample: u32) {
+        let shown = (&*scenery.scene, &scenery.pose, &scenery.view(), scenery.light());
+        self.renderer.encode_shifted(encoder, shown, samples::shift(sample));
+    }
+
+    /// Records what is known of that frame beside its colour once more, at a standstill.
+    pub fn encode_again(&mut self, encoder: &mut wgpu::CommandEncoder, scenery: &Scenery) {
+        let Scenery { scene, pose, .. } = scenery;
+        self.renderer.encode_motion(encoder, scene, pose, &scenery.view(), scenery.light());
     }
 
     /// Lets a style read what was rendered.

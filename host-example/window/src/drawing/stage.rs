@@ -40,8 +40,12 @@ use isophote_render::timestamps::Timestamps;
 pub struct Stage {
     /// The look, what it is compared with, and what is shown instead.
     looks: [LiveLook; 3],
-    /// The same on the CPU, where the device's driver would compute there itself.
-    processed: Option<Processed>,
+    /// The same on the CPU.
+    processed: Processed,
+    /// True where all looks are computed there, as the device's driver would do itself.
+    computes_on_cpu: bool,
+    /// True where looks have rules for things of what is open, which are followed there.
+    is_ruled: bool,
     /// Frames of a scene for looks on the CPU.
     frames: SceneFrames,
     /// Needs of looks on a scene there.
@@ -149,12 +153,14 @@ impl Stage {
             own.wait().map(|()| since.elapsed())
         })?;
         // Who asks for a precision of graphics devices asks for the device.
-        let is_cpu = session.backend.is_cpu(gpu.is_software() && session.precision == Precision::Exact);
-        let processed = is_cpu.then(|| Processed::new(&gpu, &session.library, wake)).transpose()?;
+        let is_exact_software = gpu.is_software() && session.precision == Precision::Exact;
+        let processed = Processed::new(&gpu, &session.library, wake)?;
         gpu.check()?;
         Ok(Self {
             looks,
             processed,
+            computes_on_cpu: session.backend.is_cpu(is_exact_software),
+            is_ruled: false,
             frames: SceneFrames::new(wake)?,
             needs: Needs::default(),
             rendered: None,
@@ -218,6 +224,7 @@ impl Stage {
             self.gpu.check()?;
             return Ok(problems);
         }
+        problems.extend(self.rest_on_cpu());
         // What is covered is built when it is seen, where that takes the processor's time.
         if session.is_covered() && self.is_software() {
             return Ok(problems);
@@ -268,9 +275,9 @@ impl Stage {
                 source.encode(&mut encoder, scenery);
                 self.gpu.queue.submit([encoder.finish()]);
             }
-            self.snapshots.take(&self.gpu, source, state);
+            self.snapshots.take(&self.gpu, source, state, false);
         }
-        taken.transpose()
+        Ok(taken.transpose()?.map(|taken| taken.frame))
     }
 
     /// True while a look is being built, or a picture or scene uploaded.

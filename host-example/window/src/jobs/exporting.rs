@@ -1,6 +1,6 @@
 //! The export of what the window shows, by what is planned.
 
-use std::path::Path;
+use std::path::{Path, PathBuf};
 
 use super::export::{Export, ExportJob};
 use crate::state::batch::Batch;
@@ -66,7 +66,12 @@ impl Exporting {
 /// # Errors
 /// [`isophote_files::error::Error::Input`] for looks that no preset can hold.
 fn job(session: &Session, plan: &Plan, file: &Path) -> Result<ExportJob> {
-    let mut job = ExportJob::new(plan.kind, file, Path::new(&plan.path), preset_of(session)?);
+    let mut job = ExportJob::new(
+        plan.kind,
+        file,
+        Path::new(&plan.path),
+        preset_of(session, session.open.has_things())?,
+    );
     let is_turntable = plan.what == What::Turntable;
     (job.frames, job.turntable, job.rate) = (plan.frames(), is_turntable, plan.rate);
     job.maps = session.open.playback().and_then(Playback::painted);
@@ -85,6 +90,7 @@ fn job(session: &Session, plan: &Plan, file: &Path) -> Result<ExportJob> {
     }
     words.extend(command::precision(session));
     words.extend(plan.options().words());
+    words.extend(unknown(session));
     job.arguments = words.into_iter().map(Into::into).collect();
     Ok(job)
 }
@@ -96,15 +102,30 @@ fn job(session: &Session, plan: &Plan, file: &Path) -> Result<ExportJob> {
 fn several(session: &Session, batch: &Batch) -> Result<ExportJob> {
     let none = || Error::input("the export", "has no pictures", "choose some");
     let (first, more) = batch.pictures.split_first().ok_or_else(none)?;
-    let mut job = ExportJob::new(Kind::Picture, first, Path::new(batch.folder.trim()), preset_of(session)?);
+    let is_exr = |file: &PathBuf| file.extension().is_some_and(|e| e.eq_ignore_ascii_case("exr"));
+    let preset = preset_of(session, batch.pictures.iter().any(is_exr))?;
+    let mut job = ExportJob::new(Kind::Picture, first, Path::new(batch.folder.trim()), preset);
     job.more = more.to_vec();
-    let words = [batch.options().words(), command::precision(session)].concat();
+    let words = [batch.options().words(), command::precision(session), unknown(session)].concat();
     job.arguments = words.into_iter().map(Into::into).collect();
     Ok(job)
 }
 
-/// The look that is shown as the text of a preset; nothing where it is none.
-fn preset_of(session: &Session) -> Result<Option<String>> {
+/// The look that is shown as the text of a preset, with its rules for things where there may be any; nothing where it is none.
+fn preset_of(session: &Session, has_things: bool) -> Result<Option<String>> {
     let look = session.look();
-    if look.is_plain() { Ok(None) } else { preset::text(&look.whole()?).map(Some) }
+    if look.is_plain() {
+        return Ok(None);
+    }
+    let mut preset = look.whole()?;
+    if !has_things {
+        preset.objects.clear();
+    }
+    preset::text(&preset).map(Some)
+}
+
+/// Options by which rules cover nothing where their things are not, as they do in the window.
+fn unknown(session: &Session) -> Vec<String> {
+    let words = ["--on-unknown", "empty"].map(str::to_owned);
+    if session.look().has_rules() { words.into() } else { Vec::new() }
 }

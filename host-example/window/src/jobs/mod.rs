@@ -14,6 +14,7 @@ mod opening;
 pub mod preview;
 mod reader;
 mod reveal;
+pub mod ruled;
 pub mod stylizing;
 mod watch;
 pub(crate) mod worker;

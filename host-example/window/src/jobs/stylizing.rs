@@ -4,12 +4,15 @@
 use std::collections::VecDeque;
 use std::sync::Arc;
 
+use super::ruled::{Ruled, Rules};
 use crate::state::document::frame::Frame;
 use crate::state::document::reduce;
 use crate::state::look::EditedLook;
+use crate::state::things::Things;
 use isophote_files::error::{AtPlace, Error, Result};
 use isophote_files::limits;
 use isophote_finishing::apply::memory::{self, Bytes};
+use isophote_finishing::directed::Directed;
 use isophote_finishing::processor::Processor;
 use isophote_loader::abi::IsophoteRequest;
 use isophote_loader::{Control, Image, Library, Sample};
@@ -23,6 +26,8 @@ pub struct Task {
     pub look: EditedLook,
     /// The picture.
     pub frame: Arc<Frame>,
+    /// Things in it, where rules of looks may be for them.
+    pub things: Option<Things>,
     /// Its size over that of the file's.
     pub share: f32,
     /// Size of the result, at most that of the picture.
@@ -34,13 +39,28 @@ pub struct Task {
 /// Computes looks, one after the other.
 pub struct Stylist {
     library: Library,
-    /// The look that was computed last, and of what is open by which number.
-    known: Option<(EditedLook, u64, Processor)>,
+    /// The look that was computed last.
+    known: Option<Known>,
+    rules: Rules,
     /// The picture that was made smaller last, and what came of it.
     reduced: Option<(Arc<Frame>, Arc<Frame>)>,
     /// Frames before the next one, in order, where looks read them.
     past: VecDeque<Arc<Frame>>,
     room: Room,
+}
+
+/// Images of inputs, by their names and the numbers of frames.
+type Images<'a, 'i> = &'a (dyn Fn(&str, i64) -> Option<Image<'i>> + 'a);
+
+/// A look that can be computed.
+#[derive(Debug)]
+struct Known {
+    look: EditedLook,
+    /// Number of what is open.
+    shot: u64,
+    processor: Processor,
+    /// Its rules for things there.
+    directed: Option<Directed>,
 }
 
 /// Memory that there is.
@@ -53,7 +73,13 @@ struct Room {
 impl Stylist {
     /// One that knows nothing yet.
     pub fn new(library: Library) -> Self {
-        Self { library, known: None, reduced: None, past: VecDeque::new(), room: Room::default() }
+        let rules = Rules::new(library.clone());
+        Self { library, known: None, rules, reduced: None, past: VecDeque::new(), room: Room::default() }
+    }
+
+    /// Sentences about rules of looks that are for nothing in what is open, each once.
+    pub fn take_news(&mut self) -> Vec<String> {
+        self.rules.take_news()
     }
 
     /// The picture in its look; nothing where it was cancelled, or where memory is too short for so large a picture.
@@ -61,24 +87,25 @@ impl Stylist {
     /// # Errors
     /// Errors of the library about the look; [`Error::Failure`] when memory is short, the first time for what is open.
     pub fn stylize(&mut self, task: &Task, control: &mut Control<'_>) -> Result<Option<Pixels>> {
-        let Task { look, share, size, shot, .. } = task;
-        if self.known.as_ref().is_none_or(|(known, of, _)| (known, of) != (look, shot)) {
-            let Some(style) = look.style(&self.library)? else { return Ok(None) };
-            let is_of_shot = self.known.as_ref().is_some_and(|(_, of, _)| of == shot);
-            if !is_of_shot {
-                self.past.clear();
+        let Task { look, share, size, .. } = task;
+        self.know(task)?;
+        let Some(Known { processor, directed, .. }) = &self.known else { return Ok(None) };
+        let ruled = match (directed, &task.things) {
+            (Some(directed), Some(things)) => {
+                self.rules.follow(directed, (look, processor.style()), (&task.frame, things))?
             }
-            self.known = Some((look.clone(), *shot, Processor::new(&self.library, style)?));
-        }
-        let frame = self.as_small(&task.frame, *size);
+            _ => None,
+        };
+        let whole = ruled.as_ref().map_or(&task.frame, |ruled| &ruled.frame);
+        let frame = self.as_small(whole, *size);
         self.keep_past_of(&frame);
         let past: Vec<Arc<Frame>> = self.past.iter().map(|frame| reduced(frame, *size)).collect();
-        let Some((_, _, processor)) = &mut self.known else { return Ok(None) };
+        let Some(known) = &mut self.known else { return Ok(None) };
         let usual = self.library.request(*size);
         let usual = usual.map_err(|e| e.at(&look.name, "choose another picture"))?;
         let scale = share * size.0 as f32 / task.frame.width as f32;
         let request = frame.request(IsophoteRequest { scale, ..usual });
-        if !self.room.has(processor.memory(&request)?, task)? {
+        if !self.room.has(known.memory(&request)?, task)? {
             return Ok(None);
         }
         let own = request.frame;
@@ -87,13 +114,37 @@ impl Stylist {
             let of = if number == own { Some(&frame) } else { of };
             of.and_then(|frame| image(frame, name))
         };
-        let result = processor.process(&request, &image, control)?;
-        let depth = processor.depth()?;
+        let result = known.made((&request, &image), ruled.as_ref(), control)?;
+        let depth = known.depth()?;
         if result.is_some() && depth > 0 {
-            self.past.push_back(Arc::clone(&task.frame));
+            self.past.push_back(Arc::clone(whole));
             self.past.drain(..self.past.len().saturating_sub(depth));
         }
         Ok(result)
+    }
+
+    /// Makes ready for the look of a task; nothing is known where it is a plain one.
+    fn know(&mut self, task: &Task) -> Result<()> {
+        let Task { look, things, shot, .. } = task;
+        if self.known.as_ref().is_some_and(|known| (&known.look, known.shot) == (look, *shot)) {
+            return Ok(());
+        }
+        // Frames before are kept as rules direct them.
+        let goes_on = self
+            .known
+            .take()
+            .is_some_and(|known| known.shot == *shot && known.look.preset.objects == look.preset.objects);
+        if !goes_on {
+            self.past.clear();
+        }
+        let Some(style) = look.style(&self.library)? else { return Ok(()) };
+        let directed = self.rules.directed(look, &style, things.as_ref())?;
+        if directed.is_none() {
+            self.rules.rest();
+        }
+        let processor = Processor::new(&self.library, style)?;
+        self.known = Some(Known { look: look.clone(), shot: *shot, processor, directed });
+        Ok(())
     }
 
     /// The picture as small as a result.
@@ -120,6 +171,52 @@ impl Stylist {
         if last.map(|last| last + 1) != frame.number {
             self.past.clear();
         }
+    }
+}
+
+impl Known {
+    /// The look, and those that its rules give to things.
+    fn processors(&self) -> impl Iterator<Item = &Processor> {
+        std::iter::once(&self.processor).chain(self.directed.iter().flat_map(Directed::looks))
+    }
+
+    /// Bytes that a frame takes at most, one look after the other.
+    fn memory(&self, request: &IsophoteRequest) -> Result<u64> {
+        self.processors().try_fold(0, |most, processor| Ok(processor.memory(request)?.max(most)))
+    }
+
+    /// Frames before its own that a frame depends on.
+    fn depth(&self) -> Result<usize> {
+        self.processors().try_fold(0, |most, processor| Ok(processor.depth()?.max(most)))
+    }
+
+    /// A frame in the look, with those of things over it; nothing where it was cancelled.
+    fn made<'i>(
+        &mut self,
+        (request, image): (&IsophoteRequest, Images<'_, 'i>),
+        ruled: Option<&Ruled>,
+        control: &mut Control<'_>,
+    ) -> Result<Option<Pixels>> {
+        let Some((directed, ruled)) = self.directed.as_mut().zip(ruled) else {
+            return self.processor.process(request, image, control);
+        };
+        let count = 1 + directed.looks().count();
+        let mut done = 0;
+        let Control { threads, cancelled, progress, .. } = control;
+        let (threads, cancelled) = (*threads, *cancelled);
+        let mut process = |processor: &mut Processor| {
+            let mut report = |share: f32| {
+                progress.iter_mut().for_each(|told| told((done as f32 + share) / count as f32));
+            };
+            let mut own = Control { threads, cancelled, progress: Some(&mut report), ..Control::default() };
+            let made = processor.process(request, image, &mut own)?;
+            done += 1;
+            Ok(made)
+        };
+        let Some(below) = process(&mut self.processor)? else { return Ok(None) };
+        let size = (request.width, request.height);
+        let (masks, encoding) = ruled.places(size, reduce::whole(size));
+        directed.lay_over(below, (&masks, encoding), process)
     }
 }
 

@@ -6,6 +6,7 @@ use std::sync::Arc;
 use serde_json::Value as Json;
 
 use super::chain::{Chain, Watched};
+use super::rules;
 use super::values::{ParamValue, TypedPreset, Values};
 use isophote_files::error::{AtPlace, Error, Result};
 use isophote_files::files::{self, Existing};
@@ -114,6 +115,11 @@ impl EditedLook {
     /// True where pictures stay as they are.
     pub fn is_plain(&self) -> bool {
         self.preset.style.is_empty()
+    }
+
+    /// True where it has rules for things.
+    pub fn has_rules(&self) -> bool {
+        !self.preset.objects.is_empty()
     }
 
     /// The style as the library knows it; none for the plain look.
@@ -314,7 +320,9 @@ impl EditedLook {
     /// The look as a part of its list shows it.
     pub fn watched(&self, library: &Library, chain: &Chain, watched: &Watched) -> Result<Self> {
         let look = self.with_chain(library, chain)?;
-        let preset = TypedPreset { style: chain.watched(watched), ..look.preset };
+        // Rules are for the picture that the whole list makes.
+        let objects = Vec::new();
+        let preset = TypedPreset { style: chain.watched(watched), objects, ..look.preset };
         Ok(Self { preset, ..look })
     }
 
@@ -350,21 +358,15 @@ impl EditedLook {
         preset::style_beside(&self.preset.style, &self.source).into()
     }
 
-    /// The preset as it can be read from anywhere: the path of its graph file is absolute.
+    /// The preset as it can be read from anywhere: the paths of its graph file and of looks of things are absolute.
     ///
     /// # Errors
     /// [`Error::Input`] for paths that no preset can hold.
     pub fn whole(&self) -> Result<Preset> {
-        let graph = self.style_name();
-        if self.is_written_out() || graph.extension().is_none() {
-            return Ok(self.preset.written());
-        }
-        let whole =
-            std::path::absolute(&graph).unwrap_or_else(|_| graph.clone()).into_os_string().into_string();
-        let style = whole.map_err(|_| {
-            Error::file(&graph, "has a path that is no UTF-8, which no preset can hold", "rename it")
-        })?;
-        Ok(Preset { style, ..self.preset.written() })
+        let preset = self.preset.written();
+        let style = rules::whole_name(&preset.style, &self.source)?;
+        let objects = rules::whole(&preset.objects, &self.source)?;
+        Ok(Preset { style, objects, ..preset })
     }
 
     /// Writes the look as a preset with a title, and is what is in that file from then on.
@@ -378,7 +380,8 @@ impl EditedLook {
         }
         let mut preset = TypedPreset { title, ..self.preset.clone() };
         if self.source.parent() != file.parent() {
-            preset.style = self.whole()?.style;
+            let whole = self.whole()?;
+            (preset.style, preset.objects) = (whole.style, whole.objects);
         }
         let text = preset::text(&preset.written())?;
         files::write_bytes(file, Existing::Replace, text.as_bytes())?;

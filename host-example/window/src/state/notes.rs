@@ -117,8 +117,11 @@ impl Notes {
 
     /// Notes in the order in which they came, which are shown now.
     pub fn present(&mut self) -> &[Note] {
+        // Its time begins when it is seen, which may be late where a processor draws.
+        for note in self.notes.iter_mut().filter(|note| !note.is_seen) {
+            (note.is_seen, note.since) = (true, Instant::now());
+        }
         self.notes.retain(|note| note.left().is_none_or(|left| !left.is_zero()));
-        self.notes.iter_mut().for_each(|note| note.is_seen = true);
         &self.notes
     }
 

@@ -1,10 +1,12 @@
 //! Content of the window: the scene or the pictures that are open, or nothing.
 
 use std::path::{Path, PathBuf};
+use std::sync::Arc;
 
 use super::document::kind::Kind;
 use super::playback::Playback;
 use super::scenery::Scenery;
+use super::things::{Sampled, Things};
 use isophote_pictures::exr::Guide;
 
 /// Content of the window.
@@ -111,6 +113,27 @@ impl Open {
             Content::Pictures(playback) => {
                 playback.frame(false).is_some_and(|(frame, _)| frame.guide(guide).is_some())
             }
+        }
+    }
+
+    /// True where it is known what things cover of it.
+    pub fn has_things(&self) -> bool {
+        match &self.content {
+            Content::Nothing => false,
+            Content::Scene(_) => true,
+            Content::Pictures(playback) => playback.info().has_things(),
+        }
+    }
+
+    /// Things in what is shown of it, where it is known what they cover; of a scene as its pixels were `sampled`.
+    pub fn things(&self, sampled: Option<Arc<Sampled>>) -> Option<Things> {
+        match &self.content {
+            Content::Nothing => None,
+            Content::Scene(scenery) => {
+                let name = self.file().unwrap_or(Path::new(self.name())).to_owned();
+                Some(Things::Scene { scene: Arc::clone(&scenery.scene), name, sampled })
+            }
+            Content::Pictures(playback) => playback.things(),
         }
     }
 

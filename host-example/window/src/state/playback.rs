@@ -7,6 +7,7 @@ use std::time::Instant;
 use super::document::frame::{Frame, GuideImage};
 use super::document::{Frames, Info, reduce};
 use super::painted::maps::Maps;
+use super::things::Things;
 use isophote_files::error::Result;
 
 /// Pixels of the small copy of a picture, which is shown while something moves where the processor draws.
@@ -208,6 +209,12 @@ impl Playback {
             self.frame = Some(self.lay(Arc::new(reduced(&frame, too_large))));
         }
         Ok(())
+    }
+
+    /// Things in the frame that is shown, where its file says what they cover.
+    pub fn things(&self) -> Option<Things> {
+        let number = self.read().and_then(|frame| frame.number);
+        self.info.has_things().then(|| Things::File { info: Arc::clone(&self.info), number })
     }
 
     /// The file, or the pattern of the files.

@@ -252,6 +252,7 @@ impl Session {
         self.viewport.overlay = Overlay::None;
         self.record.begin();
         self.forget_open();
+        self.tell_of_rules();
     }
 
     /// Title of the window: what is open, and the look once it is seen on it; frames are counted there where a report is wanted.

@@ -1,5 +1,5 @@
-//! The stage where looks are computed on the CPU, as its driver would do more slowly; and what both ways have
-//! in common.
+//! The stage where looks are computed on the CPU, as its driver would do more slowly, or since they have rules for things; and
+//! what both ways have in common.
 
 use std::time::{Duration, Instant};
 
@@ -7,7 +7,7 @@ use super::{Progress, Stage, overlay};
 use crate::drawing::live_look::LiveLook;
 use crate::drawing::made::{FrameState, Made};
 use crate::drawing::origin::Origin;
-use crate::drawing::processed::{Processed, Subject};
+use crate::drawing::processed::Subject;
 use crate::drawing::scene_frames::{SceneFrame, SceneFrames};
 use crate::drawing::shown::Output;
 use crate::drawing::source::LookInput;
@@ -24,15 +24,16 @@ const SHARED: Duration = Duration::from_millis(40);
 const ALL_BUT_WHOLE: f32 = 0.8;
 
 impl Stage {
-    /// True where looks are computed on the CPU.
-    pub fn computes_on_cpu(&self) -> bool {
-        self.processed.is_some()
+    /// True where a processor draws what is open, or computes its looks, which takes its time.
+    pub fn takes_its_time(&self, session: &Session) -> bool {
+        self.is_software() || self.computes_on_cpu || self.is_on_cpu(session)
     }
 
-    /// True where looks on what is open are. On scenes those that read frames before are left to the device, which has them.
+    /// True where looks on what is open are computed on the CPU. On scenes those that read frames before are left to the device,
+    /// which has them, unless they have rules: these are followed frame by frame.
     pub(super) fn is_on_cpu(&self, session: &Session) -> bool {
-        let is_scene = session.open.scenery().is_some();
-        self.processed.is_some() && session.open.has_picture() && !(is_scene && self.needs.past)
+        let is_left = session.open.scenery().is_some() && self.needs.past;
+        session.open.has_picture() && (self.is_ruled || self.computes_on_cpu && !is_left)
     }
 
     /// True while something is on its way to the CPU, or being computed there.
@@ -42,6 +43,7 @@ impl Stage {
 
     /// Finds what looks need of a scene.
     pub(super) fn follow_needs(&mut self, session: &Session) -> Result<()> {
+        self.is_ruled = session.follows_rules();
         if session.open.scenery().is_some() {
             let looks = looks(session)?;
             self.needs = self.frames.needs(&session.library, looks.each_ref().map(Option::as_ref));
@@ -59,26 +61,42 @@ impl Stage {
     pub(super) fn follow_on_cpu(&mut self, session: &Session) -> Result<Option<(About, Error)>> {
         let looks = looks(session)?;
         let looks = looks.each_ref().map(Option::as_ref);
-        if session.open.scenery().is_some() {
-            if let Err(problem) = self.frames.collect() {
-                return Ok(Some((About::Other, problem)));
-            }
-        } else {
+        if let Err(problem) = self.frames.collect() {
+            return Ok(Some((About::Other, problem)));
+        }
+        if session.open.scenery().is_none() {
             self.frames.forget();
         }
-        let Some(processed) = &mut self.processed else { return Ok(None) };
         // What is covered is made when it is seen.
         let subject = subject(session, &self.frames, self.moves).filter(|_| !session.is_covered());
         match subject {
             Some(subject) => {
-                let followed = processed.follow(looks, shown(session), &subject);
+                let followed = self.processed.follow(looks, shown(session), &subject);
                 Ok(followed.err().map(|problem| (About::Look, problem)))
             }
             None => {
-                processed.wait();
+                self.processed.wait();
                 Ok(None)
             }
         }
+    }
+
+    /// Lets go of looks on the CPU, as long as they are computed on the device; returns what went wrong with them.
+    pub(super) fn rest_on_cpu(&mut self) -> Option<(About, Error)> {
+        self.processed.put_away();
+        let collected = self.frames.collect();
+        self.frames.forget();
+        collected.err().map(|problem| (About::Other, problem))
+    }
+
+    /// True while a frame of a scene is drawn in parts, between which the window is drawn.
+    pub fn is_sampling(&self) -> bool {
+        self.frames.is_sampling()
+    }
+
+    /// Sentences about rules of looks that are for nothing in what is open, since the last call.
+    pub fn news(&self) -> Vec<String> {
+        self.processed.news()
     }
 
     /// Takes over that other pictures are to be shown, which are there already; renders the scene where it is another.
@@ -88,7 +106,6 @@ impl Stage {
         if let Some(state) = state.filter(|state| state.2.is_some()) {
             self.render(session, state, has_looks)?;
         }
-        let Some(processed) = &self.processed else { return Ok(()) };
         if matches!(self.progress, Progress::Whole(_)) {
             return Ok(());
         }
@@ -100,9 +117,9 @@ impl Stage {
         // A look that is turned back to, or was never left, is there before it is told of.
         let is_told = session.record.present().is_some();
         let is_new = made != self.made || !is_told || session.record.limit.is_some();
-        let is_there = processed.is_complete() || !has_looks;
+        let is_there = self.processed.is_complete() || !has_looks;
         let is_news = made.is_some() && is_new && is_there;
-        let spent = if has_looks { processed.spent() } else { Duration::ZERO };
+        let spent = if has_looks { self.processed.spent() } else { Duration::ZERO };
         self.progress = if is_news { Progress::Whole(spent) } else { Progress::Done };
         if is_news {
             self.made = made;
@@ -112,14 +129,24 @@ impl Stage {
 
     /// Renders the scene in this state, and reads it back for looks.
     fn render(&mut self, session: &Session, state: FrameState, has_looks: bool) -> Result<()> {
-        let is_late = self.processed.as_ref().is_some_and(Processed::finishes) || self.frames.is_busy();
-        let is_there = if has_looks { self.frames.shows(&state) } else { self.rendered == Some(state) };
+        // While it moves, one sample of a pixel is enough.
+        let is_sampled = self.is_ruled && !self.moves;
+        let is_known = has_looks && self.frames.shows(&state, is_sampled);
+        if !is_known {
+            self.frames.give_up();
+        }
+        let is_late = self.processed.finishes() || self.frames.is_busy();
         let origin = self.sources.origin().cloned();
         let (Some(LookInput::Scene(source)), Some(scenery), Some(origin)) =
             (self.sources.present_mut(), session.open.scenery(), origin)
         else {
             return Ok(());
         };
+        if is_known {
+            self.frames.sample(&self.gpu, (source, scenery));
+            return Ok(());
+        }
+        let is_there = !has_looks && self.rendered == Some(state);
         if is_there || has_looks && is_late {
             return Ok(());
         }
@@ -131,31 +158,31 @@ impl Stage {
         self.gpu.queue.submit([encoder.finish()]);
         self.rendered = Some(state);
         if has_looks {
-            self.frames.take(&self.gpu, source, state, origin);
+            self.frames.take(&self.gpu, source, (state, origin), is_sampled);
         }
         Ok(())
     }
 
     /// Revisions of the looks on what is open.
     pub(super) fn revisions(&self, session: &Session) -> [u64; 3] {
-        match &self.processed {
-            Some(processed) if self.is_on_cpu(session) => [processed.revision(), 0, 0],
-            _ => self.looks.each_ref().map(LiveLook::revision),
+        match self.is_on_cpu(session) {
+            true => [self.processed.revision(), 0, 0],
+            false => self.looks.each_ref().map(LiveLook::revision),
         }
     }
 
     /// Pictures in the look, in what it is compared with and in what is shown instead, as far as they are of what is open.
     pub(super) fn outputs(&self, session: &Session) -> [Option<Output>; 3] {
         let Some(now) = Origin::of(session) else { return [const { None }; 3] };
-        match &self.processed {
-            Some(processed) if self.is_on_cpu(session) => [0, 1, 2].map(|slot| processed.output(slot, &now)),
-            _ => self.looks.each_ref().map(|look| look.output(&now)),
+        match self.is_on_cpu(session) {
+            true => [0, 1, 2].map(|slot| self.processed.output(slot, &now)),
+            false => self.looks.each_ref().map(|look| look.output(&now)),
         }
     }
 
     /// The share of a look on the CPU that is done, while one is computed.
     pub fn progress(&self) -> Option<f32> {
-        self.processed.as_ref()?.progress()
+        self.processed.progress()
     }
 
     /// Work on what is shown that is not done, in words.
@@ -164,7 +191,7 @@ impl Stage {
         let is_at_rest = self.made.as_ref().is_some_and(|made| made.request.scale >= 1.0);
         let is_begun = matches!(self.progress, Progress::Wanted | Progress::Begun(_));
         let is_moved = self.moves && session.open.scenery().is_some();
-        if self.progress().is_some() && !is_moved {
+        if (self.progress().is_some() || self.is_sampling()) && !is_moved {
             return Some("Stylizing");
         }
         if self.sources.is_busy() {
@@ -180,11 +207,13 @@ impl Stage {
 /// The picture that looks are wanted of.
 fn subject<'s>(session: &'s Session, frames: &'s SceneFrames, moves: bool) -> Option<Subject<'s>> {
     if session.open.scenery().is_some() {
-        let SceneFrame { frame, state: (request, ..), origin, since } = frames.present()?;
+        let SceneFrame { frame, sampled, state: (request, ..), origin, since } = frames.present()?;
+        let things = session.open.things(sampled.clone());
         let sizes = vec![(frame.width, frame.height)];
         let (share, origin, since) = (request.scale, origin.clone(), *since);
         return Origin::of(session).is_some_and(|now| now.is_of_same(&origin)).then(|| Subject {
             frame,
+            things,
             share,
             origin,
             sizes,
@@ -194,7 +223,8 @@ fn subject<'s>(session: &'s Session, frames: &'s SceneFrames, moves: bool) -> Op
     }
     let (frame, share) = session.open.playback()?.frame(false)?;
     let sizes = sizes(session, (frame.width, frame.height), moves);
-    Some(Subject { frame, share, origin: Origin::of(session)?, sizes, moves, since: Instant::now() })
+    let (origin, since) = (Origin::of(session)?, Instant::now());
+    Some(Subject { frame, things: session.open.things(None), share, origin, sizes, moves, since })
 }
 
 /// The look, what it is compared with and what is shown instead, as far as they are not plain.

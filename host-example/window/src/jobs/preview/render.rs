@@ -5,8 +5,10 @@ use std::sync::Arc;
 
 use egui::ColorImage;
 
+use crate::jobs::ruled::Rules;
 use crate::state::document::frame::Frame;
 use crate::state::document::reduce;
+use crate::state::look::EditedLook;
 use crate::state::preview::order::Order;
 use crate::state::preview::picture::{self, Meaning, Picture};
 use isophote_files::error::{AtPlace, Error, Result};
@@ -31,12 +33,14 @@ pub struct Renderer {
     threads: u32,
     /// The part of the picture that was read last, for the next look on it.
     read: Option<Read>,
+    rules: Rules,
 }
 
 impl Renderer {
     /// One that uses so many threads; 0 for one per core.
     pub fn new(library: Library, threads: u32) -> Self {
-        Self { library, threads, read: None }
+        let rules = Rules::new(library.clone());
+        Self { library, threads, read: None, rules }
     }
 
     /// The preview, or nothing where it was cancelled.
@@ -60,7 +64,7 @@ impl Renderer {
         let shown = |colors: &[[f32; 4]], width: u32, meaning: Meaning| {
             picture::shown(colors, width as usize, fineness as usize, meaning, picture.exposure)
         };
-        let Some(style) = look.style(&self.library)? else {
+        let Some(mut style) = look.style(&self.library)? else {
             let frame = self.read(&picture.frame, size, part);
             return Ok(Some(shown(&frame.color, frame.width, picture.meaning())));
         };
@@ -69,25 +73,52 @@ impl Renderer {
             Kind::Scalar => Meaning { space: Space::Srgb, is_premultiplied: false },
             _ => picture.meaning(),
         };
-        let result = self.stylized(picture, style, (size, part), cancelled)?;
+        let result = self.ruled(picture, (look, &mut style), (size, part), cancelled)?;
         Ok(result.map(|result| shown(result.to_f32().as_chunks::<4>().0, result.width(), meaning)))
     }
 
-    /// Part of the picture in a style, at a size.
-    fn stylized(
+    /// Part of the picture in a look, whose style this is, at a size; things have the looks that its rules give them.
+    fn ruled(
         &mut self,
         picture: &Picture,
-        mut style: Style,
+        (look, style): (&EditedLook, &mut Style),
+        (size, part): ((u32, u32), Part),
+        cancelled: &(dyn Fn() -> bool + Sync),
+    ) -> Result<Option<Pixels>> {
+        let mut directed = self.rules.directed(look, style, picture.things.as_ref())?;
+        let ruled = match (&directed, &picture.things) {
+            (Some(directed), Some(things)) => {
+                self.rules.follow(directed, (look, style), (&picture.frame, things))?
+            }
+            _ => None,
+        };
+        let frame = ruled.as_ref().map_or(&picture.frame, |ruled| &ruled.frame);
+        let mut stylized =
+            |style: &mut Style| self.stylized((picture, frame), style, (size, part), cancelled);
+        let Some(below) = stylized(style)? else { return Ok(None) };
+        let Some((directed, ruled)) = directed.as_mut().zip(ruled.as_ref()) else { return Ok(Some(below)) };
+        let (masks, encoding) = ruled.places(size, part);
+        directed.lay_over(below, (&masks, encoding), |processor| stylized(processor.style_mut()))
+    }
+
+    /// Part of the picture, of which this is the frame, in a style, at a size.
+    fn stylized(
+        &mut self,
+        (picture, frame): (&Picture, &Arc<Frame>),
+        style: &mut Style,
         (size, part): ((u32, u32), Part),
         cancelled: &(dyn Fn() -> bool + Sync),
     ) -> Result<Option<Pixels>> {
         style.at_frame(picture.frame.number.unwrap_or_default())?;
-        let request = self.request(picture, size, &style)?;
         let refused = |e: isophote_loader::Error| e.at(&style.name, "choose another look");
+        let mut guides = style.usable_guides(&self.library)?;
+        guides.retain(|guide| frame.guide(*guide).is_some());
+        // Looks read farther where a control map widens their lines.
+        let bits = self.library.guide_bits(guides.iter().map(|guide| guide.id())).map_err(refused)?;
+        let request = IsophoteRequest { guides: bits, ..self.request(picture, size, style)? };
         let read = style.graph.support(&request, part).map_err(refused)?;
-        let guides = style.usable_guides(&self.library)?;
         let mut control = Control { threads: self.threads, cancelled: Some(cancelled), ..Control::default() };
-        let frame = self.read(&picture.frame, size, read);
+        let frame = self.read(frame, size, read);
         let color = pixels(frame, 4, frame.color.as_flattened())?;
         let usable = frame.guides.iter().filter(|image| guides.contains(&image.guide));
         let guides: Vec<(&str, Pixels)> = usable
@@ -126,6 +157,7 @@ impl Renderer {
     /// Gives memory back.
     pub fn rest(&mut self) {
         self.read = None;
+        self.rules.rest();
     }
 }
 

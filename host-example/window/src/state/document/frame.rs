@@ -121,12 +121,16 @@ impl Frame {
         self.guides.iter().find(|image| image.guide == guide).map(|image| &**image)
     }
 
-    /// The same pixels with maps that were painted over them: a control map in the place of the file's own, and a mask.
-    pub fn painted(&self, control: Option<Arc<GuideImage>>, mask: Option<Arc<Vec<f32>>>) -> Self {
+    /// The same pixels with maps that were painted over them: such as a control map, in the place of the file's own, and a mask.
+    pub fn painted(
+        &self,
+        maps: impl IntoIterator<Item = Arc<GuideImage>>,
+        mask: Option<Arc<Vec<f32>>>,
+    ) -> Self {
         let mut guides = self.guides.clone();
-        if let Some(control) = control {
-            guides.retain(|image| image.guide != control.guide);
-            guides.push(control);
+        for map in maps {
+            guides.retain(|image| image.guide != map.guide);
+            guides.push(map);
         }
         Self { color: Arc::clone(&self.color), guides, mask, ..*self }
     }

@@ -8,8 +8,8 @@ use std::path::PathBuf;
 use std::sync::Arc;
 
 use self::kind::Kind;
-use isophote_files::frames;
-use isophote_pictures::exr::{Offers, Selection};
+use isophote_files::frames::{self, Pattern};
+use isophote_pictures::exr::{Guide, Offers, Selection};
 use isophote_pictures::material::MaterialKind;
 
 /// Properties of an open document, which stay while it is open.
@@ -28,6 +28,21 @@ pub struct Info {
 }
 
 impl Info {
+    /// True where its files say what things cover of their pixels.
+    pub fn has_things(&self) -> bool {
+        let is_ids = |(guide, _): &(Guide, Vec<String>)| *guide == Guide::ObjectId;
+        self.offers.has_mattes || self.offers.guides.iter().any(is_ids)
+    }
+
+    /// The file of a picture, or of the frame of a number.
+    pub fn file_of(&self, number: Option<i64>) -> Option<PathBuf> {
+        match self.kind {
+            Kind::Picture => Some(self.path.clone()),
+            Kind::Sequence => Some(Pattern::new(&self.path).ok()??.file(number?)),
+            Kind::Scene | Kind::Video => None,
+        }
+    }
+
     /// The pattern of the sequence that a picture seems to be a frame of.
     pub fn sequence(&self) -> Option<PathBuf> {
         (self.kind == Kind::Picture).then(|| frames::sequence_of(&self.path)).flatten()

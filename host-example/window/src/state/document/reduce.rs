@@ -41,6 +41,13 @@ pub fn reduced(frame: &Frame, size: (u32, u32), [first, last]: Part) -> Frame {
     }
 }
 
+/// Numbers of the pixels of a picture, one each, as the pixels of a part of it that is made as small as `size` have them.
+pub fn numbers(data: &[f32], before: (u32, u32), size: (u32, u32), [first, last]: Part) -> Vec<f32> {
+    let columns = spans(before.0, size.0, first[0], last[0]);
+    let rows = spans(before.1, size.1, first[1], last[1]);
+    cells(data, before.0, 1, &columns, &rows)
+}
+
 /// Spans of `before` that pixels from `first` to `last`, of `after` in all, cover.
 fn spans(before: u32, after: u32, first: i32, last: i32) -> Vec<Span> {
     let step = f64::from(before) / f64::from(after.max(1));

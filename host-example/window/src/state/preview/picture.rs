@@ -6,6 +6,7 @@ use egui::{Color32, ColorImage};
 use rayon::prelude::*;
 
 use crate::state::document::frame::Frame;
+use crate::state::things::Things;
 use isophote_pictures::primaries::{Change, REC709};
 use isophote_pictures::space::Space;
 use isophote_pictures::transfer::{srgb_decode, srgb_encode};
@@ -20,6 +21,8 @@ const SQUARES: [f32; 2] = [0.28, 0.22];
 pub struct Picture {
     /// The pixels, with what is known beside colour.
     pub frame: Arc<Frame>,
+    /// Things in them, where rules of looks may be for them.
+    pub things: Option<Things>,
     /// Pixels across and down of the whole picture, of which the frame may be a smaller copy.
     pub size: (u32, u32),
     /// Factor on light when it is shown.

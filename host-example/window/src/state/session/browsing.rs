@@ -116,7 +116,8 @@ impl Session {
         let picture = match self.open.playback() {
             Some(playback) => {
                 let Some((frame, _)) = playback.frame(false) else { return };
-                Picture { frame: Arc::clone(frame), size: playback.size(), exposure }
+                let (frame, things) = (Arc::clone(frame), playback.things());
+                Picture { frame, things, size: playback.size(), exposure }
             }
             // That of a scene comes from the device.
             None => match known {
@@ -136,7 +137,13 @@ impl Session {
     pub fn show_scene_frame(&mut self, frame: Frame) {
         let size = (frame.width, frame.height);
         let exposure = self.viewport.exposure.exp2();
-        self.previews.set_picture(Arc::new(Picture { frame: Arc::new(frame), size, exposure }));
+        let frame = Arc::new(frame);
+        self.previews.set_picture(Arc::new(Picture {
+            frame,
+            things: self.open.things(None),
+            size,
+            exposure,
+        }));
     }
 
     /// Asks for the name and the tags of a look's file.

@@ -9,6 +9,7 @@ use crate::state::look::{EditedLook, Parameter};
 use crate::state::looks::Looks;
 use crate::state::notes::Subject;
 use crate::state::resetting::Goal;
+use crate::state::viewport::Compare;
 use isophote_files::error::Result;
 use isophote_finishing::stylize::palette::Colours;
 use isophote_finishing::stylize::value::Value;
@@ -34,14 +35,28 @@ impl Session {
         if let Err(error) = turn(&mut self.looks) {
             self.notes.complain_of(Subject::Look, &error);
         }
+        self.tell_of_rules();
+    }
+
+    /// Says why rules of the look are for nothing in what is open, where that is so for all of them.
+    pub(super) fn tell_of_rules(&mut self) {
         let look = self.looks.present();
-        if !look.preset.objects.is_empty() {
+        if look.has_rules() && self.open.has_picture() && !self.open.has_things() {
             let said = format!(
-                "{} has rules for objects, which `isophote apply` and `render` follow and this window does not",
-                look.name
+                "{} has rules for things, of which {} says nothing: it has neither Cryptomattes nor numbers of objects",
+                look.name,
+                self.open.name()
             );
             self.notes.say(said);
         }
+    }
+
+    /// True where a look that is shown has rules for things of what is open.
+    pub fn follows_rules(&self) -> bool {
+        let compared = self.looks.compared.as_ref().filter(|_| self.viewport.compare != Compare::Off);
+        let is_whole = self.looks.watched().is_none();
+        let has_rules = is_whole && self.look().has_rules() || compared.is_some_and(EditedLook::has_rules);
+        has_rules && self.open.has_things()
     }
 
     /// Changes the list of nodes.
