@@ -9,6 +9,7 @@ use isophote_finishing::stylize::preset::Title;
 use isophote_loader::abi::{ISOPHOTE_SPACE_LINEAR, IsophoteRequest};
 use isophote_loader::{Control, Input, Library};
 use isophote_pictures::pixels::{Pixels, Precision, Samples};
+use isophote_window::jobs::document::{Document, Options};
 use isophote_window::state::look::EditedLook;
 use isophote_window::state::outcome::{Opened, Outcome};
 use isophote_window::state::session::Session;
@@ -346,20 +347,33 @@ fn saving_a_preset_keeps_its_rules() {
 }
 
 #[test]
-fn what_follows_no_rules_says_so_and_keeps_them() {
+fn the_window_says_where_there_is_nothing_to_follow_rules_on_and_keeps_them() {
     let folder = folder();
     let at = |name: &str| folder.path().join(name);
-    let preset = r#"{"style": "cartoon", "objects": [{"match": "id:3", "detail": 2.0}]}"#;
+    let rules = r#"{"match": "id:3", "detail": 2.0}, {"match": "id:4", "look": "hero.json"}"#;
+    let preset = format!(r#"{{"style": "cartoon", "objects": [{rules}]}}"#);
+    fs::write(at("hero.json"), r#"{"style": "ink"}"#).expect("the folder is writable");
     fs::write(at("rules.json"), preset).expect("the folder is writable");
     let library = Library::from_file(support::library()).expect("the library");
     let open = |name: &Path| EditedLook::open(&library, name).expect("the look");
     let looks = vec![open(Path::new("none"))];
     let mut session = Session::new(library.clone(), looks, Settings::default()).expect("a session");
+    support::picture(32, 16).save(at("photo.png")).expect("the folder is writable");
+    let document = Document::open(&at("photo.png"), &Options::default()).expect("a picture");
+    session.show_playback(document.playback().expect("a picture"));
     session.take_over(Outcome::Opened(Opened::Look(Box::new(open(&at("rules.json"))))));
     let said: Vec<&str> = session.notes.present().iter().map(|note| note.text.as_str()).collect();
-    assert!(said.iter().any(|text| text.contains("rules for objects")), "{said:?}");
+    assert!(
+        said.iter().any(|text| text.contains("rules for things, of which photo.png says nothing")),
+        "{said:?}"
+    );
     let mut look = session.look().clone();
     let before = look.preset.objects.clone();
     look.save(&at("kept.json"), Title::default()).expect("it can be written");
-    assert!(before.len() == 1 && open(&at("kept.json")).preset.objects == before);
+    assert!(before.len() == 2 && open(&at("kept.json")).preset.objects == before);
+    // Looks of things are found from another folder, too.
+    let other = support::folder();
+    look.save(&other.path().join("kept.json"), Title::default()).expect("it can be written");
+    let kept = open(&other.path().join("kept.json")).preset.objects;
+    assert_eq!(kept[1].rule["look"], at("hero.json").display().to_string());
 }
