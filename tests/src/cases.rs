@@ -278,7 +278,7 @@ pub fn rules() -> Vec<ThingRule> {
     let rule = |number: u32| ThingRule {
         numbers: vec![number, number + 2],
         control: [Some(0.8), None, (number == 1).then_some(0.0), Some(0.3)],
-        line_color: (number % 2 == 0).then_some([0.8, 0.1, 0.2, 0.6]),
+        line_color: number.is_multiple_of(2).then_some([0.8, 0.1, 0.2, 0.6]),
     };
     (0..40).map(rule).collect()
 }

@@ -61,8 +61,11 @@ fn shown(spec: &NodeSpec, image: &Image) -> Image {
     })
 }
 
-/// Cartoons of forms that a renderer knows: their names, settings, and guides beside normals, depth and numbers of objects.
-const OF_FORMS: [(&str, &[(&str, &str)], &[GraphInput]); 4] = [
+/// Parameters and their values, as text.
+type Values = &'static [(&'static str, &'static str)];
+
+/// Cartoons of forms that a renderer knows: their names, values, and guides beside normals, depth and numbers of objects.
+const OF_FORMS: [(&str, Values, &[GraphInput]); 4] = [
     (
         "cartoon-sets",
         &[("line_colors", "kinds"), ("line_gap", "8"), ("taper", "8"), ("line_width", "3")],
