@@ -2,6 +2,7 @@
 #![cfg(target_os = "linux")]
 
 mod directed;
+mod laid;
 mod named;
 mod ruled;
 

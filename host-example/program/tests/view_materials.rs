@@ -12,8 +12,10 @@ use isophote_pictures::material::{Material, MaterialKind, tiled};
 use isophote_pictures::meaning::Meaning;
 use isophote_window::jobs::document::{Document, Options};
 use isophote_window::state::command;
+use isophote_window::state::demo;
 use isophote_window::state::look::EditedLook;
 use isophote_window::state::outcome::{Dialog, Opened, Outcome};
+use isophote_window::state::scenery::{OnScene, Scenery, Staging};
 use isophote_window::state::session::Session;
 use isophote_window::state::settings::Settings;
 use isophote_window::state::work::Request;
@@ -79,4 +81,38 @@ fn materials_are_chosen_and_lie_on_the_picture() {
     assert!(line.contains("--hatching pen") && line.contains("own paper.png"), "{line}");
     let chosen = choose(&mut harness, "Hatching", "The look's own");
     assert_eq!(chosen, [Request::ChooseMaterial(MaterialKind::Hatching, None)]);
+}
+
+#[test]
+fn scenes_lie_on_materials_too() {
+    let library = Library::from_file(support::library()).expect("the library");
+    let looks = vec![EditedLook::open(&library, "ink".as_ref()).expect("the style")];
+    let mut session = Session::new(library, looks, Settings::default()).expect("a session");
+    let scene = Scenery::new(demo::scene().expect("the scene"), Staging::default(), 1.5);
+    session.show_scene(scene, None, "Demo".into());
+    let mut harness = Harness::builder()
+        .with_size(egui::vec2(1200.0, 3000.0))
+        .build_ui_state(|ui, session: &mut Session| widgets::show(ui, session), session);
+    widgets::theme::apply(&harness.ctx);
+    harness.run_ok();
+    harness.get_by_label("Materials").click();
+    harness.run_ok();
+    harness.get_by_role_and_label(Role::ComboBox, "Hatching").click();
+    harness.run_ok();
+    harness.get_by_label("Pen").click();
+    harness.run_ok();
+    let (kind, name) = (MaterialKind::Hatching, PathBuf::from("pen"));
+    let chosen = harness.state_mut().work.take_requests();
+    assert_eq!(chosen, [Request::ChooseMaterial(kind, Some(name.clone()))]);
+    let material = Arc::new(kind.open(&name).expect("it ships"));
+    let pen = Opened::Material(kind, Some(OnScene { name, material }));
+    harness.state_mut().take_over(Outcome::Opened(pen));
+    harness.run_ok();
+    let line = command::line(harness.state());
+    assert!(line.contains("isophote render") && line.contains("--hatching pen"), "{line}");
+    // What is of another kind stays.
+    harness.state_mut().take_over(Outcome::Opened(Opened::Material(MaterialKind::Paper, None)));
+    assert!(command::line(harness.state()).contains("--hatching pen"));
+    harness.state_mut().take_over(Outcome::Opened(Opened::Material(kind, None)));
+    assert!(!command::line(harness.state()).contains("--hatching"));
 }

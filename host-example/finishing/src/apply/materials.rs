@@ -12,14 +12,17 @@ use isophote_pictures::pixels::Pixels;
 use isophote_pictures::space::Space;
 
 /// Materials over a frame of a renderer, whose colours are linear light of Rec.709, by the names of guides.
-pub fn on_frame(materials: &[Material], size: (u32, u32)) -> Vec<(&'static str, Pixels)> {
+pub fn on_frame<'m>(
+    materials: impl IntoIterator<Item = &'m Material>,
+    size: (u32, u32),
+) -> Vec<(&'static str, Pixels)> {
     let scale = f64::from(size.1) / REFERENCE;
     let over = |material: &Material| {
         let most = [size.0, size.1].map(i64::from);
         let tile = material.scaled([scale; 2], &Meaning::light(), most);
         (material.kind().guide().id(), tiled(&tile, size, [0; 2]))
     };
-    materials.iter().map(over).collect()
+    materials.into_iter().map(over).collect()
 }
 
 /// Meaning of colours beside a picture's own, of which `space` may name the space.

@@ -27,17 +27,17 @@ fn run(folder: &Path, command: &str) {
 }
 
 /// Renders the scene as large as the window shows it.
-fn render(folder: &Path, session: &Session, rest: &str) {
+pub fn render(folder: &Path, session: &Session, rest: &str) {
     let (width, height) = session.nominal_size();
     run(folder, &format!("render cube.gltf {rest} --size {width}x{height}"));
 }
 
-fn open_picture(folder: &Path, session: &mut Session, name: &str) {
+pub fn open_picture(folder: &Path, session: &mut Session, name: &str) {
     let document = Document::open(&folder.join(name), &Options::default()).unwrap();
     session.show_playback(document.playback().unwrap());
 }
 
-fn open_scene(folder: &Path, session: &mut Session) {
+pub fn open_scene(folder: &Path, session: &mut Session) {
     let file = folder.join("cube.gltf");
     let scene = Scene::load(&file, None).unwrap();
     let staging = Staging { ground: floor::lacks_floor(&scene), ..Staging::default() };

@@ -15,6 +15,8 @@ pub struct Made {
     pub overlay: Overlay,
     /// Request to the library.
     pub request: IsophoteRequest,
+    /// True where its looks were computed on the CPU, which counts their revisions by itself.
+    pub is_on_cpu: bool,
     /// Revisions of the three looks.
     pub revisions: [u64; 3],
     /// Revision of the source.

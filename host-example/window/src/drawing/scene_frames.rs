@@ -10,7 +10,7 @@ use super::source::SceneSource;
 use crate::jobs::worker::Wake;
 use crate::state::document::frame::Frame;
 use crate::state::look::EditedLook;
-use crate::state::scenery::Scenery;
+use crate::state::scenery::{OnScene, Scenery};
 use crate::state::things::Sampled;
 use isophote_files::error::Result;
 use isophote_finishing::stylize::things;
@@ -30,6 +30,8 @@ pub struct SceneFrame {
     pub origin: Origin,
     /// Time at which it was rendered.
     pub since: Instant,
+    /// Materials that it lies on.
+    materials: Arc<[OnScene]>,
 }
 
 /// The last frame of a scene that was read back, and the next one.
@@ -38,6 +40,8 @@ pub struct SceneFrames {
     next: Option<Next>,
     present: Option<SceneFrame>,
     needs: Option<([Option<EditedLook>; 3], Needs)>,
+    /// Materials that frames are to lie on.
+    materials: Arc<[OnScene]>,
 }
 
 /// The next frame, which is on its way.
@@ -46,6 +50,7 @@ struct Next {
     origin: Origin,
     since: Instant,
     is_sampled: bool,
+    materials: Arc<[OnScene]>,
 }
 
 /// Needs of looks beside the frame itself.
@@ -65,7 +70,15 @@ impl SceneFrames {
     /// # Errors
     /// As [`Snapshots::new`].
     pub fn new(wake: &Wake) -> Result<Self> {
-        Ok(Self { snapshots: Snapshots::new(wake)?, next: None, present: None, needs: None })
+        let (snapshots, materials) = (Snapshots::new(wake)?, Arc::default());
+        Ok(Self { snapshots, next: None, present: None, needs: None, materials })
+    }
+
+    /// Lays the frames to come on materials.
+    pub fn lie_on(&mut self, materials: &Arc<[OnScene]>) {
+        if !Arc::ptr_eq(&self.materials, materials) {
+            self.materials = Arc::clone(materials);
+        }
     }
 
     /// Takes over the frame that has been read back.
@@ -77,8 +90,14 @@ impl SceneFrames {
         let next = self.next.take();
         let Snapshot { frame, sampled } = frame?;
         let (frame, sampled) = (Arc::new(frame), sampled.map(Arc::new));
-        self.present =
-            next.map(|Next { state, origin, since, .. }| SceneFrame { frame, sampled, state, origin, since });
+        self.present = next.map(|Next { state, origin, since, materials, .. }| SceneFrame {
+            frame,
+            sampled,
+            state,
+            origin,
+            since,
+            materials,
+        });
         Ok(())
     }
 
@@ -94,12 +113,12 @@ impl SceneFrames {
 
     /// True where the last frame shows this, or the one that is on its way; with samples of its pixels, where these are wanted.
     pub fn shows(&self, state: &FrameState, is_sampled: bool) -> bool {
-        let (shown, has_samples) = match (&self.next, &self.present) {
-            (Some(next), _) => (&next.state, next.is_sampled),
-            (None, Some(present)) => (&present.state, present.sampled.is_some()),
+        let (shown, has_samples, materials) = match (&self.next, &self.present) {
+            (Some(next), _) => (&next.state, next.is_sampled, &next.materials),
+            (None, Some(present)) => (&present.state, present.sampled.is_some(), &present.materials),
             (None, None) => return false,
         };
-        shown == state && (has_samples || !is_sampled)
+        shown == state && (has_samples || !is_sampled) && Arc::ptr_eq(materials, &self.materials)
     }
 
     /// Reads back what was rendered last. Where samples of its pixels are wanted, these are drawn by [`SceneFrames::sample`].
@@ -110,8 +129,9 @@ impl SceneFrames {
         (state, origin): (FrameState, Origin),
         is_sampled: bool,
     ) {
-        self.next = Some(Next { state, origin, since: Instant::now(), is_sampled });
-        self.snapshots.take(gpu, source, state, is_sampled);
+        let materials = Arc::clone(&self.materials);
+        self.next = Some(Next { state, origin, since: Instant::now(), is_sampled, materials });
+        self.snapshots.take(gpu, source, (state, &self.materials), is_sampled);
     }
 
     /// True while samples are still to be drawn of the next frame.

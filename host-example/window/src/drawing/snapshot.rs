@@ -6,9 +6,10 @@ use std::sync::Arc;
 use super::source::SceneSource;
 use crate::jobs::worker::{Wake, Worker};
 use crate::state::document::frame::{Frame, GuideImage};
-use crate::state::scenery::Scenery;
+use crate::state::scenery::{OnScene, Scenery};
 use crate::state::things::Sampled;
 use isophote_files::error::{Error, Result};
+use isophote_finishing::apply::materials;
 use isophote_finishing::apply::picture_request::PictureRequest;
 use isophote_pictures::exr::Guide;
 use isophote_pictures::meaning::ImageState;
@@ -46,6 +47,8 @@ struct Copied {
     guides: Vec<(Guide, Buffer)>,
     /// Numbers of things in samples of it.
     samples: Vec<Buffer>,
+    /// Materials that it is to lie on.
+    materials: Arc<[OnScene]>,
 }
 
 /// A texture in a buffer.
@@ -72,9 +75,15 @@ impl<F: PartialEq> Snapshots<F> {
         self.taken.as_ref() == Some(state)
     }
 
-    /// Copies what was rendered last, which shows this. Where things in samples of its pixels are wanted, these are drawn by
+    /// Copies what was rendered last, which shows this, to lie on materials. Where things in samples of its pixels are wanted, these are drawn by
     /// [`Snapshots::sample`].
-    pub fn take(&mut self, gpu: &Gpu, source: &SceneSource, state: F, is_sampled: bool) {
+    pub fn take(
+        &mut self,
+        gpu: &Gpu,
+        source: &SceneSource,
+        (state, materials): (F, &Arc<[OnScene]>),
+        is_sampled: bool,
+    ) {
         let targets = source.targets();
         let mut encoder = gpu.device.create_command_encoder(&Default::default());
         let mut copied = |target: &Target| Buffer::copied(gpu, &mut encoder, &target.texture);
@@ -91,7 +100,8 @@ impl<F: PartialEq> Snapshots<F> {
         let color = copied(&targets.color);
         gpu.queue.submit([encoder.finish()]);
         let size = (targets.width, targets.height);
-        let copied = Copied { gpu: gpu.clone(), size, color, guides, samples: Vec::new() };
+        let materials = Arc::clone(materials);
+        let copied = Copied { gpu: gpu.clone(), size, color, guides, samples: Vec::new(), materials };
         self.taken = Some(state);
         match is_sampled {
             true => self.begun = Some(copied),
@@ -180,6 +190,12 @@ impl Copied {
             let data = buffer.numbers()?;
             Ok(Arc::new(GuideImage { guide: *guide, channels: (data.len() / pixels) as u32, data }))
         });
+        let sheets = self.materials.iter().map(|own| &*own.material);
+        let laid = materials::on_frame(sheets, self.size).into_iter().filter_map(|(name, pixels)| {
+            let guide = Guide::ALL.into_iter().find(|guide| guide.id() == name)?;
+            Some(Arc::new(GuideImage { guide, channels: pixels.channels(), data: pixels.to_f32() }))
+        });
+        let guides = guides.chain(laid.map(Ok));
         Ok(Frame {
             number: None,
             width: self.size.0,

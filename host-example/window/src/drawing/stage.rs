@@ -275,7 +275,7 @@ impl Stage {
                 source.encode(&mut encoder, scenery);
                 self.gpu.queue.submit([encoder.finish()]);
             }
-            self.snapshots.take(&self.gpu, source, state, false);
+            self.snapshots.take(&self.gpu, source, (state, &Default::default()), false);
         }
         Ok(taken.transpose()?.map(|taken| taken.frame))
     }
@@ -430,6 +430,7 @@ impl Stage {
             shown: session.shown(),
             overlay: session.viewport.overlay,
             request: source.request(),
+            is_on_cpu,
             revisions: self.revisions(session),
             source: self.sources.number(),
             scene: scene.map(|scenery| (scenery.view(), *scenery.light(), scenery.time().0)),

@@ -15,7 +15,7 @@ use super::opening::{self, OpenJob, WithFrames};
 use super::reader::Reader;
 use super::reveal::Reveal;
 use super::worker::{Wake, Worker};
-use crate::state::outcome::{Dialog, Outcome};
+use crate::state::outcome::{Dialog, Opened, Outcome};
 use crate::state::playback::Playback;
 use crate::state::preview::order::Task;
 use crate::state::samples::{self, SAMPLES};
@@ -149,7 +149,7 @@ impl Background {
             match request {
                 Request::Open(path) => files.push(path),
                 Request::ChooseLayer(layer, view) => self.open_layer(session, layer, view),
-                Request::ChooseMaterial(kind, name) => self.open_on(session, kind, name),
+                Request::ChooseMaterial(kind, name) => outcomes.extend(self.open_on(session, kind, name)),
                 Request::OpenMap(kind, path) => {
                     let sizes = session.open.playback().map(|shown| [shown.file_size(), shown.size()]);
                     let job = sizes.map(|sizes| OpenJob::Map(kind, path, sizes));
@@ -196,13 +196,18 @@ impl Background {
         self.opener.ask(OpenJob::Again(file.to_owned(), Box::new(selection), materials.unwrap_or_default()));
     }
 
-    /// Opens the file that is open once more, on another paper or with other hatching, or on the look's own.
-    fn open_on(&mut self, session: &Session, kind: MaterialKind, name: Option<PathBuf>) {
-        let Some(playback) = session.open.playback() else { return };
+    /// Opens the file that is open once more, on another paper or with other hatching, or on the look's own; or such for a scene.
+    fn open_on(&mut self, session: &Session, kind: MaterialKind, name: Option<PathBuf>) -> Option<Outcome> {
+        let Some(playback) = session.open.playback() else {
+            let Some(name) = name else { return Some(Outcome::Opened(Opened::Material(kind, None))) };
+            self.opener.ask(OpenJob::Material(kind, name));
+            return None;
+        };
         let info = playback.info();
         let others = info.materials.iter().filter(|(known, _)| *known != kind).cloned();
         let materials = others.chain(name.map(|name| (kind, name))).collect();
         let selection = Box::new(info.selection.clone());
         self.opener.ask(OpenJob::Again(info.path.clone(), selection, materials));
+        None
     }
 }

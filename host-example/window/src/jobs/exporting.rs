@@ -6,6 +6,7 @@ use super::export::{Export, ExportJob};
 use crate::state::batch::Batch;
 use crate::state::command;
 use crate::state::document::kind::Kind;
+use crate::state::materials;
 use crate::state::outcome::Outcome;
 use crate::state::plan::{Plan, What};
 use crate::state::playback::Playback;
@@ -88,6 +89,7 @@ fn job(session: &Session, plan: &Plan, file: &Path) -> Result<ExportJob> {
         What::Picture if session.open.playback().is_none() => words.extend(command::moment(session)),
         What::Picture | What::Turntable | What::Frames => {}
     }
+    words.extend(materials::options(session));
     words.extend(command::precision(session));
     words.extend(plan.options().words());
     words.extend(unknown(session));

@@ -12,6 +12,7 @@ use crate::state::outcome::Opened;
 use crate::state::painted::channel::Kind;
 use crate::state::painted::maps::Maps;
 use crate::state::samples::Sample;
+use crate::state::scenery::OnScene;
 use isophote_files::error::Result;
 use isophote_files::frames;
 use isophote_finishing::stylize::palette;
@@ -37,6 +38,8 @@ pub enum OpenJob {
     Look(Library, PathBuf),
     /// Surroundings of a scene.
     Surroundings(PathBuf),
+    /// A material for a scene: a file, or the name of one that ships.
+    Material(MaterialKind, PathBuf),
     /// Colours for the look.
     Palette(Library, PathBuf),
     /// A painted map for pictures of a size in their file, and another as they are shown.
@@ -72,6 +75,10 @@ pub fn open(job: OpenJob) -> Result<WithFrames> {
         OpenJob::Surroundings(path) => {
             let environment = Arc::new(Environment::read(&path)?);
             Opened::Surroundings(Surround::Environment(environment), path)
+        }
+        OpenJob::Material(kind, name) => {
+            let material = Arc::new(kind.open(&name)?);
+            Opened::Material(kind, Some(OnScene { name, material }))
         }
         OpenJob::Palette(library, path) => Opened::Palette(palette::read(&library, &path, None)?),
         OpenJob::Map(kind, path, sizes) => {

@@ -2,6 +2,7 @@
 
 use std::path::PathBuf;
 
+use super::materials;
 use super::painted::channel::Kind;
 use super::playback::Playback;
 use super::quoting::{quoted, quoted_path};
@@ -35,6 +36,7 @@ pub fn line(session: &Session) -> String {
             }
         }
     }
+    words.extend(materials::options(session).iter().map(|word| quoted(word)));
     let parameters = look.parameters(&session.library).unwrap_or_default();
     words.extend(look.settings(&parameters).iter().map(|setting| format!("--set {}", quoted(setting))));
     if look.preset.lengths == Some(Lengths::Pixels) {
@@ -85,7 +87,7 @@ pub fn output(playback: &Playback) -> PathBuf {
     path.with_file_name(format!("{name}.{}", if is_kept { &extension } else { "png" }))
 }
 
-/// Options of `apply` for the layer, the view and the materials that were chosen.
+/// Options of `apply` for the layer and the view that were chosen.
 pub fn selection(playback: &Playback) -> Vec<String> {
     let selection = &playback.info().selection;
     let mut words = Vec::new();
@@ -93,9 +95,6 @@ pub fn selection(playback: &Playback) -> Vec<String> {
         words.extend(value.iter().flat_map(|value| [option.to_owned(), value.clone()]));
     }
     words.extend(selection.force.then(|| "--force-layer".to_owned()));
-    for (kind, name) in &playback.info().materials {
-        words.extend([format!("--{}", kind.guide().id()), name.to_string_lossy().into_owned()]);
-    }
     words
 }
 

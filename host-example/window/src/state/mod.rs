@@ -17,6 +17,7 @@ pub mod history;
 pub mod leaving;
 pub mod look;
 pub mod looks;
+pub mod materials;
 pub mod notes;
 pub mod open;
 pub mod outcome;

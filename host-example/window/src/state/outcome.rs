@@ -15,6 +15,7 @@ use super::painted::maps::Maps;
 use super::playback::Playback;
 use super::preview::order::Done;
 use super::progress::Progress;
+use super::scenery::OnScene;
 use isophote_files::error::{Error, Result};
 use isophote_finishing::stylize::palette::Colours;
 use isophote_loader::abi::IsophoteRequest;
@@ -54,6 +55,8 @@ pub enum Outcome {
 pub enum Opened {
     /// A scene with its file; the one that comes with the program has none.
     Scene(Box<Scene>, Option<PathBuf>),
+    /// Paper or hatching for the scene that is open; its own where there is none.
+    Material(MaterialKind, Option<OnScene>),
     /// A picture, sequence or video.
     Pictures(Box<Playback>),
     /// The document that was open, read in another way.

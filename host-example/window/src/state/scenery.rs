@@ -7,6 +7,7 @@ use std::time::Instant;
 use glam::Vec3;
 
 use isophote_finishing::staging::ReadingArgs;
+use isophote_pictures::material::{Material, MaterialKind};
 use isophote_render::background::Background;
 use isophote_render::lighting::Lighting as Light;
 use isophote_scene::Scene;
@@ -74,6 +75,15 @@ pub fn is_same(a: &Background, b: &Background) -> bool {
     }
 }
 
+/// A material that a scene's pictures lie on.
+#[derive(Clone, Debug)]
+pub struct OnScene {
+    /// Its file, or the name of one that ships.
+    pub name: PathBuf,
+    /// The material.
+    pub material: Arc<Material>,
+}
+
 /// A scene that is shown.
 pub struct Scenery {
     /// The scene.
@@ -86,6 +96,8 @@ pub struct Scenery {
     pub ground: bool,
     /// Options that the file was read with.
     pub reading: ReadingArgs,
+    /// Paper and hatching that its pictures lie on, one of each kind.
+    pub materials: Arc<[OnScene]>,
     /// True while time passes.
     pub playing: bool,
     /// Number of the animation that plays.
@@ -123,12 +135,19 @@ impl Scenery {
             lighting,
             ground,
             reading,
+            materials: Arc::default(),
             time: 0.0,
             ticked: Instant::now(),
             scene: Arc::new(scene),
         };
         scenery.relight();
         scenery
+    }
+
+    /// Lays its pictures on a material of a kind, or on none.
+    pub fn lie_on(&mut self, kind: MaterialKind, material: Option<OnScene>) {
+        let others = self.materials.iter().filter(|own| own.material.kind() != kind).cloned();
+        self.materials = others.chain(material).collect();
     }
 
     /// Takes over what has been changed of the light.

@@ -5,8 +5,8 @@ use std::path::{Path, PathBuf};
 use egui::{ComboBox, Ui};
 
 use super::keyboard;
+use crate::state::materials::chosen;
 use crate::state::outcome::Dialog;
-use crate::state::playback::Playback;
 use crate::state::session::Session;
 use crate::state::work::Request;
 use isophote_pictures::material::MaterialKind;
@@ -14,26 +14,22 @@ use isophote_pictures::material::MaterialKind;
 /// Text where the look has its own.
 const OWN: &str = "The look's own";
 
-/// True where materials can lie on what is open, which are pictures and not scenes, and the look has any.
+/// True where the look of what is open has any materials.
 pub fn has_any(session: &Session) -> bool {
     MaterialKind::ALL.into_iter().any(|kind| has(session, kind))
 }
 
 /// True where the look has a kind of material, or one was chosen.
 fn has(session: &Session, kind: MaterialKind) -> bool {
-    let is_chosen = |playback: &Playback| playback.info().materials.iter().any(|(known, _)| *known == kind);
-    session
-        .open
-        .playback()
-        .is_some_and(|playback| session.looks.takes(kind.guide().id()) || is_chosen(playback))
+    let takes = || session.open.has_picture() && session.looks.takes(kind.guide().id());
+    takes() || chosen(session).iter().any(|(known, _)| *known == kind)
 }
 
 /// Shows the controls.
 pub fn show(ui: &mut Ui, session: &mut Session) {
     for kind in MaterialKind::ALL.into_iter().filter(|kind| has(session, *kind)).collect::<Vec<_>>() {
-        let Some(playback) = session.open.playback() else { return };
-        let chosen = playback.info().materials.iter().find(|(known, _)| *known == kind);
-        let request = row(ui, kind, chosen.map(|(_, name)| name.as_path()));
+        let name = chosen(session).into_iter().find(|(known, _)| *known == kind).map(|(_, name)| name);
+        let request = row(ui, kind, name);
         request.into_iter().for_each(|request| session.work.ask(request));
     }
 }

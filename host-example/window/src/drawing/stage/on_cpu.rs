@@ -12,6 +12,7 @@ use crate::drawing::scene_frames::{SceneFrame, SceneFrames};
 use crate::drawing::shown::Output;
 use crate::drawing::source::LookInput;
 use crate::state::look::EditedLook;
+use crate::state::materials::are_on_scene;
 use crate::state::notes::Subject as About;
 use crate::state::session::{Session, Which};
 use isophote_files::error::{Error, Result};
@@ -30,10 +31,11 @@ impl Stage {
     }
 
     /// True where looks on what is open are computed on the CPU. On scenes those that read frames before are left to the device,
-    /// which has them, unless they have rules: these are followed frame by frame.
+    /// which has them, unless they have rules or lie on materials: these are made frame by frame.
     pub(super) fn is_on_cpu(&self, session: &Session) -> bool {
         let is_left = session.open.scenery().is_some() && self.needs.past;
-        session.open.has_picture() && (self.is_ruled || self.computes_on_cpu && !is_left)
+        session.open.has_picture()
+            && (self.is_ruled || are_on_scene(session) || self.computes_on_cpu && !is_left)
     }
 
     /// True while something is on its way to the CPU, or being computed there.
@@ -64,8 +66,9 @@ impl Stage {
         if let Err(problem) = self.frames.collect() {
             return Ok(Some((About::Other, problem)));
         }
-        if session.open.scenery().is_none() {
-            self.frames.forget();
+        match session.open.scenery() {
+            Some(scenery) => self.frames.lie_on(&scenery.materials),
+            None => self.frames.forget(),
         }
         // What is covered is made when it is seen.
         let subject = subject(session, &self.frames, self.moves).filter(|_| !session.is_covered());
@@ -207,7 +210,7 @@ impl Stage {
 /// The picture that looks are wanted of.
 fn subject<'s>(session: &'s Session, frames: &'s SceneFrames, moves: bool) -> Option<Subject<'s>> {
     if session.open.scenery().is_some() {
-        let SceneFrame { frame, sampled, state: (request, ..), origin, since } = frames.present()?;
+        let SceneFrame { frame, sampled, state: (request, ..), origin, since, .. } = frames.present()?;
         let things = session.open.things(sampled.clone());
         let sizes = vec![(frame.width, frame.height)];
         let (share, origin, since) = (request.scale, origin.clone(), *since);

@@ -98,6 +98,12 @@ impl Session {
                 self.notes.say(format!("Saved the {} in {}", kind.name(), path.display()));
                 self.map_saved(kind, path, &maps);
             }
+            Opened::Material(kind, material) => {
+                self.open
+                    .scenery_mut()
+                    .into_iter()
+                    .for_each(|scenery| scenery.lie_on(kind, material.clone()));
+            }
             Opened::Surroundings(background, path) => {
                 self.relight("surroundings", |lighting| {
                     (lighting.background, lighting.surroundings) = (background, Some(path));
