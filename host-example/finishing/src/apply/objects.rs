@@ -83,7 +83,9 @@ impl Ruled<'_> {
         });
         let is_premultiplied = meaning.is_premultiplied();
         if let Some(painted) = painted {
-            for (value, over) in map.as_chunks_mut::<4>().0.iter_mut().zip(painted.as_chunks::<4>().0) {
+            let pixels = map.as_chunks_mut::<4>().0.iter_mut().zip(painted.as_chunks::<4>().0);
+            // What is no number was not painted.
+            for (value, over) in pixels.filter(|(_, over)| over.iter().all(|v| v.is_finite())) {
                 let share = over[3].clamp(0.0, 1.0);
                 let factor = if is_premultiplied { 1.0 } else { share };
                 let over = [factor * over[0], factor * over[1], factor * over[2], share];
@@ -112,7 +114,10 @@ impl Ruled<'_> {
                 }
             }
         }
-        self.depth.map_or_else(|| map.clone(), |depth| of_nearest(&map, width, depth))
+        match self.depth {
+            Some(depth) => of_nearest(&map, width, depth),
+            None => map,
+        }
     }
 }
 

@@ -99,10 +99,9 @@ impl Session {
                 self.map_saved(kind, path, &maps);
             }
             Opened::Material(kind, material) => {
-                self.open
-                    .scenery_mut()
-                    .into_iter()
-                    .for_each(|scenery| scenery.lie_on(kind, material.clone()));
+                if let Some(scenery) = self.open.scenery_mut() {
+                    scenery.lie_on(kind, material);
+                }
             }
             Opened::Surroundings(background, path) => {
                 self.relight("surroundings", |lighting| {
