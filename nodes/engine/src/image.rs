@@ -51,7 +51,12 @@ impl Rect {
 
     /// Grown by `n` pixels on every side.
     pub const fn grown(&self, n: i32) -> Self {
-        Self { x0: self.x0 - n, y0: self.y0 - n, x1: self.x1 + n, y1: self.y1 + n }
+        self.grown_by([n, n])
+    }
+
+    /// Grown by `x` pixels to the left and right, and by `y` above and below.
+    pub const fn grown_by(&self, [x, y]: [i32; 2]) -> Self {
+        Self { x0: self.x0 - x, y0: self.y0 - y, x1: self.x1 + x, y1: self.y1 + y }
     }
 
     /// The pixels that lie in both.

@@ -7,3 +7,4 @@ mod support;
 mod fusion;
 mod gpu;
 mod plan;
+mod regions;

@@ -221,50 +221,6 @@ fn an_output_of_another_level_returns_its_own_pixels() {
 }
 
 #[test]
-fn support_bounds_every_region() {
-    let plan = plan(4096, 4096, 1.0);
-    let Support::Pixels(halo) = plan.support() else { panic!("nothing reads everything") };
-    let input = plan.inputs()[0].image.index();
-    let mut widest = 0;
-    for start in 2000..2008 {
-        for length in 1..9 {
-            let region = rect(start, start + 1, start + length, start + 3);
-            let window = plan.windows(region)[input];
-            assert!(region.grown(halo as i32).contains(&window), "{region:?} {window:?} {halo}");
-            widest = widest.max(region.x0 - window.x0).max(window.x1 - region.x1);
-        }
-    }
-    assert!(halo as i32 - widest <= 1, "{halo} is more than {widest}");
-    let mut b = PlanBuilder::new(64, 64).unwrap();
-    let source = b.input("source", 4, Class::Colour);
-    let mut level = source;
-    (1..=6).for_each(|l| level = rescale(&mut b, level, l));
-    let back = rescale(&mut b, level, 0);
-    let params = BoxParams { radius: 0, gain: 1.0 };
-    let mean = b.pass(&BOX, &[back], &params, Class::Colour, Support::Global);
-    b.output("mean", mean);
-    assert_eq!(b.finish().unwrap().support(), Support::Global);
-}
-
-#[test]
-fn what_is_handed_of_another_level_is_read_as_far_as_from_its_level() {
-    let mut b = PlanBuilder::new(4096, 4096).unwrap();
-    let source = b.input("source", 4, Class::Colour);
-    let coarse = rescale(&mut b, source, 2);
-    let params = BoxParams { radius: 3, gain: 1.0 };
-    let mean = b.pass(&BOX, &[coarse], &params, Class::Colour, Support::Pixels(3));
-    let back = rescale(&mut b, mean, 0);
-    b.output("mean", back);
-    let whole = b.finish().unwrap();
-    let (Support::Pixels(all), Support::Pixels(handed)) =
-        (whole.support(), whole.with_handed(&[coarse]).support())
-    else {
-        panic!("nothing reads everything")
-    };
-    assert!((12..=all).contains(&handed), "{handed} of {all}");
-}
-
-#[test]
 fn an_edit_writes_in_place() {
     let mut plan = plan(40, 30, 1.0);
     let place = plan.passes()[0].params.as_ptr();

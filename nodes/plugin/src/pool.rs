@@ -1,7 +1,7 @@
 //! Memory of images between calls. The system gives new pages one by one as they are first touched, which takes longer
 //! than many filters do; so what one frame leaves is kept for the next, within a bound, for all threads and instances.
 
-use isophote::engine::cpu::CpuExecutor;
+use isophote::engine::cpu::{CpuExecutor, Threads};
 use isophote::engine::{Error, Image, Rect, Result};
 use std::sync::{LazyLock, Mutex, MutexGuard, PoisonError};
 use std::time::{Duration, Instant};
@@ -93,6 +93,31 @@ pub fn keep_executor(executor: CpuExecutor) {
     if (LEAST..=most()).contains(&executor.kept()) {
         keep(|pool, now| pool.executors.push((now, executor)));
     }
+}
+
+/// Rows that one job copies.
+const ROWS: usize = 16;
+
+/// The part of an image in `window`.
+///
+/// # Errors
+/// As [`Image::crop`].
+pub fn part(of: &Image, window: Rect, threads: &dyn Threads) -> Result<Image> {
+    if window.is_empty() || !of.window().contains(&window) {
+        return Err(Error::Geometry(format!("cannot cut {window:?} out of {:?}", of.window())));
+    }
+    let mut part = image(window, of.channels())?;
+    let stride = part.stride();
+    let first = (window.x0 - of.window().x0) as usize * of.channels() as usize;
+    let jobs: Vec<Mutex<&mut [f32]>> = part.data_mut().chunks_mut(ROWS * stride).map(Mutex::new).collect();
+    threads.run(jobs.len(), &|job| {
+        let mut rows = jobs[job].lock().unwrap_or_else(PoisonError::into_inner);
+        for (y, row) in (window.y0 + (job * ROWS) as i32..).zip(rows.chunks_exact_mut(stride)) {
+            row.copy_from_slice(&of.row(y)[first..first + stride]);
+        }
+    });
+    drop(jobs);
+    Ok(part)
 }
 
 /// An image of this shape, whose values are unspecified.

@@ -3,7 +3,7 @@
 use crate::ask::Picture;
 use crate::look::GraphAtFrame;
 use isophote::engine::plan::LEAST_ROWS;
-use isophote::engine::{Plan, Rect, Support};
+use isophote::engine::{Plan, Rect};
 use isophote::frames::Frames;
 use isophote::planned::Planned;
 use isophote::{Error, Graph};
@@ -75,7 +75,7 @@ pub fn parts(look: &Value, picture: &Picture, memory: u64) -> Result<Value, Erro
 /// Rows of a part. What lies around a part is computed anew for each, so that parts are high against it.
 fn rows(plan: &Plan, whole: Rect, memory: u64) -> i32 {
     let most = plan.band_rows(whole, [memory / 2, memory], LEAST_ROWS);
-    let Support::Pixels(halo) = plan.support() else { return most };
+    let Some([_, halo]) = plan.support().sides() else { return most };
     let efficient = i32::try_from(halo).unwrap_or(i32::MAX).saturating_mul(4).max(LEAST_ROWS);
     // Two at least, for two threads.
     let wanted = (PIXELS / whole.width().max(1) as i32).min((whole.height() as i32 + 1) / 2);

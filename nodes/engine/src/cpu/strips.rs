@@ -6,7 +6,7 @@
 //! only the rows that are still to be read. So do images that enter and leave, where they come and go by rows.
 
 use crate::image::Rect;
-use crate::plan::{ImageId, Plan, Support};
+use crate::plan::{ImageId, Plan};
 
 /// Least rows of the result in a step that is to save memory: with fewer, threads have hardly anything to share.
 const LEAST_STEP: i32 = 16;
@@ -124,10 +124,7 @@ impl Endless {
     fn new(plan: &Plan) -> Self {
         let coarsest = plan.images().iter().map(|image| image.level).max().unwrap_or(0).clamp(0, 22);
         let [width, height] = plan.size();
-        let reach = match plan.support() {
-            Support::Pixels(reach) => reach.min(MOST_REACH) as i32,
-            Support::Global => MOST_REACH as i32,
-        };
+        let reach = plan.support().sides().map_or(MOST_REACH, |[_, rows]| rows.min(MOST_REACH)) as i32;
         // Pixels of coarse levels stay where they are above fine ones.
         let above = (2 * reach as u32 + 1).next_multiple_of(1 << coarsest) as i32;
         Self { plan: plan.of_size([width, height + above as u32]), above, reach }
@@ -153,9 +150,8 @@ impl Endless {
 fn long_enough(plan: &Plan, rows: i32) -> i32 {
     let enters = |id: &ImageId| plan.inputs().iter().any(|port| port.image == *id);
     let inner = plan.passes().iter().flat_map(|pass| pass.inputs.iter().zip(&pass.supports));
-    let reach = inner.filter(|(input, _)| !enters(input)).map(|(_, support)| match support {
-        Support::Pixels(n) => i32::try_from(*n).unwrap_or(i32::MAX),
-        Support::Global => i32::MAX,
+    let reach = inner.filter(|(input, _)| !enters(input)).map(|(_, support)| {
+        support.sides().and_then(|[_, rows]| i32::try_from(rows).ok()).unwrap_or(i32::MAX)
     });
     rows.max(reach.max().unwrap_or(0).saturating_mul(4))
 }

@@ -1,6 +1,6 @@
 //! Memory that a run takes, and its bounds.
 
-use super::parts::{ImageId, Plan, Support};
+use super::parts::{ImageId, Plan};
 use crate::image::Rect;
 
 /// Bytes that the working images of one band of a large frame should take, and those that they may, where the passes
@@ -41,19 +41,20 @@ impl Plan {
     /// at least `least` rows, and all where a pass reads the whole picture, since a part would need as much.
     pub fn band_rows(&self, region: Rect, [good, most]: [u64; 2], least: i32) -> i32 {
         let all = region.height() as i32;
-        let Support::Pixels(halo) = self.support() else { return all };
+        let Some([_, halo]) = self.support().sides() else { return all };
         let efficient = i32::try_from(halo).unwrap_or(i32::MAX).saturating_mul(4).max(least);
         let takes = |rows: i32| {
             let middle = (region.y0 + region.y1 - rows) / 2;
             self.peak_bytes(&self.windows(Rect { y0: middle, y1: middle + rows, ..region }))
         };
-        let fitting = |mut rows: i32, bytes: u64, least: i32| {
-            while rows > least && takes(rows) > bytes {
-                rows = (rows / 2).max(least);
-            }
-            rows
-        };
-        let rows = fitting(all, good, efficient.min(all));
-        fitting(rows, most, least.min(rows))
+        let mut rows = all;
+        // No band is lower than that: a short one at the end would read as much around it as the others.
+        while takes(rows) > good && (rows + 1) / 2 >= efficient {
+            rows = (rows + 1) / 2;
+        }
+        while rows > least && takes(rows) > most {
+            rows = ((rows + 1) / 2).max(least);
+        }
+        rows
     }
 }

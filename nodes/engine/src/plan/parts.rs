@@ -39,6 +39,10 @@ pub struct ImageDesc {
 pub enum Support {
     /// At most so many pixels of the input's own level, in x and in y.
     Pixels(u32),
+    /// At most so many pixels of the input's own level to the left and to the right.
+    Row(u32),
+    /// At most so many pixels of the input's own level above and below.
+    Column(u32),
     /// Anywhere.
     Global,
 }
@@ -66,11 +70,25 @@ impl Pass {
 }
 
 impl Support {
-    /// The one of two that reads farther.
+    /// Pixels to the left and right, and above and below; none for anywhere.
+    pub fn sides(self) -> Option<[u32; 2]> {
+        match self {
+            Self::Pixels(n) => Some([n, n]),
+            Self::Row(n) => Some([n, 0]),
+            Self::Column(n) => Some([0, n]),
+            Self::Global => None,
+        }
+    }
+
+    /// The least that covers two.
     pub fn farther(self, other: Self) -> Self {
         match (self, other) {
-            (Self::Pixels(a), Self::Pixels(b)) => Self::Pixels(a.max(b)),
-            _ => Self::Global,
+            (Self::Row(a), Self::Row(b)) => Self::Row(a.max(b)),
+            (Self::Column(a), Self::Column(b)) => Self::Column(a.max(b)),
+            _ => match (self.sides(), other.sides()) {
+                (Some([x, y]), Some([s, t])) => Self::Pixels(x.max(y).max(s).max(t)),
+                _ => Self::Global,
+            },
         }
     }
 }

@@ -58,9 +58,12 @@ impl Plan {
     /// The pixels of input `index` that `pass` reads to compute `out`.
     pub(crate) fn read_by(&self, pass: &Pass, out: Rect, index: usize) -> Rect {
         let (from, level) = (self.desc(pass.outputs[0]).level, self.desc(pass.inputs[index]).level);
-        match pass.supports[index] {
-            Support::Pixels(n) => self.clip(rescale(out, from, level).grown(n.min(MAX_HALO) as i32), level),
-            Support::Global => self.whole(level),
+        match pass.supports[index].sides() {
+            Some(sides) => {
+                let sides = sides.map(|n| n.min(MAX_HALO) as i32);
+                self.clip(rescale(out, from, level).grown_by(sides), level)
+            }
+            None => self.whole(level),
         }
     }
 

@@ -6,7 +6,7 @@
 //! is computed pixel by pixel for them, and those that need nothing but a pixel which the dispatch also stores.
 
 use crate::kernel::{Fusible, MAX_INPUTS, PAIR_REACH, Pair};
-use crate::plan::{ImageId, Pass, Plan, Support};
+use crate::plan::{ImageId, Pass, Plan};
 
 /// Passes that run as one dispatch.
 #[derive(Clone, Debug, PartialEq, Eq)]
@@ -62,10 +62,7 @@ pub(super) fn fusions(plan: &Plan, windows: bool) -> Vec<Fusion> {
 /// The radius of the window of a pair, and how far the pass before it reads around, where they can run as one dispatch.
 pub(super) fn reaches(plan: &Plan, passes: &[usize], lead: Lead) -> Option<[u32; 2]> {
     let pass = |at: usize| passes.get(at).and_then(|index| plan.passes().get(*index));
-    let radius = |at: usize| match pass(at)?.support() {
-        Support::Pixels(radius) => Some(radius),
-        Support::Global => None,
-    };
+    let radius = |at: usize| pass(at)?.support().sides().map(|[x, y]| x.max(y));
     let rows = lead.len().checked_sub(2)?;
     // What is read at another level is not held in the window, but fetched.
     let is_held = |pass: &Pass| plan.desc(pass.inputs[0]).level == plan.desc(pass.outputs[0]).level;

@@ -272,8 +272,10 @@ impl Checked {
         let read = |y: i32, bytes: &[u8]| {
             let mut row = lock(&rows[(y - whole.y0) as usize]);
             let row = &mut row[first..first + bytes.len() / pixel * 2];
-            for (pixel, pair) in bytes.chunks_exact(pixel).zip(row.chunks_exact_mut(2)) {
-                read_pair(pixel, sample, channels, pair);
+            let pairs = bytes.chunks_exact(pixel).zip(row.chunks_exact_mut(2));
+            match sample {
+                Sample::F32 => pairs.for_each(|(pixel, pair)| read_floats(pixel, channels, pair)),
+                _ => pairs.for_each(|(pixel, pair)| read_pair(pixel, sample, channels, pair)),
             }
             change(row);
         };
@@ -383,16 +385,18 @@ pub const AS_COMPUTED: &(dyn Fn(i32, &mut [f32]) + Sync) = &|_, _| ();
 fn read_pair(pixel: &[u8], sample: Sample, channels: [usize; 2], pair: &mut [f32]) {
     let size = sample.size();
     for (value, channel) in pair.iter_mut().zip(channels) {
-        match (sample, pixel[channel * size..].first_chunk()) {
-            (Sample::F32, Some(bytes)) => {
-                let read = f32::from_ne_bytes(*bytes);
-                *value = if read.is_finite() { read } else { f32::NAN };
-            }
-            _ => {
-                let from = &pixel[channel * size..][..size];
-                read_vectors(from, sample, 1, std::slice::from_mut(value), 1, f32::NAN);
-            }
-        }
+        let from = &pixel[channel * size..][..size];
+        read_vectors(from, sample, 1, std::slice::from_mut(value), 1, f32::NAN);
+    }
+}
+
+/// The same of floats, of which whole pictures are read for each frame.
+#[inline(always)]
+fn read_floats(pixel: &[u8], channels: [usize; 2], pair: &mut [f32]) {
+    for (value, channel) in pair.iter_mut().zip(channels) {
+        let bytes = pixel[channel * 4..].first_chunk();
+        let read = bytes.map_or(f32::NAN, |bytes| f32::from_ne_bytes(*bytes));
+        *value = if read.is_finite() { read } else { f32::NAN };
     }
 }
 

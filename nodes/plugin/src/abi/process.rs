@@ -15,7 +15,7 @@ use super::warm::Warm;
 use crate::pool;
 use isophote::Request;
 use isophote::engine::plan::Port;
-use isophote::engine::{Image, Plan, Rect, Support};
+use isophote::engine::{Image, Plan, Rect};
 use isophote::graph::GraphInput;
 use isophote::kernels::shared::host_colour::has_light;
 use isophote::request::Guides;
@@ -46,10 +46,7 @@ pub(super) unsafe extern "C" fn support(
             .iter()
             .filter(|port| input.is_none_or(|i| i.id() == port.name))
             .fold(Rect::default(), |all, port| all.union(&windows[port.image.index()]));
-        let (halo, global) = match plan.support() {
-            Support::Pixels(n) => (n, 0),
-            Support::Global => (0, 1),
-        };
+        let (halo, global) = plan.support().sides().map_or((0, 1), |[x, y]| (x.max(y), 0));
         let window = IsophoteRect { x0: window.x0, y0: window.y0, x1: window.x1, y1: window.y1 };
         object.keep(warm);
         // SAFETY: the host promised that the place may be written.

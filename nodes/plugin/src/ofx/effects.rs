@@ -15,7 +15,6 @@ use super::look_effect::{FILE, FROM_FILE, LOOK, RELOAD, TIMES_READ, own_numbers,
 use super::mask::MASK_OPTIONS;
 use super::motion::{MOTION_OPTIONS, estimate};
 use super::shipped;
-use isophote::engine::Support;
 use isophote::frames::Frames;
 use isophote::graph::GraphInput;
 use isophote::request::Guides;
@@ -167,7 +166,7 @@ const LARGE: u32 = 8192;
 /// The errors of planning.
 pub fn is_local(graph: &Graph, guides: Guides, frames: Frames) -> isophote::Result<bool> {
     let planned = Planned::new(graph, Request { guides, frames, ..Request::new(LARGE, LARGE) })?;
-    Ok(matches!(planned.plan().support(), Support::Pixels(halo) if halo < LARGE / 2))
+    Ok(planned.plan().support().sides().is_some_and(|sides| sides.iter().all(|halo| *halo < LARGE / 2)))
 }
 
 /// All effects, in the order of the catalogue, and that for looks.

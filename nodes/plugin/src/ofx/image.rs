@@ -403,7 +403,7 @@ impl<'h> Fetched<'h> {
             unsafe { checked.write(image, threads, &last) }
         } else {
             (window.y0..window.y1).for_each(|y| last(y, image.row_mut(y)));
-            let mut part = image.crop(inside).map_err(|_| kOfxStatErrMemory)?;
+            let mut part = pool::part(image, inside, threads).map_err(|_| kOfxStatErrMemory)?;
             // SAFETY: as above.
             unsafe { checked.write(&mut part, threads, AS_COMPUTED) }
         };

@@ -355,7 +355,7 @@ impl<'h> Inputs<'h> {
         // a picture of both fields and one of doubled lines come out alike.
         let grown = self.grown(window);
         let both = read(grown)?;
-        let mut one = both.crop(window).map_err(|_| kOfxStatErrMemory)?;
+        let mut one = pool::part(&both, window, self.threads.threads()).map_err(|_| kOfxStatErrMemory)?;
         for y in window.y0..window.y1 {
             let up = self.frame.picture[3] - 1 - y;
             if up.rem_euclid(2) != field.parity {

@@ -211,7 +211,7 @@ impl RenderAction<'_> {
             let work = Bands { inside: part.inside, ..*work };
             if let Some(result) = plans.find_result(part, executors, &work)? {
                 let window = plans.prepared.plan_window(part.inside);
-                let result = result.crop(window).map_err(|_| kOfxStatErrMemory)?;
+                let result = pool::part(&result, window, work.threads).map_err(|_| kOfxStatErrMemory)?;
                 let result = self.to_host(&plans.prepared, result, part.inside, work.threads)?;
                 pool::keep_image(self.write(result, self.finish(part.inside, None)?)?);
                 continue;

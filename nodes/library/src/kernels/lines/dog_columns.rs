@@ -54,7 +54,7 @@ pub fn pass(plan: &mut PlanBuilder, lightness: ImageId, options: &Options) -> Im
         narrow,
         wide,
     };
-    plan.pass(&KERNEL, &[rows], &params, Class::Field, Support::Pixels(radius))
+    plan.pass(&KERNEL, &[rows], &params, Class::Field, Support::Column(radius))
 }
 
 #[inline(always)]

@@ -33,7 +33,7 @@ pub fn tables(sigma: f32, k: f32) -> (u32, GaussianTable, GaussianTable) {
 pub fn pass(plan: &mut PlanBuilder, lightness: ImageId, sigma: f32, k: f32) -> ImageId {
     let (radius, narrow, wide) = tables(sigma, k);
     let params = Params { radius: radius as i32, padding: Default::default(), narrow, wide };
-    plan.pass(&KERNEL, &[lightness], &params, Class::Field, Support::Pixels(radius))
+    plan.pass(&KERNEL, &[lightness], &params, Class::Field, Support::Row(radius))
 }
 
 /// Values that are summed at once: sixteen pixels.

@@ -47,7 +47,7 @@ pub fn pass(plan: &mut PlanBuilder, color: ImageId, side: &Side) -> ImageId {
         tie: TIE,
         weights: side.weights,
     };
-    let support = Support::Pixels(side.reach() as u32);
+    let support = Support::Column(side.reach() as u32);
     let level = plan.desc(color).level;
     plan.pass_at(&KERNEL, &[left, right, squares, color], &params, &[Class::Colour], support, level)
 }

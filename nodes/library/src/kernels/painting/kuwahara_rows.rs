@@ -89,7 +89,7 @@ pub fn pass(plan: &mut PlanBuilder, color: ImageId, side: &Side) -> ImageId {
         weights: side.weights,
     };
     let level = plan.desc(color).level;
-    plan.pass_at(&KERNEL, &[color], &params, &[Class::Field; 3], Support::Pixels(side.reach() as u32), level)
+    plan.pass_at(&KERNEL, &[color], &params, &[Class::Field; 3], Support::Row(side.reach() as u32), level)
 }
 
 #[inline(always)]

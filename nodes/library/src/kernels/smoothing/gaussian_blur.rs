@@ -52,8 +52,8 @@ fn both_axes(
     let weights = gaussian_table(sigma, radius);
     let rows = Params { axis: [1, 0], radius: radius as i32, coverage: coverage[0], weights };
     let columns = Params { axis: [0, 1], coverage: coverage[1], ..rows };
-    let half = plan.pass(&KERNEL, &[image], &rows, class, Support::Pixels(radius));
-    plan.pass(&KERNEL, &[half], &columns, class, Support::Pixels(radius))
+    let half = plan.pass(&KERNEL, &[image], &rows, class, Support::Row(radius));
+    plan.pass(&KERNEL, &[half], &columns, class, Support::Column(radius))
 }
 
 fn run(pass: &CpuPass<'_>, band: &mut Band<'_>) {
