@@ -2,7 +2,8 @@
 //! plan that describes it, whichever frame that plan is for.
 
 use super::parts::{Kept, Plan};
-use std::hash::{DefaultHasher, Hash, Hasher};
+use std::hash::{Hash, Hasher};
+use twox_hash::XxHash3_128;
 
 impl Plan {
     /// A number for each of [`Plan::kept`], in its order: of the passes that make it, down to their uniform bytes, and
@@ -29,12 +30,23 @@ impl Plan {
     }
 }
 
-/// 128 bits, so that no two images of a run meet.
+/// 128 bits of XXH3, so that no two images of a run meet.
 pub(super) fn hash(value: &impl Hash) -> u128 {
-    let half = |salt: u8| {
-        let mut hasher = DefaultHasher::new();
-        (salt, value).hash(&mut hasher);
-        u128::from(hasher.finish())
-    };
-    half(0) << 64 | half(1)
+    let mut bytes = Bytes(Vec::new());
+    value.hash(&mut bytes);
+    XxHash3_128::oneshot(&bytes.0)
+}
+
+/// All that is hashed of a value, one behind the other.
+struct Bytes(Vec<u8>);
+
+impl Hasher for Bytes {
+    fn write(&mut self, bytes: &[u8]) {
+        self.0.extend_from_slice(bytes);
+    }
+
+    fn finish(&self) -> u64 {
+        // Half of the number; the whole is taken from the bytes.
+        XxHash3_128::oneshot(&self.0) as u64
+    }
 }
