@@ -120,14 +120,11 @@ pub fn part(of: &Image, window: Rect, threads: &dyn Threads) -> Result<Image> {
     Ok(part)
 }
 
-/// An image of this shape, whose values are unspecified.
-///
-/// # Errors
-/// As [`Image::with_window`].
-pub fn image(window: Rect, channels: u32) -> Result<Image> {
+/// Memory for an image of this shape, if some is kept.
+pub fn spare(window: Rect, channels: u32) -> Option<Image> {
     let bytes = window.area() * u64::from(channels) * 4;
     if bytes < LEAST {
-        return Image::with_window(window, channels);
+        return None;
     }
     let mut pool = lock();
     let fitting = pool.images.iter().enumerate().filter(|(_, (_, image))| {
@@ -135,9 +132,15 @@ pub fn image(window: Rect, channels: u32) -> Result<Image> {
         (bytes..=bytes.saturating_mul(2)).contains(&image.memory())
     });
     let best = fitting.min_by_key(|(_, (_, image))| image.memory()).map(|(at, _)| at);
-    let found = best.map(|at| pool.images.remove(at).1);
-    drop(pool);
-    match found {
+    best.map(|at| pool.images.remove(at).1)
+}
+
+/// An image of this shape, whose values are unspecified.
+///
+/// # Errors
+/// As [`Image::with_window`].
+pub fn image(window: Rect, channels: u32) -> Result<Image> {
+    match spare(window, channels) {
         Some(image) => image.reshaped(window, channels),
         None => match Image::with_window(window, channels) {
             Err(Error::Memory(_)) => {

@@ -99,7 +99,9 @@ impl CpuExecutor {
         let windows = plan.windows(region);
         let images = Images::bind(plan, inputs, &windows)?;
         let schedule = Schedule::new(plan, region, &windows, self.strip_rows(threads));
-        let mut run = Run { executor: self, plan, windows, region, schedule, images, threads, control };
+        let leaving = plan.outputs().iter().map(|port| port.image).collect();
+        let mut run =
+            Run { executor: self, plan, windows, region, schedule, images, leaving, threads, control };
         let results = run.passes(None).and_then(|()| run.results());
         run.images.recycle(&mut run.executor.spare);
         if matches!(results, Err(Error::Memory(_))) {
@@ -128,8 +130,9 @@ impl CpuExecutor {
         if self.kept() > schedule.bytes(plan, &windows) {
             self.purge();
         }
-        let images = Images::none(plan, &windows);
-        let mut run = Run { executor: self, plan, windows, region, schedule, images, threads, control };
+        let (images, leaving) = (Images::none(plan, &windows), Vec::new());
+        let mut run =
+            Run { executor: self, plan, windows, region, schedule, images, leaving, threads, control };
         let result = run.passes(Some(rows));
         run.images.recycle(&mut run.executor.spare);
         if matches!(result, Err(Error::Memory(_))) {
@@ -150,14 +153,16 @@ impl CpuExecutor {
         self.strip.unwrap_or(STRIP.max(BAND * threads.count() as i32 * 4))
     }
 
-    /// Memory for an image that passes write: the smallest spare one that is enough, or a new one.
+    /// Memory for an image that passes write: the smallest spare one that is enough, or a new one. One that `leaves` takes its
+    /// memory with it, which is not to be much more than it needs.
     ///
     /// # Errors
     /// [`Error::Memory`] when there is not enough.
-    fn take(&mut self, window: Rect, channels: u32) -> Result<Image> {
+    fn take(&mut self, window: Rect, channels: u32, leaves: bool) -> Result<Image> {
         let need = window.area() * u64::from(channels) * size_of::<f32>() as u64;
         let fit = |image: &Image| (image.memory() < need, image.memory().abs_diff(need));
-        let best = (0..self.spare.len()).min_by_key(|i| fit(&self.spare[*i]));
+        let may = |i: &usize| !leaves || (need..=need + need / 2).contains(&self.spare[*i].memory());
+        let best = (0..self.spare.len()).filter(may).min_by_key(|i| fit(&self.spare[*i]));
         let mut image = best.map(|i| self.spare.swap_remove(i)).unwrap_or_default();
         if image.reshape(window, channels).is_err() {
             // What is kept may be all that there is.
@@ -176,6 +181,8 @@ struct Run<'r> {
     region: Rect,
     schedule: Schedule,
     images: Images<'r>,
+    /// Images whose memory goes to the caller.
+    leaving: Vec<ImageId>,
     threads: &'r dyn Threads,
     control: Control<'r>,
 }
@@ -289,7 +296,8 @@ impl Run<'_> {
             None => {
                 let window = self.windows[at];
                 let y1 = window.y0 + self.schedule.capacity[at];
-                self.executor.take(Rect { y1, ..window }, self.plan.desc(id).channels)?
+                let leaves = self.leaving.contains(&id);
+                self.executor.take(Rect { y1, ..window }, self.plan.desc(id).channels, leaves)?
             }
         };
         if self.schedule.frontiers[step][at] > image.window().y1 {

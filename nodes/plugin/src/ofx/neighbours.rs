@@ -13,6 +13,7 @@ use super::kept::{self, PATIENCE};
 use super::prepared::Prepared;
 use super::segments::{Part, parts, segments};
 use super::stop::Stop;
+use crate::pool;
 use isophote::Error;
 use isophote::engine::cpu::{Control, CpuExecutor, Threads};
 use isophote::engine::plan::{Port, Shared};
@@ -266,6 +267,11 @@ impl Search<'_, '_> {
             let handed = names.iter().zip(&at_hand).map(|(name, (_, image))| (&name[..], &**image));
             let read = pixels.read.iter().map(|read| (&read.name[..], &read.pixels));
             let named: Vec<(&str, &Image)> = read.chain(handed).collect();
+            // What is kept of these leaves the executor, and those come back that are kept no longer.
+            for id in &ids {
+                let spare = pool::spare(windows[id.index()], plan.desc(*id).channels);
+                spare.into_iter().for_each(|image| executor.recycle(image));
+            }
             let images = executor.run(&part, &named, region, self.threads, self.control);
             faults::computed(ids.len());
             Ok(images.map_err(Error::from)?)
