@@ -350,6 +350,51 @@ fn against_process(id: &str, size: [i32; 2], render: impl Fn()) {
     );
 }
 
+/// Rounds in which frames are compared with stills.
+const ROUNDS: usize = 7;
+
+/// The middle one of some times.
+fn middle(times: &mut Vec<f64>) -> f64 {
+    times.sort_by(f64::total_cmp);
+    times[times.len() / 2]
+}
+
+/// Prints how many stills the first frame of a sequence takes, and later ones, in the median over some sequences: those of the
+/// clock, and of processors. Each sequence is compared with stills right before and after it, so that other work on the machine
+/// slows both.
+fn against_stills(name: &str, purge: impl Fn(), still: impl Fn(), frame: impl Fn(i32)) {
+    let (mut firsts, mut others) = ([Vec::new(), Vec::new()], [Vec::new(), Vec::new()]);
+    let stills = || {
+        // The first finds memory as frames left it.
+        still();
+        let times = [timed(&still), timed(&still)];
+        [0, 1].map(|at| (times[0][at] + times[1][at]) / 2.0)
+    };
+    let mut before = stills();
+    for _ in 0..ROUNDS {
+        purge();
+        let frames: Vec<[f64; 2]> = (2..6).map(|time| timed(|| frame(time))).collect();
+        let after = stills();
+        for (number, took) in frames.into_iter().enumerate() {
+            let into = if number == 0 { &mut firsts } else { &mut others };
+            for at in 0..2 {
+                into[at].push(took[at] * 2.0 / (before[at] + after[at]));
+            }
+        }
+        before = after;
+    }
+    let [first, other] = [&mut firsts, &mut others].map(|all| [middle(&mut all[0]), middle(&mut all[1])]);
+    let spread = |all: &[f64]| [all[all.len() / 4], all[all.len() * 3 / 4]];
+    println!(
+        "{name}: the first frame takes {:.2} stills, {:.2} of processors; later ones {:.2}, {:.2} of processors (half of them {:.2?})",
+        first[0],
+        first[1],
+        other[0],
+        other[1],
+        spread(&others[1])
+    );
+}
+
 /// By hand: pages and times of frames of 1920 x 1080, cold and warm, and of neighbours in order. Each time comes with that of
 /// processors.
 pub fn times_of_warm_renders() {
@@ -372,35 +417,24 @@ pub fn times_of_warm_renders() {
         let warm = least(render);
         println!("{id}: cold {} pages, {:.1?} ms; warm {} pages, {:.1?} ms", cold.0, cold.1, warm.0, warm.1);
         against_process(id, size, render);
-        let stills = |times: [f64; 2]| [0, 1].map(|at| times[at] / warm.1[at]);
         if id == "gaussian" {
             continue;
         }
-        for motion_from in [1, 2] {
+        for (motion_from, rows, name) in
+            [(1, size[1], "in order"), (1, 120, "in strips"), (2, size[1], "estimated")]
+        {
             let film = steadied(&described, size);
             film.set("working_space", 1);
             film.set("motion_from", motion_from);
             film.connect("Output", Picture::new(Layout::default(), size[0], size[1]));
-            purge(plugin);
-            let frames = (2..6)
-                .map(|time| stills(timed(|| assert_eq!(film.render_connected(&wanted(time)), kOfxStatOK))));
-            let frames: Vec<[f64; 2]> = frames.collect();
-            println!("{id}, motion from {motion_from}: frames in order take {frames:.2?} stills");
-            if motion_from == 2 {
-                // Estimates are of whole pictures.
-                continue;
-            }
-            purge(plugin);
-            let strips = (2..6).map(|time| {
-                stills(timed(|| {
-                    for y in (0..size[1]).step_by(120) {
-                        let window = [0, y, size[0], y + 120];
-                        let wanted = Wanted { time: time.into(), ..Wanted::new(window) };
-                        assert_eq!(film.render_connected(&wanted), kOfxStatOK);
-                    }
-                }))
-            });
-            println!("{id}: frames in nine strips take {:.2?} stills", strips.collect::<Vec<[f64; 2]>>());
+            let frame = |time: i32| {
+                for y in (0..size[1]).step_by(rows as usize) {
+                    let window = [0, y, size[0], y + rows];
+                    let wanted = Wanted { time: time.into(), ..Wanted::new(window) };
+                    assert_eq!(film.render_connected(&wanted), kOfxStatOK);
+                }
+            };
+            against_stills(&format!("{id} {name}"), || purge(plugin), render, frame);
         }
     }
 }
