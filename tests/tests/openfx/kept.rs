@@ -354,7 +354,7 @@ fn against_process(id: &str, size: [i32; 2], render: impl Fn()) {
 const ROUNDS: usize = 7;
 
 /// The middle one of some times.
-fn middle(times: &mut Vec<f64>) -> f64 {
+fn middle(times: &mut [f64]) -> f64 {
     times.sort_by(f64::total_cmp);
     times[times.len() / 2]
 }
