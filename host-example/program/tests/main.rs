@@ -47,6 +47,7 @@ mod view_device;
 mod view_end;
 mod view_files;
 mod view_frames;
+mod view_keys;
 mod view_life;
 mod view_looks;
 mod view_materials;

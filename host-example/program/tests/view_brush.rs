@@ -9,6 +9,7 @@ use egui::{Event, Modifiers, PointerButton, Pos2, pos2};
 use egui_kittest::Harness;
 use egui_kittest::kittest::Queryable;
 use exr::prelude::WritableImage;
+use isophote_files::files::Existing;
 use isophote_finishing::stylize::value::Value;
 use isophote_loader::{Control, Library};
 use isophote_pictures::exr::Guide;
@@ -210,9 +211,9 @@ fn maps_are_kept_with_their_files_and_nothing_is_lost_unasked() {
     harness.state_mut().undo();
     assert_eq!(painted(harness.state(), Channel::Mask)(45, 30), 0);
     // Saved, it is as safe as a file.
-    let maps = Arc::clone(harness.state().open.playback().and_then(|p| p.maps()).expect("maps"));
-    maps::write(Kind::Mask, &maps, SIZE, &file).expect("it is saved");
-    let saved = Opened::SavedMap(Kind::Mask, file.clone(), Arc::clone(&maps));
+    let over = harness.state().open.playback().and_then(Playback::painted).expect("maps");
+    maps::write_all(Kind::Mask, &over, &file, Existing::Keep).expect("it is saved");
+    let saved = Opened::SavedMap(Kind::Mask, file.clone(), over.keys);
     harness.state_mut().take_over(Outcome::Opened(saved));
     assert!(harness.state().unsaved_maps().is_empty());
     let session = harness.state_mut();
@@ -347,11 +348,12 @@ fn what_is_painted_fits_files_whose_pixels_are_not_square_and_lies_on_all_frames
     session.painting.brush.channel = Channel::Mask;
     session.begin_stroke([30.0, 30.0], false);
     session.end_stroke();
-    let (maps, size) = session.open.playback().and_then(Playback::painted).expect("maps");
-    maps::write(Kind::Mask, &maps, size, &at("wide.png")).expect("it is saved");
+    let over = session.open.playback().and_then(Playback::painted).expect("maps");
+    maps::write_all(Kind::Mask, &over, &at("wide.png"), Existing::Replace).expect("it is saved");
     let mut apply = isophote();
     apply.args(["apply", "ink"]).args([at("wide.exr"), at("out.exr")]).arg("--mask").arg(at("wide.png"));
     succeeds(&mut apply);
-    let read = maps::read(Kind::Mask, &at("wide.png"), [size, maps.size()]).expect("it is read");
+    let size = session.open.playback().expect("a picture").size();
+    let read = maps::read(Kind::Mask, &at("wide.png"), [over.size, size]).expect("it is read");
     assert_eq!(read.layer(Channel::Mask).get(30, 30), 0);
 }

@@ -3,6 +3,7 @@
 //! Between two key frames the maps of both are seen, each the more the nearer it is; before the first and after the last there is
 //! one. Where neither is seen, nothing is painted.
 
+pub mod files;
 mod places;
 mod vectors;
 
@@ -12,13 +13,9 @@ use std::path::PathBuf;
 use self::places::{Field, Places};
 pub use self::vectors::Vectors;
 use isophote_files::error::{Error, Result};
-use isophote_files::files::Existing;
-use isophote_files::frames::Pattern;
 use isophote_pictures::exr::Selection;
-use isophote_pictures::meaning::Meaning;
-use isophote_pictures::pixels::{Pixels, Precision, Samples};
-use isophote_pictures::read::{self, Source};
-use isophote_pictures::write::{self, Format, Options};
+use isophote_pictures::pixels::{Pixels, Samples};
+use isophote_pictures::read;
 
 /// A map and the frame that it was painted on.
 #[derive(Debug)]
@@ -26,6 +23,8 @@ pub struct Key {
     /// Number of the frame.
     pub frame: i64,
     map: Pixels,
+    /// Numbers where nothing is painted, one a channel.
+    nothing: Vec<f32>,
 }
 
 /// Frame that was carried to.
@@ -37,7 +36,29 @@ pub struct Carried {
     pub unknown: f32,
 }
 
+/// Taker of the maps of all frames.
+pub trait Taker {
+    /// Goes on or not, which is asked for each frame on the way.
+    ///
+    /// # Errors
+    /// The reason why no more frames are wanted.
+    fn goes_on(&self) -> Result<()> {
+        Ok(())
+    }
+
+    /// Takes the map of a frame; they come in order.
+    ///
+    /// # Errors
+    /// The reason why it cannot be taken, which ends all.
+    fn take(&mut self, carried: Carried, map: Pixels) -> Result<()>;
+}
+
 impl Key {
+    /// A map that was painted on a frame, with numbers of 0 to 1 where nothing is painted, one a channel.
+    pub fn new(frame: i64, map: Pixels, nothing: Vec<f32>) -> Self {
+        Self { frame, map, nothing }
+    }
+
     /// Reads the maps of frames, as they are stored, all with as many channels.
     ///
     /// # Errors
@@ -47,7 +68,7 @@ impl Key {
             let mut source = read::read(path, &Selection::default())?;
             let picture = source.pictures.drain(..).next();
             let pixels = picture.ok_or_else(|| Error::file(path, "is empty", "name another map"))?.pixels;
-            Ok(Self { frame: *frame, map: without_plain_alpha(pixels) })
+            Ok(Self::new(*frame, without_plain_alpha(pixels), Vec::new()))
         };
         let mut keys: Vec<Self> = files.iter().map(read).collect::<Result<_>>()?;
         let most = keys.iter().map(|key| key.map.channels()).max().unwrap_or_default();
@@ -60,6 +81,8 @@ impl Key {
                     return Err(Error::file(path, problem, "carry masks by themselves"));
                 }
             }
+            // Control maps have colours, and their half is neutral; masks are grey.
+            key.nothing = vec![if most >= 3 { 0.5 } else { 0.0 }; most as usize];
         }
         Ok(keys)
     }
@@ -68,9 +91,14 @@ impl Key {
         (self.map.width(), self.map.height())
     }
 
-    /// Number where nothing is painted: the half of a control map, which has colours, and 0 of a grey mask.
-    fn nothing(&self) -> f32 {
-        if self.map.channels() >= 3 { 0.5 } else { 0.0 }
+    /// The map of another frame by its numbers, 32 bits a channel; where they are none, nothing is painted.
+    fn filled(&self, numbers: Vec<f32>) -> Result<Pixels> {
+        let (width, height) = self.size();
+        let nothing = self.nothing.iter().cycle();
+        let numbers = numbers.into_iter().zip(nothing);
+        let numbers = numbers.map(|(value, nothing)| if value.is_nan() { *nothing } else { value }).collect();
+        let pixels = Pixels::new(width, height, self.map.channels(), Samples::F32(numbers));
+        pixels.ok_or_else(|| Error::failure("a map is not as large as it should be", "report it"))
     }
 }
 
@@ -94,24 +122,20 @@ fn with_neutral_alpha(pixels: &Pixels) -> Pixels {
     made.map_or_else(|| pixels.clone(), |made| made.converted(pixels.precision()))
 }
 
-/// Files that are read and written.
+/// Frames, and what is painted on some of them.
 pub struct Shot<'s> {
     /// Numbers of its frames, in order.
     pub frames: &'s [i64],
     /// Maps of some of them, in order, at least one.
     pub keys: &'s [Key],
-    /// Files of the maps of all.
-    pub out: &'s Pattern,
-    /// Treatment of those that are there.
-    pub existing: Existing,
 }
 
 impl Shot<'_> {
-    /// Carries the maps to all frames, and tells of each when it is written.
+    /// Carries the maps to all frames.
     ///
     /// # Errors
-    /// [`Error::Input`] for maps of other sizes and frames without vectors; as reading and writing.
-    pub fn carry(&self, vectors: &mut Vectors, told: &mut dyn FnMut(Carried)) -> Result<()> {
+    /// [`Error::Input`] for maps of other sizes and frames without vectors; as reading, and those of the taker.
+    pub fn carry(&self, vectors: &mut Vectors, taker: &mut dyn Taker) -> Result<()> {
         for key in self.keys {
             let (size, map) = (vectors.size(key.frame)?, key.size());
             if size != map {
@@ -123,7 +147,7 @@ impl Shot<'_> {
                 ));
             }
         }
-        // Before anything is written.
+        // Before anything is made.
         if let Some(pair) = self.frames.windows(2).find(|pair| pair[1] != pair[0] + 1) {
             let problem = format!("has no frame {}, and motion leads from frame to frame", pair[0] + 1);
             return Err(Error::input(
@@ -144,10 +168,9 @@ impl Shot<'_> {
             let to = after.map_or(i64::MAX, |key| key.frame - 1);
             let between: Vec<i64> =
                 self.frames.iter().copied().filter(|frame| (from..=to).contains(frame)).collect();
-            self.span((before, after), &between, vectors, told)?;
+            self.span((before, after), &between, vectors, taker)?;
             if let Some(key) = after {
-                self.write(key.frame, key.map.to_f32(), key)?;
-                told(Carried { frame: key.frame, unknown: 0.0 });
+                taker.take(Carried { frame: key.frame, unknown: 0.0 }, key.map.clone())?;
             }
             before = after;
         }
@@ -160,17 +183,18 @@ impl Shot<'_> {
         (before, after): (Option<&Key>, Option<&Key>),
         frames: &[i64],
         vectors: &mut Vectors,
-        told: &mut dyn FnMut(Carried),
+        taker: &mut dyn Taker,
     ) -> Result<()> {
         let Some(key) = before.or(after).filter(|_| !frames.is_empty()) else { return Ok(()) };
         let backward: Vec<i64> = frames.iter().rev().copied().collect();
         // From the key frame after, last frame first, to be read in the other order.
         let mut later = match after {
-            Some(after) => Some(self.stored(after, &backward, vectors)?),
+            Some(after) => Some(stored(after, &backward, vectors, taker)?),
             None => None,
         };
         let mut places = before.map(|before| (before, Walk::from(before)));
         for (index, frame) in frames.iter().enumerate() {
+            taker.goes_on()?;
             let first = match &mut places {
                 Some((key, walk)) => Some(walk.to(*frame, vectors)?.seen(&key.map)),
                 None => None,
@@ -190,46 +214,22 @@ impl Shot<'_> {
             let mixed = mixed(first, last, share);
             let unknown =
                 mixed.iter().filter(|value| value.is_nan()).count() as f32 / mixed.len().max(1) as f32;
-            let nothing = key.nothing();
-            let map = mixed.into_iter().map(|value| if value.is_nan() { nothing } else { value }).collect();
-            self.write(*frame, map, key)?;
-            told(Carried { frame: *frame, unknown });
+            taker.take(Carried { frame: *frame, unknown }, key.filled(mixed)?)?;
         }
         Ok(())
     }
+}
 
-    /// A key frame's map as each of the frames sees it.
-    fn stored(&self, key: &Key, frames: &[i64], vectors: &mut Vectors) -> Result<Stored> {
-        let (width, height) = key.size();
-        let mut stored = Stored::new(width as usize * height as usize * key.map.channels() as usize)?;
-        let mut walk = Walk::from(key);
-        for frame in frames {
-            stored.add(&walk.to(*frame, vectors)?.seen(&key.map))?;
-        }
-        Ok(stored)
+/// A key frame's map as each of the frames sees it.
+fn stored(key: &Key, frames: &[i64], vectors: &mut Vectors, taker: &dyn Taker) -> Result<Stored> {
+    let (width, height) = key.size();
+    let mut stored = Stored::new(width as usize * height as usize * key.map.channels() as usize)?;
+    let mut walk = Walk::from(key);
+    for frame in frames {
+        taker.goes_on()?;
+        stored.add(&walk.to(*frame, vectors)?.seen(&key.map))?;
     }
-
-    fn write(&self, frame: i64, numbers: Vec<f32>, key: &Key) -> Result<()> {
-        let path: PathBuf = self.out.file(frame);
-        let format = Format::of(&path)?;
-        let (width, height) = key.size();
-        let pixels = Pixels::new(width, height, key.map.channels(), Samples::F32(numbers));
-        let pixels =
-            pixels.ok_or_else(|| Error::failure("a map is not as large as it should be", "report it"))?;
-        let precision = if format == Format::Exr { Precision::F32 } else { key.map.precision() };
-        let pixels = pixels.converted(precision);
-        let meaning = Meaning::display();
-        let source = Source::alone(pixels.clone(), meaning.clone());
-        write::write(
-            &path,
-            self.existing,
-            (format, Options::default()),
-            vec![pixels],
-            &meaning,
-            &source,
-            None,
-        )
-    }
+    Ok(stored)
 }
 
 /// Way from a key frame on, frame by frame.

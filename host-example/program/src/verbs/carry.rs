@@ -11,6 +11,7 @@ use isophote_files::error::{Error, Result};
 use isophote_files::frames::{self, Pattern};
 use isophote_files::replacing::{Inputs, Made};
 use isophote_files::{files, output};
+use isophote_finishing::carry::files::MapFiles;
 use isophote_finishing::carry::{Carried, Key, Shot, Vectors};
 use isophote_loader::Library;
 use isophote_pictures::exr::{Convention, Selection};
@@ -62,14 +63,14 @@ pub fn run(args: &CarryArgs) -> Result<()> {
     args.check(&out, &numbers, &keys)?;
     let keys = Key::read_all(&keys)?;
     let mut vectors = args.vectors(shot)?;
-    let existing = args.force.existing();
-    let shot = Shot { frames: &numbers, keys: &keys, out: &out, existing };
     let mut worst: Vec<Carried> = Vec::new();
-    shot.carry(&mut vectors, &mut |carried| {
+    let mut told = |carried: Carried| {
         if carried.unknown > TOLD {
             worst.push(carried);
         }
-    })?;
+    };
+    let mut files = MapFiles::new(&out, args.force.existing(), &keys, &mut told);
+    Shot { frames: &numbers, keys: &keys }.carry(&mut vectors, &mut files)?;
     if let Some(most) = worst.iter().max_by(|a, b| a.unknown.total_cmp(&b.unknown)) {
         let frames: Vec<i64> = worst.iter().map(|carried| carried.frame).collect();
         output::warn(format_args!(

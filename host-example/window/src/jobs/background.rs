@@ -5,6 +5,7 @@ use std::sync::Arc;
 
 use egui::ColorImage;
 
+use super::carrying::{CarryJob, Carrying};
 use super::dialogs::SystemDialogs;
 use super::document::Document;
 use super::exporting::Exporting;
@@ -22,6 +23,7 @@ use crate::state::samples::{self, SAMPLES};
 use crate::state::session::Session;
 use crate::state::work::Request;
 use isophote_files::error::Result;
+use isophote_files::files::Existing;
 use isophote_loader::Library;
 use isophote_pictures::exr::{Layer, Selection};
 use isophote_pictures::material::MaterialKind;
@@ -40,6 +42,7 @@ pub struct Background {
     is_start_made: bool,
     dialogs: SystemDialogs,
     export: Exporting,
+    carrying: Carrying,
     reveal: Reveal,
 }
 
@@ -60,6 +63,7 @@ impl Background {
             is_start_made: false,
             dialogs: SystemDialogs::new(wake),
             export: Exporting::default(),
+            carrying: Carrying::new(wake)?,
             reveal: Reveal::new(wake),
         })
     }
@@ -71,7 +75,9 @@ impl Background {
 
     /// The work that is being done, in words.
     pub fn busy(&self) -> Option<&'static str> {
-        self.opener.is_busy().then_some("Opening").or(self.export.is_running().then_some("Exporting"))
+        let opening = self.opener.is_busy().then_some("Opening");
+        let carrying = self.carrying.is_busy().then_some("Carrying");
+        opening.or(self.export.is_running().then_some("Exporting")).or(carrying)
     }
 
     /// Reads frames of a document from when it is shown on.
@@ -99,6 +105,7 @@ impl Background {
             }
         }
         outcomes.extend(self.export.progress());
+        outcomes.extend(self.carrying.answer());
         outcomes.extend(self.reveal.problem().map(Outcome::Failed));
         outcomes.extend(self.looks.collect());
         outcomes.extend(self.reducer.answer().map(Outcome::Samples));
@@ -156,9 +163,17 @@ impl Background {
                     job.into_iter().for_each(|job| self.opener.ask(job));
                 }
                 Request::SaveMap(kind, path) => {
-                    let maps = session.open.playback().and_then(Playback::painted);
-                    let job = maps.map(|(maps, size)| OpenJob::SaveMap(kind, path, maps, size));
+                    // The dialog has asked for one file; of several only those that were saved from here may be replaced.
+                    let over = session.open.playback().and_then(Playback::painted);
+                    let is_own = session.painting.saved.iter().any(|(_, known, _)| *known == path);
+                    let existing = if is_own { Existing::Replace } else { Existing::Keep };
+                    let job = over.map(|over| OpenJob::SaveMap(kind, path, over, existing));
                     job.into_iter().for_each(|job| self.opener.ask(job));
+                }
+                Request::CarryMaps => {
+                    let playback = session.open.playback();
+                    let job = playback.and_then(|playback| CarryJob::of(playback, &self.library));
+                    job.into_iter().for_each(|job| self.carrying.ask(job));
                 }
                 Request::OpenDemo => self.opener.ask(OpenJob::Demo),
                 Request::OpenSample(index) => {

@@ -18,7 +18,7 @@ use serde_json::Value;
 use super::maps;
 use crate::state::document::kind::Kind as DocumentKind;
 use crate::state::painted::channel::Kind;
-use crate::state::painted::maps::Maps;
+use crate::state::playback::PaintedOver;
 use crate::state::progress::{Progress, State};
 use isophote_files::error::{Error, Result};
 use isophote_files::files;
@@ -48,8 +48,8 @@ pub struct ExportJob {
     pub turntable: bool,
     /// Frames per second of scenes and of sequences that become videos.
     pub rate: f64,
-    /// Maps that are painted over the document, for pictures of a size.
-    pub maps: Option<(Arc<Maps>, (u32, u32))>,
+    /// Maps that are painted over the document.
+    pub maps: Option<PaintedOver>,
     /// More options of the verb.
     pub arguments: Vec<OsString>,
     /// The program instead of this one.
@@ -121,10 +121,11 @@ impl ExportJob {
                 }
             }
         }
-        if let Some((maps, size)) = &self.maps {
-            for kind in Kind::ALL.into_iter().filter(|kind| maps.has(*kind)) {
-                let file = folder.join(format!("{}.png", kind.option()));
-                maps::write(kind, maps, *size, &file)?;
+        if let Some(over) = &self.maps {
+            for kind in Kind::ALL.into_iter().filter(|kind| over.keys.has(*kind)) {
+                let number = if over.keys.is_one() { "" } else { ".####" };
+                let file = folder.join(format!("{}{number}.png", kind.option()));
+                maps::write_all(kind, over, &file, files::Existing::Replace)?;
                 command.arg(format!("--{}", kind.option())).arg(file);
             }
         }

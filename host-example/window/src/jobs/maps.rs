@@ -5,8 +5,10 @@ use std::sync::Arc;
 
 use crate::state::painted::channel::Kind;
 use crate::state::painted::maps::Maps;
+use crate::state::playback::PaintedOver;
 use isophote_files::error::{Error, Result};
 use isophote_files::files::Existing;
+use isophote_files::frames::Pattern;
 use isophote_finishing::apply::masks::{MaskChoice, Masks};
 use isophote_finishing::apply::painted::PAINTED;
 use isophote_pictures::exr::{Guide, MaskSource, OnUnknown};
@@ -34,6 +36,33 @@ pub fn write(kind: Kind, maps: &Maps, (width, height): (u32, u32), path: &Path) 
     let (meaning, format) = (Meaning::display(), (Format::Png, Options::default()));
     let source = Source::alone(pixels.clone(), meaning.clone());
     write::write(path, Existing::Replace, format, vec![pixels], &meaning, &source, None)
+}
+
+/// Writes a map of all that is painted over a document: as one file, or as one for each frame where frames have maps of their own.
+///
+/// # Errors
+/// As [`write`]; [`Error::Input`] for a path without a place for a frame's number, and where a file is there that may not be
+/// replaced.
+pub fn write_all(kind: Kind, over: &PaintedOver, path: &Path, existing: Existing) -> Result<()> {
+    let PaintedOver { keys, size, numbers } = over;
+    if keys.is_one() {
+        let maps = keys.iter().next().map(|(_, maps)| maps);
+        return maps.map_or(Ok(()), |maps| write(kind, maps, *size, path));
+    }
+    let pattern = Pattern::new(path)?.ok_or_else(|| {
+        let problem = "is one file, and frames have maps of their own";
+        Error::file(path, problem, "write #### where their numbers are to be, as in map.####.png")
+    })?;
+    let taken = numbers.iter().map(|number| pattern.file(*number)).find(|file| file.exists());
+    if let Some(file) = taken.filter(|_| existing == Existing::Keep) {
+        return Err(Error::file(&file, "is there already", "choose another name, or remove it"));
+    }
+    for number in numbers.iter() {
+        if let Some(maps) = keys.seen(*number) {
+            write(kind, maps, *size, &pattern.file(*number))?;
+        }
+    }
+    Ok(())
 }
 
 /// Reads a map for a file with a picture of a size, as one for the picture as it is shown.

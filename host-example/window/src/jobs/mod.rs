@@ -1,6 +1,7 @@
 //! Work beside the window: threads and processes, and the channels on which their results come back.
 
 pub(crate) mod background;
+pub mod carrying;
 mod dialogs;
 pub mod document;
 pub mod export;

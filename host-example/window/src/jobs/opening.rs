@@ -10,10 +10,11 @@ use crate::state::document::kind::Kind as DocumentKind;
 use crate::state::look::EditedLook;
 use crate::state::outcome::Opened;
 use crate::state::painted::channel::Kind;
-use crate::state::painted::maps::Maps;
+use crate::state::playback::PaintedOver;
 use crate::state::samples::Sample;
 use crate::state::scenery::OnScene;
 use isophote_files::error::Result;
+use isophote_files::files::Existing;
 use isophote_files::frames;
 use isophote_finishing::stylize::palette;
 use isophote_finishing::{naming, video};
@@ -44,8 +45,8 @@ pub enum OpenJob {
     Palette(Library, PathBuf),
     /// A painted map for pictures of a size in their file, and another as they are shown.
     Map(Kind, PathBuf, [(u32, u32); 2]),
-    /// A painted map, to be saved for a picture of a size.
-    SaveMap(Kind, PathBuf, Arc<Maps>, (u32, u32)),
+    /// A painted map, to be saved.
+    SaveMap(Kind, PathBuf, PaintedOver, Existing),
 }
 
 /// Something that was opened, with the document whose frames are to be read while it is shown.
@@ -85,9 +86,9 @@ pub fn open(job: OpenJob) -> Result<WithFrames> {
             let maps = maps::read(kind, &path, sizes)?;
             Opened::Map(kind, path, maps)
         }
-        OpenJob::SaveMap(kind, path, maps, size) => {
-            maps::write(kind, &maps, size, &path)?;
-            Opened::SavedMap(kind, path, maps)
+        OpenJob::SaveMap(kind, path, over, existing) => {
+            maps::write_all(kind, &over, &path, existing)?;
+            Opened::SavedMap(kind, path, over.keys)
         }
     };
     Ok((opened, None))

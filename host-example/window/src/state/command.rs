@@ -8,6 +8,7 @@ use super::playback::Playback;
 use super::quoting::{quoted, quoted_path};
 use super::scenery::Scenery;
 use super::session::Session;
+use isophote_files::frames::Pattern;
 use isophote_finishing::staging::{Behind, MotionArgs, StagingArgs};
 use isophote_finishing::stylize::precision::Precision;
 use isophote_finishing::stylize::preset::Lengths;
@@ -107,21 +108,27 @@ fn painted(session: &Session) -> Vec<String> {
 
 /// Maps of which something is painted.
 fn kinds(session: &Session) -> impl Iterator<Item = Kind> {
-    let maps = session.open.playback().and_then(|playback| playback.maps());
-    Kind::ALL.into_iter().filter(move |kind| maps.is_some_and(|maps| maps.has(*kind)))
+    let keys = session.open.playback().and_then(|playback| playback.keys());
+    Kind::ALL.into_iter().filter(move |kind| keys.is_some_and(|keys| keys.has(*kind)))
 }
 
 /// The file that holds a map as it is painted now.
 fn saved(session: &Session, kind: Kind) -> Option<&PathBuf> {
-    session.painting.file(kind, session.open.playback()?.maps()?)
+    session.painting.file(kind, session.open.playback()?.keys()?)
 }
 
-/// The file that holds a map, or one beside the input that would.
+/// The file that holds a map, or one beside the input that would; where frames have maps of their own the pattern of the files.
 pub fn map_file(session: &Session, kind: Kind) -> PathBuf {
-    let input = session.open.playback().map_or_else(PathBuf::new, |playback| playback.path().to_owned());
+    let playback = session.open.playback();
+    let input = playback.map_or_else(PathBuf::new, |playback| playback.path().to_owned());
+    let is_one = playback.and_then(Playback::keys).is_none_or(|keys| keys.is_one());
     let beside = || {
+        let pattern = Pattern::new(&input).ok().flatten().filter(|_| !is_one);
+        if let Some(pattern) = pattern {
+            return pattern.with_word(kind.option()).with_extension("png");
+        }
         let stem = input.file_stem().unwrap_or_default().to_string_lossy();
-        // The place of a sequence's numbers is none of the map, which lies over all frames.
+        // The place of a sequence's numbers is none of a map that lies over all frames.
         let stem = stem.split_once('.').map_or(&*stem, |(name, _)| name);
         input.with_file_name(format!("{stem}-{}.png", kind.option()))
     };

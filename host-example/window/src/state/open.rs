@@ -48,7 +48,7 @@ impl Open {
         if let Content::Pictures(old) = &self.content {
             playback.rate = old.rate;
             playback.seek(old.number());
-            playback.paint(old.maps().cloned());
+            playback.paint(old.keys().cloned());
         }
         self.content = Content::Pictures(Box::new(playback));
     }

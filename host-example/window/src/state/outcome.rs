@@ -11,6 +11,7 @@ use super::document::Frames;
 use super::document::frame::Frame;
 use super::look::EditedLook;
 use super::painted::channel::Kind;
+use super::painted::key_frames::{CarriedMaps, KeyFrames};
 use super::painted::maps::Maps;
 use super::playback::Playback;
 use super::preview::order::Done;
@@ -47,6 +48,8 @@ pub enum Outcome {
     Idle(IdleControls),
     /// Frames that the document has, and the one that is wanted where it has been read.
     Frames(Frames, Option<Result<Arc<Frame>>>),
+    /// Maps of these key frames were carried along the motion to all frames.
+    Carried(Arc<KeyFrames>, Arc<CarriedMaps>),
     /// Something could not be begun, or has failed.
     Failed(Error),
 }
@@ -73,8 +76,8 @@ pub enum Opened {
     Palette(Colours),
     /// A painted map of a file.
     Map(Kind, PathBuf, Arc<Maps>),
-    /// A painted map was saved in a file.
-    SavedMap(Kind, PathBuf, Arc<Maps>),
+    /// A painted map was saved in a file, or in one for each frame.
+    SavedMap(Kind, PathBuf, Arc<KeyFrames>),
 }
 
 /// Purpose of a dialog of the system.

@@ -5,7 +5,9 @@ use std::sync::Arc;
 use std::time::Instant;
 
 use super::document::frame::{Frame, GuideImage};
+use super::document::kind::Kind;
 use super::document::{Frames, Info, reduce};
+use super::painted::key_frames::KeyFrames;
 use super::painted::maps::Maps;
 use super::things::Things;
 use isophote_files::error::Result;
@@ -28,8 +30,8 @@ pub struct Playback {
     frame: Option<Shown>,
     small: Option<Shown>,
     /// What is painted over the pictures.
-    maps: Option<Arc<Maps>>,
-    /// That, as the frame of the last size has it.
+    keys: Option<Arc<KeyFrames>>,
+    /// The map of the frame that was shown last, as frames of its size have it.
     laid: Option<Laid>,
     /// Size of the picture in the file.
     size: (u32, u32),
@@ -43,9 +45,21 @@ struct Shown {
     painted: Arc<Frame>,
 }
 
+/// Everything that is painted over a document, as files of its frames have it.
+#[derive(Clone, Debug)]
+pub struct PaintedOver {
+    /// The maps.
+    pub keys: Arc<KeyFrames>,
+    /// Size of the picture in the file.
+    pub size: (u32, u32),
+    /// Numbers of the frames, in order; one of pictures.
+    pub numbers: Arc<[i64]>,
+}
+
 /// Maps in the size of frames.
 #[derive(Clone, Debug)]
 struct Laid {
+    maps: Arc<Maps>,
     size: (u32, u32),
     control: Option<Arc<GuideImage>>,
     mask: Option<Arc<Vec<f32>>>,
@@ -74,7 +88,7 @@ impl Playback {
             number,
             frame: Some(Shown::plain(frame)),
             small: small.map(Shown::plain),
-            maps: None,
+            keys: None,
             laid: None,
             size,
             ticked: Instant::now(),
@@ -97,19 +111,43 @@ impl Playback {
         self.frame.as_ref().map(|shown| &shown.read)
     }
 
-    /// Maps that are painted over the pictures.
-    pub fn maps(&self) -> Option<&Arc<Maps>> {
-        self.maps.as_ref()
+    /// Maps of all frames that were painted on.
+    pub fn keys(&self) -> Option<&Arc<KeyFrames>> {
+        self.keys.as_ref()
     }
 
-    /// The same with the size of the picture in its file.
-    pub fn painted(&self) -> Option<(Arc<Maps>, (u32, u32))> {
-        self.maps.clone().map(|maps| (maps, self.file_size()))
+    /// The map that lies on the frame that is shown.
+    pub fn maps(&self) -> Option<&Arc<Maps>> {
+        self.keys.as_ref()?.seen(self.key())
+    }
+
+    /// Number of the frame that is painted on: the one that is shown of a sequence. Pictures and videos are painted on as a whole.
+    pub fn key(&self) -> i64 {
+        self.key_of(self.read().and_then(|frame| frame.number))
+    }
+
+    fn key_of(&self, shown: Option<i64>) -> i64 {
+        let first = self.frames.as_ref().map_or(1, Frames::first);
+        shown.filter(|_| self.has_key_frames()).unwrap_or(first)
+    }
+
+    /// True where each frame may have a map of its own.
+    pub fn has_key_frames(&self) -> bool {
+        self.info.kind == Kind::Sequence && self.frames.is_some()
+    }
+
+    /// Everything that is painted over the document, for files.
+    pub fn painted(&self) -> Option<PaintedOver> {
+        let numbers = self
+            .frames
+            .as_ref()
+            .map_or_else(|| Arc::from([self.key()]), |frames| Arc::clone(&frames.numbers));
+        Some(PaintedOver { keys: self.keys.clone()?, size: self.file_size(), numbers })
     }
 
     /// Paints these over the pictures from now on.
-    pub fn paint(&mut self, maps: Option<Arc<Maps>>) {
-        (self.maps, self.laid) = (maps, None);
+    pub fn paint(&mut self, keys: Option<Arc<KeyFrames>>) {
+        (self.keys, self.laid) = (keys, None);
         let (small, frame) = (self.small.take(), self.frame.take());
         self.small = small.map(|shown| self.lay(shown.read));
         // After it, so that what has the frame's size is kept for the next one.
@@ -118,10 +156,12 @@ impl Playback {
 
     /// A frame with what is painted over it.
     fn lay(&mut self, read: Arc<Frame>) -> Shown {
-        let Some(maps) = &self.maps else { return Shown::plain(read) };
+        let seen = self.keys.as_ref().and_then(|keys| keys.seen(self.key_of(read.number)));
+        let Some(maps) = seen else { return Shown::plain(read) };
         let size = (read.width, read.height);
-        let known = self.laid.take().filter(|laid| laid.size == size);
+        let known = self.laid.take().filter(|laid| laid.size == size && Arc::ptr_eq(&laid.maps, maps));
         let laid = known.unwrap_or_else(|| Laid {
+            maps: Arc::clone(maps),
             size,
             control: maps.control(size).map(Arc::new),
             mask: maps.mask(size).map(Arc::new),

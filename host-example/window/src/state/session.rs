@@ -24,7 +24,7 @@ use super::looks::Looks;
 use super::notes::Notes;
 use super::open::Open;
 use super::painted::Painting;
-use super::painted::maps::Maps;
+use super::painted::key_frames::KeyFrames;
 use super::plan::Plan;
 use super::playback::Playback;
 use super::preview::Previews;
@@ -52,7 +52,7 @@ pub struct State {
     looks: Vec<Arc<EditedLook>>,
     lighting: Option<Lighting>,
     /// What is painted over the pictures that are open.
-    maps: Option<Arc<Maps>>,
+    keys: Option<Arc<KeyFrames>>,
     /// Changes of files that were made.
     files: usize,
 }

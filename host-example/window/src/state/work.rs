@@ -25,8 +25,10 @@ pub enum Request {
     ChooseMaterial(MaterialKind, Option<PathBuf>),
     /// Read a painted map from this file.
     OpenMap(Kind, PathBuf),
-    /// Write a painted map to this file.
+    /// Write a painted map to this file, or those of all frames to files with their numbers.
     SaveMap(Kind, PathBuf),
+    /// Carry what is painted along the motion of the sequence that is open.
+    CarryMaps,
     /// Read which looks there are.
     ListLooks,
     /// Make what is planned.

@@ -11,7 +11,9 @@ use super::{keyboard, theme};
 use crate::state::outcome::Dialog;
 use crate::state::painted::brush::SIZES;
 use crate::state::painted::channel::{Channel, Kind, MOST};
+use crate::state::painted::key_frames::KeyFrames;
 use crate::state::painted::maps::{Maps, middle};
+use crate::state::playback::Playback;
 use crate::state::session::Session;
 use crate::state::viewport::{Area, Compare};
 use crate::state::work::Request;
@@ -20,6 +22,10 @@ use crate::state::work::Request;
 const USUAL: f32 = 600.0;
 /// Most pixels across and down of the picture of what is painted.
 const MOST_SHOWN: u32 = 512;
+/// Most numbers of key frames that are shown.
+const MOST_NUMBERS: usize = 12;
+/// Share of a frame that no key frame shows from which on it is told.
+const TOLD: f32 = 0.01;
 /// Opacity of what is painted in full.
 const OPACITY: f32 = 150.0;
 /// Colour of more.
@@ -29,8 +35,8 @@ const LESS: [u8; 3] = [60, 140, 255];
 /// Colour where the look is taken away.
 const GONE: [u8; 3] = [225, 40, 40];
 
-/// The picture of what is painted: of which revision and channel it is.
-type Drawn = Option<(u64, Channel, TextureHandle)>;
+/// The picture of what is painted: of which revision, frame and channel it is.
+type Drawn = Option<((u64, i64, Channel), TextureHandle)>;
 
 /// True where anything can be painted: on pictures, not on scenes.
 pub fn has_any(session: &Session) -> bool {
@@ -55,9 +61,54 @@ pub fn show(ui: &mut Ui, session: &mut Session) {
     }
     sliders(ui, session);
     whole(ui, session);
-    if session.open.playback().is_some_and(|playback| playback.frames().is_some()) {
-        note(ui, "It lies on all frames as it is.");
+    frames(ui, session);
+}
+
+/// The key frames of a sequence, and how what is painted on them lies on the others.
+fn frames(ui: &mut Ui, session: &mut Session) {
+    let Some(playback) = session.open.playback().filter(|playback| playback.frames().is_some()) else {
+        return;
+    };
+    if !playback.has_key_frames() {
+        return note(ui, "It lies on all frames as it is.");
     }
+    let keys = playback.keys().cloned();
+    let is_painted = |keys: &KeyFrames| Kind::ALL.iter().any(|kind| keys.has(*kind));
+    let Some(keys) = keys.filter(|keys| is_painted(keys)) else {
+        return note(ui, "The frame that is painted on becomes a key frame.");
+    };
+    let (key, has_others) = (playback.key(), keys.iter().count() > 1);
+    let mut numbers: Vec<String> = keys.iter().map(|(frame, _)| frame.to_string()).collect();
+    if numbers.len() > MOST_NUMBERS {
+        let more = numbers.split_off(MOST_NUMBERS).len();
+        numbers.push(format!("{more} more"));
+    }
+    note(ui, &format!("Painted on: {}", numbers.join(", ")));
+    ui.horizontal(|ui| {
+        ui.add_space(12.0);
+        let carry = ui.add_enabled(!keys.is_carried(), egui::Button::new("Carry along the motion"));
+        let hint = "Carries what is painted to all frames: along the motion vectors of the files, else along motion that is estimated";
+        if carry.on_hover_text(hint).clicked() {
+            session.carry_maps();
+        }
+        let remove = ui.add_enabled(has_others && keys.is_key(key), egui::Button::new("Remove this key frame"));
+        if remove.on_hover_text("Takes back all that was painted on the frame that is shown").clicked() {
+            session.remove_key_frame();
+        }
+    });
+    let unknown = keys.unknown(key);
+    note(
+        ui,
+        &match (keys.is_carried(), has_others) {
+            (true, _) if unknown > TOLD => format!(
+                "{:.0} % of this frame is seen on no key frame, and nothing is painted there. Paint on it.",
+                100.0 * unknown
+            ),
+            (true, _) => "It is carried along the motion to all frames.".to_owned(),
+            (false, true) => "Other frames have the map of the nearest as it is.".to_owned(),
+            (false, false) => "It lies on all frames as it is.".to_owned(),
+        },
+    );
 }
 
 fn note(ui: &mut Ui, text: &str) {
@@ -209,21 +260,22 @@ fn texture(ui: &Ui, session: &Session) -> Option<TextureHandle> {
     }
     let id = Id::unique("painted");
     let drawn: Drawn = ui.data(|data| data.get_temp(id)).flatten();
-    let of = (painting.revision, channel);
-    if let Some((revision, known, texture)) = &drawn
-        && (*revision, *known) == of
+    let frame = session.open.playback().map_or(0, Playback::key);
+    let of = (painting.revision, frame, channel);
+    if let Some((known, texture)) = &drawn
+        && *known == of
     {
         return Some(texture.clone());
     }
     let image = image(maps, channel);
     let texture = match drawn {
-        Some((.., mut texture)) if texture.size() == image.size => {
+        Some((_, mut texture)) if texture.size() == image.size => {
             texture.set(image, TextureOptions::LINEAR);
             texture
         }
         _ => ui.ctx().load_texture("painted", image, TextureOptions::LINEAR),
     };
-    ui.data_mut(|data| data.insert_temp::<Drawn>(id, Some((of.0, of.1, texture.clone()))));
+    ui.data_mut(|data| data.insert_temp::<Drawn>(id, Some((of, texture.clone()))));
     Some(texture)
 }
 

@@ -26,6 +26,11 @@ impl Maps {
         self.layers[0].size()
     }
 
+    /// Bytes of what is painted.
+    pub fn bytes_held(&self) -> usize {
+        self.layers.iter().map(Tiles::bytes_held).sum()
+    }
+
     /// What is painted of a channel.
     pub fn layer(&self, channel: Channel) -> &Tiles {
         &self.layers[channel as usize]

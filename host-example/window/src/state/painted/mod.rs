@@ -2,6 +2,7 @@
 
 pub mod brush;
 pub mod channel;
+pub mod key_frames;
 pub mod maps;
 pub mod stroke;
 pub mod tiles;
@@ -10,8 +11,8 @@ use std::path::PathBuf;
 use std::sync::Arc;
 
 use self::brush::Brush;
-use self::channel::{Channel, Kind};
-use self::maps::Maps;
+use self::channel::Kind;
+use self::key_frames::KeyFrames;
 use self::stroke::Stroke;
 
 /// Painting as it is done in the window.
@@ -25,12 +26,14 @@ pub struct Painting {
     pub is_shown: bool,
     /// The stroke that is being painted.
     pub stroke: Option<Stroke>,
+    /// Frame that it is painted on.
+    pub frame: i64,
     /// A number that grows with everything that is painted.
     pub revision: u64,
     /// Maps of files that are not open now, which are painted on when they are opened again.
-    pub kept: Vec<(PathBuf, Arc<Maps>)>,
+    pub kept: Vec<(PathBuf, Arc<KeyFrames>)>,
     /// Files that hold what was painted, with their maps as they were then.
-    pub saved: Vec<(Kind, PathBuf, Arc<Maps>)>,
+    pub saved: Vec<(Kind, PathBuf, Arc<KeyFrames>)>,
 }
 
 impl Default for Painting {
@@ -40,6 +43,7 @@ impl Default for Painting {
             brush: Brush::default(),
             is_shown: true,
             stroke: None,
+            frame: 0,
             revision: 0,
             kept: Vec::new(),
             saved: Vec::new(),
@@ -49,12 +53,10 @@ impl Default for Painting {
 
 impl Painting {
     /// The file that holds a map as it is painted now.
-    pub fn file(&self, kind: Kind, maps: &Maps) -> Option<&PathBuf> {
-        let is_same = |known: &Maps| {
-            let mut channels = Channel::ALL.iter().filter(|channel| channel.kind() == kind);
-            channels.all(|channel| known.layer(*channel) == maps.layer(*channel))
-        };
-        let (.., file, _) = self.saved.iter().find(|(of, _, known)| *of == kind && is_same(known))?;
+    pub fn file(&self, kind: Kind, keys: &KeyFrames) -> Option<&PathBuf> {
+        let is_file =
+            |(of, _, known): &&(Kind, PathBuf, Arc<KeyFrames>)| *of == kind && known.has_same(kind, keys);
+        let (_, file, _) = self.saved.iter().find(is_file)?;
         Some(file)
     }
 }

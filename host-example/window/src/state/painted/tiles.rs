@@ -32,6 +32,11 @@ impl Tiles {
         self.size
     }
 
+    /// Bytes of the tiles that are not plain.
+    pub fn bytes_held(&self) -> usize {
+        self.tiles.iter().flatten().count() * size_of::<Tile>()
+    }
+
     /// True where nothing is painted.
     pub fn is_plain(&self) -> bool {
         self.tiles.iter().all(Option::is_none)

@@ -49,6 +49,7 @@ impl Session {
                     Ok(()) => {}
                 }
             }
+            Outcome::Carried(keys, carried) => self.take_carried(&keys, carried),
             Outcome::Failed(error) => self.notes.complain(&error),
         }
     }
@@ -94,9 +95,9 @@ impl Session {
             Opened::Look(look) => self.take(Arc::from(look)),
             Opened::Palette(palette) => self.colour_by(&palette),
             Opened::Map(kind, path, maps) => self.take_map(kind, path, &maps),
-            Opened::SavedMap(kind, path, maps) => {
+            Opened::SavedMap(kind, path, keys) => {
                 self.notes.say(format!("Saved the {} in {}", kind.name(), path.display()));
-                self.map_saved(kind, path, &maps);
+                self.map_saved(kind, path, keys);
             }
             Opened::Material(kind, material) => {
                 if let Some(scenery) = self.open.scenery_mut() {

@@ -13,19 +13,19 @@ impl Session {
             current: self.looks.current(),
             looks: self.looks.list().to_vec(),
             lighting: self.open.scenery().map(|scenery| scenery.lighting.clone()),
-            maps: self.open.playback().and_then(|playback| playback.maps().cloned()),
+            keys: self.open.playback().and_then(|playback| playback.keys().cloned()),
             files: self.files.done(),
         }
     }
 
     fn restore(&mut self, state: State) {
-        let State { current, looks, lighting, maps, files } = state;
+        let State { current, looks, lighting, keys, files } = state;
         self.turn(current, |own| own.restore(looks, current));
         if let (Some(scenery), Some(lighting)) = (self.open.scenery_mut(), lighting) {
             scenery.lighting = lighting;
             scenery.relight();
         }
-        self.lay(maps);
+        self.lay(keys);
         let restored = self.files.go_to(files);
         self.browser.is_outdated |= !restored.is_empty();
         for file in restored {
@@ -61,8 +61,8 @@ impl Session {
     pub(super) fn forget_open(&mut self) {
         let mut now = self.state();
         now.lighting = None;
-        let maps = now.maps.clone();
-        self.edits.strip(&now, |state| (state.lighting, state.maps) = (None, maps.clone()));
+        let keys = now.keys.clone();
+        self.edits.strip(&now, |state| (state.lighting, state.keys) = (None, keys.clone()));
     }
 
     /// Changes the light.
