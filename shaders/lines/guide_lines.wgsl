@@ -2,7 +2,7 @@
 // Gaussians: across the tangent, it finds the breaks of normal, depth or object id between successive
 // pixels, and takes a difference of Gaussians of their density off the response. The second pass then
 // smooths both kinds of lines along the same flow. Lines are centred on the break; where breaks are as
-// dense as the pixels nothing stands out, and no line is drawn.
+// dense as the pixels nothing stands out, and no line is drawn. Creases as dense as lines are wide fade.
 //
 // Creases, outlines, and borders between things that touch have widths and strengths of their own.
 // Cost: up to 3 loads and four exponentials per step, 12 sigma_e steps.
@@ -33,6 +33,11 @@ struct Params {
 #input field
 #input normal, depth, object_id
 #output target_image rg32float
+
+// Creases within a line's reach, counted by the wider Gaussian, from which on they are fainter, and at
+// which none is drawn.
+const FEW: f32 = 2.0;
+const MANY: f32 = 4.0;
 
 fn normal_at(p: vec2i) -> vec3f {
     return known_normal(fetch(normal, 2u, p));
@@ -155,7 +160,8 @@ fn main(@builtin(global_invocation_id) id: vec3u) {
     let border = max(densities.x - densities.y, 0.0);
     // A lone break is the fainter the wider it is smoothed.
     let evened = select(sqrt(factor), factor, factor >= 1.0);
-    let sharp = max(params.amount.x * ridge.x, params.amount.y * outline);
+    let sparseness = 1.0 - smoothstep(FEW, MANY, wide.x);
+    let sharp = max(params.amount.x * ridge.x * sparseness, params.amount.y * outline);
     let strength = evened * max(sharp, params.amount.z * border);
     let v = fetch(response, 0u, p).xy;
     textureStore(target_image, vec2i(id.xy), vec4f(v.x - strength * v.y, v.y, 0.0, 0.0));

@@ -41,9 +41,19 @@ struct Pair {
 struct More {
     /// By frames before and after.
     both_ways: Row,
+    /// The same on plain paper, for styles whose paper stays on the screen.
+    plain_paper: Option<Row>,
+    /// By frames before and after, with normals, depth and object numbers.
+    guided: Row,
     /// By motion that is estimated.
     estimated: Row,
 }
+
+/// Settings of styles whose paper stays on the screen, while things move past it, that leave it plain.
+const PLAIN_PAPER: [(&str, [(&str, &str); 2]); 2] = [
+    ("blueprint", [("grid", "0"), ("paper_texture", "0")]),
+    ("watercolor", [("granulation", "0"), ("dry_brush", "0")]),
+];
 
 /// The most pixels of styles of lines that jump by frames before and after.
 const MOST_JUMPS: f64 = 0.003;
@@ -56,20 +66,31 @@ fn measured(shot: &Shot) -> Vec<Pair> {
     let styles = STYLES.into_iter().filter(|name| is_chosen(name));
     styles
         .map(|name| {
-            let steady = || Style::new(name, &[STEADINESS]).without_guides();
-            let still = Entry::new(name, Style::new(name, &[]).without_guides().play(shot, AROUND));
+            let of = |settings: &[(&str, &str)]| Style::new(name, settings);
+            let steady = || of(&[STEADINESS]).without_guides();
             let entry = |kind: &str, style: Style, around| {
                 Entry::new(format!("{name} {kind}"), style.play(shot, around)).against(name)
             };
+            let still = Entry::new(name, of(&[]).without_guides().play(shot, AROUND));
             let mut entries = vec![still, entry("steady", steady(), AROUND)];
+            let paper =
+                PLAIN_PAPER.into_iter().find(|(style, _)| *style == name).map(|(_, settings)| settings);
             if has_tables {
                 entries.push(entry("both ways", steady(), BOTH_WAYS));
                 entries.push(entry("estimated", steady().estimating(), AROUND));
+                entries.push(entry("guided", of(&[STEADINESS]), BOTH_WAYS));
+                let plain = paper.map(|[grid, grain]| of(&[STEADINESS, grid, grain]).without_guides());
+                entries.extend(plain.map(|style| entry("plain paper", style, BOTH_WAYS)));
             }
             let mut rows = table(shot, entries).into_iter();
             let (Some(still), Some(steady)) = (rows.next(), rows.next()) else { panic!("two rows") };
-            let more =
-                rows.next().zip(rows.next()).map(|(both_ways, estimated)| More { both_ways, estimated });
+            let more = rows.next().zip(rows.next()).zip(rows.next());
+            let more = more.map(|((both_ways, estimated), guided)| More {
+                both_ways,
+                plain_paper: rows.next(),
+                guided,
+                estimated,
+            });
             Pair { name, still, steady, more }
         })
         .collect()
@@ -87,6 +108,8 @@ fn print(title: &str, pairs: &[Pair]) {
         "frames on both sides, a contrast",
         "jumps",
         "energy kept",
+        "on plain paper, a contrast",
+        "with normals, depth and ids, a contrast",
     ];
     let mut table = Table::new(16, "steadiness over time", title, &columns);
     for Pair { name, still, steady, more } in pairs {
@@ -102,6 +125,11 @@ fn print(title: &str, pairs: &[Pair]) {
             of(|more| format!("{:.2}", more.both_ways.steadiness.a_contrast())),
             of(|more| format!("{:.2}", 100.0 * more.both_ways.steadiness.jumps)),
             of(|more| format!("{:.3}", more.both_ways.steadiness.energy_of_still)),
+            of(|more| {
+                let plain = more.plain_paper.as_ref();
+                plain.map_or_else(|| "–".into(), |row| format!("{:.2}", row.steadiness.a_contrast()))
+            }),
+            of(|more| format!("{:.2}", more.guided.steadiness.a_contrast())),
         ]);
     }
     table.print();

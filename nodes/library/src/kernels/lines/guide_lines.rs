@@ -4,8 +4,8 @@
 //! Across the tangent it finds the breaks of normal, depth or object id between successive pixels, and
 //! takes a difference of Gaussians of their density off the response; the result is a line centred on
 //! the break, as wide as those of the difference of Gaussians. Where breaks are as dense as the pixels
-//! nothing stands out, and no line is drawn. The thesis has no guides; this is the reasoning of § 4.5
-//! applied to geometry.
+//! nothing stands out, and no line is drawn; creases that are as dense as lines are wide, such as the flutes of columns far
+//! away, fade out before they run into one another. The thesis has no guides; this is the reasoning of § 4.5 applied to geometry.
 //!
 //! Creases, which lie between two normals, outlines, where normals, depth or object ids end, and borders of object ids
 //! between things that touch, where depth goes on, have widths and strengths of their own.
@@ -46,6 +46,11 @@ const WIDE: f32 = 3.0;
 
 /// Cut-off in standard deviations of the wider Gaussian.
 const PRECISION: f32 = 2.0;
+
+/// Creases within a line's reach, counted by the wider Gaussian, from which on they are fainter, and at which none is drawn: more
+/// would run into one another, and flicker.
+const FEW: f32 = 2.0;
+const MANY: f32 = 4.0;
 
 /// Kinds of lines that guides draw: creases, outlines, and borders between things that touch.
 pub const KINDS: usize = 3;
@@ -211,7 +216,7 @@ fn steps<S: Simd>(params: &Params, factor: f32x8<S>) -> i32 {
 /// Amount of the strongest of the kinds.
 #[inline(always)]
 fn strongest<S: Simd>(sums: &[GuideSums<S>; KINDS], params: &Params) -> f32x8<S> {
-    let creases = sums[CREASE].ridge() * params.amount[CREASE];
+    let creases = sums[CREASE].ridge() * params.amount[CREASE] * sums[CREASE].sparseness();
     let outlines = sums[OUTLINE].ridge() * params.amount[OUTLINE];
     let strongest = creases.at_least(outlines);
     if params.guides & TELLS == 0 {
@@ -263,6 +268,13 @@ impl<S: Simd> GuideSums<S> {
         }
         self.weights[0] += narrow;
         self.weights[1] += wide;
+    }
+
+    /// 1 where few of the first guide's breaks are around the pixel, and less where many are.
+    #[inline(always)]
+    fn sparseness(self) -> f32x8<S> {
+        let t = ((self.wide[0] - FEW) * (1.0 / (MANY - FEW))).within(0.0, 1.0);
+        1.0 - t * t * (3.0 - t * 2.0)
     }
 
     /// By how much the breaks of any guide are denser near the pixel than around it.
