@@ -34,10 +34,10 @@ struct Params {
 #input normal, depth, object_id
 #output target_image rg32float
 
-// Creases within a line's reach, counted by the wider Gaussian, from which on they are fainter, and at
-// which none is drawn.
-const FEW: f32 = 2.0;
-const MANY: f32 = 4.0;
+// Creases within a line's reach on each of its sides, counted by the wider Gaussian, from which on they
+// are fainter, and at which none is drawn.
+const FEW: f32 = 0.8;
+const MANY: f32 = 1.5;
 
 fn normal_at(p: vec2i) -> vec3f {
     return known_normal(fetch(normal, 2u, p));
@@ -106,6 +106,8 @@ fn main(@builtin(global_invocation_id) id: vec3u) {
     // Of creases, which lie between two normals, and of outlines: borders of normals, depth and object id.
     var narrow = vec4f(0.0);
     var wide = vec4f(0.0);
+    // Creases on one side.
+    var before = 0.0;
     var narrow_weights = vec2f(0.0);
     var wide_weights = vec2f(0.0);
     // Of borders of object ids alone (narrow, wide), and their weights.
@@ -151,6 +153,9 @@ fn main(@builtin(global_invocation_id) id: vec3u) {
         let w = select(vec2f(0.0), exp(params.wide.xy * d * d), near);
         narrow += n.xyyy * found;
         wide += w.xyyy * found;
+        if k < 0 {
+            before = wide.x;
+        }
         narrow_weights += n;
         wide_weights += w;
     }
@@ -160,7 +165,7 @@ fn main(@builtin(global_invocation_id) id: vec3u) {
     let border = max(densities.x - densities.y, 0.0);
     // A lone break is the fainter the wider it is smoothed.
     let evened = select(sqrt(factor), factor, factor >= 1.0);
-    let sparseness = 1.0 - smoothstep(FEW, MANY, wide.x);
+    let sparseness = 1.0 - smoothstep(FEW, MANY, min(before, wide.x - before));
     let sharp = max(params.amount.x * ridge.x * sparseness, params.amount.y * outline);
     let strength = evened * max(sharp, params.amount.z * border);
     let v = fetch(response, 0u, p).xy;

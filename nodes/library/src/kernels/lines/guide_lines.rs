@@ -47,10 +47,10 @@ const WIDE: f32 = 3.0;
 /// Cut-off in standard deviations of the wider Gaussian.
 const PRECISION: f32 = 2.0;
 
-/// Creases within a line's reach, counted by the wider Gaussian, from which on they are fainter, and at which none is drawn: more
-/// would run into one another, and flicker.
-const FEW: f32 = 2.0;
-const MANY: f32 = 4.0;
+/// Creases within a line's reach on each of its sides, counted by the wider Gaussian, from which on they are fainter, and at which
+/// none is drawn: more would run into one another, and flicker. Where they begin and end they are drawn.
+const FEW: f32 = 0.8;
+const MANY: f32 = 1.5;
 
 /// Kinds of lines that guides draw: creases, outlines, and borders between things that touch.
 pub const KINDS: usize = 3;
@@ -197,6 +197,9 @@ fn strength<S: Simd>(
             found[3] -= touching;
         }
         sums[CREASE].add([found[0], zero, zero], weights);
+        if k == -1 {
+            sums[CREASE].before = sums[CREASE].wide[0];
+        }
         sums[OUTLINE].add([found[1], found[2], found[3]], others);
     }
     // A lone break is the fainter the wider it is smoothed.
@@ -251,13 +254,15 @@ struct GuideSums<S: Simd> {
     narrow: [f32x8<S>; 3],
     wide: [f32x8<S>; 3],
     weights: [f32x8<S>; 2],
+    /// The wider sum of the first guide on one side of the pixel.
+    before: f32x8<S>,
 }
 
 impl<S: Simd> GuideSums<S> {
     #[inline(always)]
     fn new(simd: S) -> Self {
         let zero = f32x8::splat(simd, 0.0);
-        Self { narrow: [zero; 3], wide: [zero; 3], weights: [zero; 2] }
+        Self { narrow: [zero; 3], wide: [zero; 3], weights: [zero; 2], before: zero }
     }
 
     #[inline(always)]
@@ -270,10 +275,11 @@ impl<S: Simd> GuideSums<S> {
         self.weights[1] += wide;
     }
 
-    /// 1 where few of the first guide's breaks are around the pixel, and less where many are.
+    /// 1 where few of the first guide's breaks are on a side of the pixel, and less where many are on both.
     #[inline(always)]
     fn sparseness(self) -> f32x8<S> {
-        let t = ((self.wide[0] - FEW) * (1.0 / (MANY - FEW))).within(0.0, 1.0);
+        let fewer = self.before.at_most(self.wide[0] - self.before);
+        let t = ((fewer - FEW) * (1.0 / (MANY - FEW))).within(0.0, 1.0);
         1.0 - t * t * (3.0 - t * 2.0)
     }
 
