@@ -2,7 +2,9 @@
 //! path, on a running fox and on a static shot with noise, without and with `steadiness`.
 //!
 //! `ISOPHOTE_STYLES=cartoon,ink` runs those styles alone, `ISOPHOTE_PICTURES=FOLDER` writes what they draw. With
-//! `ISOPHOTE_TABLES`, which `cargo xtask experiments` sets, they are measured by frames on both sides and by estimated motion, too.
+//! `ISOPHOTE_TABLES`, which `cargo xtask experiments` sets, they are measured by frames on both sides and by estimated motion, too;
+//! by frames on both sides on plain paper as well, where paper stays on the screen and things move past it, and with normals, depth
+//! and ids.
 
 use isophote_tests::device::device;
 use isophote_tests::steadiness::{Entry, Row, Shot, Style, rendered_shots, table};
