@@ -2,7 +2,6 @@
 
 use std::path::Path;
 use std::sync::Arc;
-use std::time::{Duration, Instant};
 
 use egui::accesskit::Role;
 use egui::{Event, Modifiers, PointerButton, Pos2, pos2};
@@ -14,7 +13,7 @@ use isophote_finishing::stylize::value::Value;
 use isophote_loader::{Control, Library};
 use isophote_pictures::exr::Guide;
 use isophote_window::jobs::document::{Document, Options};
-use isophote_window::jobs::export::{Export, ExportJob};
+use isophote_window::jobs::export::ExportJob;
 use isophote_window::jobs::maps;
 use isophote_window::jobs::stylizing::{Stylist, Task};
 use isophote_window::state::command;
@@ -25,7 +24,6 @@ use isophote_window::state::outcome::{Dialog, Opened, Outcome};
 use isophote_window::state::painted::channel::{Channel, Kind};
 use isophote_window::state::painted::maps::Maps;
 use isophote_window::state::playback::Playback;
-use isophote_window::state::progress::State;
 use isophote_window::state::session::Session;
 use isophote_window::state::settings::Settings;
 use isophote_window::state::work::Request;
@@ -295,14 +293,8 @@ fn looks_follow_what_is_painted_as_apply_does() {
         assert_eq!(applied.get_pixel(60, 80), source.get_pixel(60, 80));
         let mut job = ExportJob::new(DocumentKind::Picture, &at("in.png"), &at("exported.png"), None);
         job.preset = Some(format!("{{\"style\": \"{look}\"}}"));
-        (job.maps, job.program) = (playback.painted(), Some(isophote().get_program().into()));
-        let export = Export::start(job).expect("it begins");
-        let started = Instant::now();
-        while export.poll().state == State::Running {
-            assert!(started.elapsed() < Duration::from_secs(60));
-            std::thread::sleep(Duration::from_millis(5));
-        }
-        assert_eq!(export.poll().state, State::Done);
+        job.maps = playback.painted();
+        support::export(job);
         assert!(image::open(at("exported.png")).expect("a picture").into_rgba8() == applied, "{look}");
     }
 }

@@ -2,7 +2,6 @@
 
 use std::path::Path;
 use std::sync::Arc;
-use std::time::{Duration, Instant};
 
 use egui_kittest::Harness;
 use egui_kittest::kittest::Queryable;
@@ -11,7 +10,7 @@ use isophote_files::files::Existing;
 use isophote_loader::Library;
 use isophote_window::jobs::carrying::CarryJob;
 use isophote_window::jobs::document::{Document, Options};
-use isophote_window::jobs::export::{Export, ExportJob};
+use isophote_window::jobs::export::ExportJob;
 use isophote_window::jobs::maps;
 use isophote_window::state::command;
 use isophote_window::state::document::kind::Kind as DocumentKind;
@@ -19,7 +18,6 @@ use isophote_window::state::look::EditedLook;
 use isophote_window::state::outcome::{Opened, Outcome};
 use isophote_window::state::painted::channel::{Channel, Kind};
 use isophote_window::state::playback::Playback;
-use isophote_window::state::progress::State;
 use isophote_window::state::session::Session;
 use isophote_window::state::settings::Settings;
 use isophote_window::state::work::Request;
@@ -168,14 +166,8 @@ fn files_of_all_frames_show_what_the_window_shows_and_steps_go_back() {
     let mut job =
         ExportJob::new(DocumentKind::Sequence, &at("shot.####.exr"), &at("exported.####.png"), None);
     job.preset = Some("{\"style\": \"ink\"}".to_owned());
-    (job.maps, job.program) = (playback(session).painted(), Some(isophote().get_program().into()));
-    let export = Export::start(job).expect("it begins");
-    let started = Instant::now();
-    while export.poll().state == State::Running {
-        assert!(started.elapsed() < Duration::from_secs(120));
-        std::thread::sleep(Duration::from_millis(5));
-    }
-    assert_eq!(export.poll().state, State::Done);
+    job.maps = playback(session).painted();
+    support::export(job);
     for frame in 1..=6 {
         let [applied, exported] = ["out", "exported"]
             .map(|name| image::open(at(&format!("{name}.{frame:04}.png"))).expect("a picture").into_rgba8());

@@ -17,7 +17,10 @@ use std::fs;
 use std::path::{Path, PathBuf};
 use std::process::{Command, Output};
 use std::sync::OnceLock;
+use std::time::{Duration, Instant};
 
+use isophote_window::jobs::export::{Export, ExportJob};
+use isophote_window::state::progress::State;
 use tempfile::TempDir;
 
 /// Lengths in pixels: of pictures as small as those here, relative ones come to nothing.
@@ -267,4 +270,16 @@ pub fn turning_triangle(folder: &Path) -> PathBuf {
     let path = folder.join("triangle.gltf");
     fs::write(&path, json).expect("the folder is writable");
     path
+}
+
+/// Exports by the program under test, to the end.
+pub fn export(mut job: ExportJob) {
+    job.program = Some(isophote().get_program().into());
+    let export = Export::start(job).expect("it begins");
+    let started = Instant::now();
+    while export.poll().state == State::Running {
+        assert!(started.elapsed() < Duration::from_secs(120));
+        std::thread::sleep(Duration::from_millis(5));
+    }
+    assert_eq!(export.poll().state, State::Done);
 }

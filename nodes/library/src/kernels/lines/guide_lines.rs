@@ -153,8 +153,7 @@ fn strength<S: Simd>(
     let (zero, one) = (f32x8::splat(simd, 0.0), f32x8::splat(simd, 1.0));
     let has = |bit: u32| params.guides & bit != 0;
     let steps = steps(params, factor);
-    // Of a step, against the width that is asked for.
-    let length = line.step / factor;
+    let widths_a_step = line.step / factor;
     let first = -steps;
     let start = line.nearest(first);
     let mut normal_here = if has(1) { normals(simd, normal, start) } else { [zero; 3] };
@@ -186,7 +185,7 @@ fn strength<S: Simd>(
             found[3] = id_next.simd_eq(id_here).select(zero, one);
             id_here = id_next;
         }
-        let d = length * (k as f32 + 0.5);
+        let d = widths_a_step * (k as f32 + 0.5);
         let weights = weights(d, params, CREASE);
         let others = if is_uniform { weights } else { self::weights(d, params, OUTLINE) };
         if has(TELLS) {
@@ -197,9 +196,7 @@ fn strength<S: Simd>(
             found[3] -= touching;
         }
         sums[CREASE].add([found[0], zero, zero], weights);
-        if k == -1 {
-            sums[CREASE].before = sums[CREASE].wide[0];
-        }
+        sums[CREASE].pass_by(k);
         sums[OUTLINE].add([found[1], found[2], found[3]], others);
     }
     // A lone break is the fainter the wider it is smoothed.
@@ -273,6 +270,14 @@ impl<S: Simd> GuideSums<S> {
         }
         self.weights[0] += narrow;
         self.weights[1] += wide;
+    }
+
+    /// Keeps what lies before the pixel, which follows on step -1.
+    #[inline(always)]
+    fn pass_by(&mut self, k: i32) {
+        if k == -1 {
+            self.before = self.wide[0];
+        }
     }
 
     /// 1 where few of the first guide's breaks are on a side of the pixel, and less where many are on both.
