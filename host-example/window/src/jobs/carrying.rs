@@ -44,7 +44,7 @@ impl Carrying {
     /// Starts the thread.
     ///
     /// # Errors
-    /// As [`Worker::new`].
+    /// [`Error::Failure`] when the system gives no thread.
     pub fn new(wake: &Wake) -> Result<Self> {
         let wanted = Arc::new(AtomicU64::new(0));
         let own = Arc::clone(&wanted);

@@ -41,7 +41,7 @@ pub fn write(kind: Kind, maps: &Maps, (width, height): (u32, u32), path: &Path) 
 /// Writes a map of all that is painted over a document: as one file, or as one for each frame where frames have maps of their own.
 ///
 /// # Errors
-/// As [`write`]; [`Error::Input`] for a path without a place for a frame's number, and where a file is there that may not be
+/// As [`write()`]; [`Error::Input`] for a path without a place for a frame's number, and where a file is there that may not be
 /// replaced.
 pub fn write_all(kind: Kind, over: &PaintedOver, path: &Path, existing: Existing) -> Result<()> {
     let PaintedOver { keys, size, numbers } = over;
