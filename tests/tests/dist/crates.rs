@@ -8,9 +8,10 @@ use std::process::Command;
 use tempfile::TempDir;
 
 /// Those that are published.
-const CRATES: [&str; 6] = [
+const CRATES: [&str; 7] = [
     "isophote",
     "isophote-abi",
+    "isophote-cryptomatte",
     "isophote-engine",
     "isophote-exr-edit",
     "isophote-loader",

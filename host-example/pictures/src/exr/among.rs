@@ -2,8 +2,9 @@
 
 use std::path::Path;
 
-use super::cryptomatte::{MATERIALS, Manifest, MatteChoice, OBJECTS};
+use super::cryptomatte::Manifest;
 use super::mask::{MaskSource, OnUnknown};
+use isophote_cryptomatte::{MATERIALS, MatteChoice, OBJECTS};
 use isophote_files::error::{Error, Result};
 use isophote_files::output;
 
@@ -23,7 +24,7 @@ impl MaskSource {
             Self::Ids(ids) => {
                 Ok((1..=objects.len()).map(|number| ids.iter().any(|id| *id as usize == number)).collect())
             }
-            Self::Mattes(choice) => choice.among(scene, [objects, materials], on_unknown),
+            Self::Mattes(choice) => named(choice, scene, [objects, materials], on_unknown),
             Self::File(_) | Self::Layer(_) => {
                 let problem = "has no masks in files or layers";
                 Err(Error::file(scene, problem, "write cryptomatte:NAME, material:NAME or id:NUMBER"))
@@ -32,36 +33,34 @@ impl MaskSource {
     }
 }
 
-impl MatteChoice {
-    fn among(
-        &self,
-        scene: &Path,
-        [objects, materials]: [&[String]; 2],
-        on_unknown: OnUnknown,
-    ) -> Result<Vec<bool>> {
-        let names = match self.layer.as_deref() {
-            None | Some(OBJECTS) => objects,
-            Some(MATERIALS) => materials,
-            Some(other) => {
-                let problem = format!("has no Cryptomatte '{}'", other.escape_default());
-                let fix = format!("write cryptomatte[{OBJECTS}] or cryptomatte[{MATERIALS}]");
-                return Err(Error::file(scene, problem, fix));
-            }
-        };
-        for wanted in &self.names {
-            if !names.iter().any(|name| wanted.matches(name)) {
-                let problem = format!("has nothing of the name '{}'", wanted.text.escape_default());
-                match on_unknown {
-                    OnUnknown::Fail => {
-                        return Err(Error::file(scene, problem, Manifest::of(names).advice(&wanted.text)));
-                    }
-                    OnUnknown::Empty => output::warn(format_args!("{}: {problem}", scene.display())),
-                    OnUnknown::Quiet => {}
+fn named(
+    choice: &MatteChoice,
+    scene: &Path,
+    [objects, materials]: [&[String]; 2],
+    on_unknown: OnUnknown,
+) -> Result<Vec<bool>> {
+    let names = match choice.layer.as_deref() {
+        None | Some(OBJECTS) => objects,
+        Some(MATERIALS) => materials,
+        Some(other) => {
+            let problem = format!("has no Cryptomatte '{}'", other.escape_default());
+            let fix = format!("write cryptomatte[{OBJECTS}] or cryptomatte[{MATERIALS}]");
+            return Err(Error::file(scene, problem, fix));
+        }
+    };
+    for wanted in &choice.names {
+        if !names.iter().any(|name| wanted.matches(name)) {
+            let problem = format!("has nothing of the name '{}'", wanted.text.escape_default());
+            match on_unknown {
+                OnUnknown::Fail => {
+                    return Err(Error::file(scene, problem, Manifest::of(names).advice(&wanted.text)));
                 }
+                OnUnknown::Empty => output::warn(format_args!("{}: {problem}", scene.display())),
+                OnUnknown::Quiet => {}
             }
         }
-        Ok(names.iter().map(|name| self.names.iter().any(|wanted| wanted.matches(name))).collect())
     }
+    Ok(names.iter().map(|name| choice.names.iter().any(|wanted| wanted.matches(name))).collect())
 }
 
 #[cfg(test)]

@@ -2,11 +2,11 @@
 
 use std::path::Path;
 
+use isophote_cryptomatte::MatteChoice;
 use isophote_exr_edit::{File, Sample};
 use isophote_motion::{Convention, Way};
 
 use super::colour_layers;
-use super::cryptomatte::MatteChoice;
 use super::fault::Fault;
 use super::guide_list::Guide;
 use super::guides::{self, GuideChoice, GuideSource, Meaning, is_guide, is_named, positions};

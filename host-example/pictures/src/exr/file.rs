@@ -16,7 +16,7 @@ use isophote_files::output;
 
 /// Most that one file may take, whatever it says of itself. The number of files that are in memory at the same time is
 /// decided by what they weigh; see [`Opened::weight`].
-const LIMITS: Limits = Limits { memory: 16 << 30, pixels: MOST_PIXELS };
+pub(super) const LIMITS: Limits = Limits { memory: 16 << 30, pixels: MOST_PIXELS };
 
 /// Motion vectors for a picture from a file of their own, by the names of the graph's inputs.
 ///
@@ -105,7 +105,7 @@ pub fn mask_of(
 }
 
 /// The folder of a file.
-fn folder(path: &Path) -> &Path {
+pub(super) fn folder(path: &Path) -> &Path {
     path.parent().unwrap_or(Path::new(""))
 }
 

@@ -4,9 +4,9 @@ use std::path::{Path, PathBuf};
 use std::str::FromStr;
 
 use clap::ValueEnum;
+use isophote_cryptomatte::{MatteChoice, id};
 use isophote_exr_edit::{Decoded, Error, File, Part, Plane, Window};
 
-use super::cryptomatte::{MatteChoice, id};
 use super::fault::Fault;
 use super::guide_list::Guide;
 use super::guides;
@@ -246,7 +246,7 @@ impl Wanted {
             let exact = name.exact();
             match &exact {
                 Some(exact) => wanted.ids.extend(manifest.id(exact)),
-                None => wanted.ids.extend(manifest.ids(name)),
+                None => wanted.ids.extend(manifest.names(name).map(|(_, id)| id)),
             }
             if wanted.ids.len() > before {
                 continue;

@@ -18,9 +18,10 @@ mod motion;
 mod names;
 mod offers;
 mod picture;
+mod whole_names;
 
 pub use self::choose::Selection;
-pub use self::cryptomatte::{MATERIALS, Made as MadeMatte, OBJECTS};
+pub use self::cryptomatte::Made as MadeMatte;
 pub use self::file::{ExrFile, Opened, is_whole, mask_of, motion_of};
 pub use self::guide_list::Guide;
 pub use self::guides::GuideChoice;
@@ -28,4 +29,5 @@ pub use self::mask::{MaskSource, OnUnknown, add};
 pub use self::names::components;
 pub use self::offers::{Layer, Offers};
 pub use self::picture::{OwnPixels, Picture};
+pub use isophote_cryptomatte::{MATERIALS, OBJECTS};
 pub use isophote_motion::Convention;

@@ -3,8 +3,8 @@
 use std::collections::BTreeMap;
 use std::fmt::Write;
 
-use super::hash::id;
 use crate::floats::Picture;
+use isophote_cryptomatte::id;
 
 /// Things of a pixel that are kept.
 const RANKS: usize = 4;

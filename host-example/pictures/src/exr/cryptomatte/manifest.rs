@@ -3,8 +3,7 @@
 use std::collections::BTreeMap;
 use std::path::{Component, Path, PathBuf};
 
-use super::hash;
-use super::names::Pattern;
+use isophote_cryptomatte::{Pattern, id};
 
 /// Names in a message.
 const MOST_SHOWN: usize = 12;
@@ -40,7 +39,7 @@ impl Manifest {
 
     /// The manifest of things of these names.
     pub fn of(names: &[String]) -> Self {
-        Self(names.iter().map(|name| (name.clone(), hash::id(name))).collect())
+        Self(names.iter().map(|name| (name.clone(), id(name))).collect())
     }
 
     /// The id of a name.
@@ -48,9 +47,9 @@ impl Manifest {
         self.0.get(name).copied()
     }
 
-    /// The ids of all names that a pattern stands for.
-    pub fn ids<'a>(&'a self, pattern: &'a Pattern) -> impl Iterator<Item = u32> + 'a {
-        self.0.iter().filter(|(name, _)| pattern.matches(name)).map(|(_, id)| *id)
+    /// All names that a pattern stands for, with their ids.
+    pub fn names<'a>(&'a self, pattern: &'a Pattern) -> impl Iterator<Item = (&'a str, u32)> + 'a {
+        self.0.iter().filter(|(name, _)| pattern.matches(name)).map(|(name, id)| (name.as_str(), *id))
     }
 
     /// Advice what to write instead of a name that is not there.

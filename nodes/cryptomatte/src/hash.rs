@@ -3,7 +3,7 @@
 /// Bit of the exponent that is turned where a hash would be infinite, no number, zero or denormal.
 const LOWEST_EXPONENT: u32 = 1 << 23;
 
-/// The id of a name, as bits of the float that files hold.
+/// The id of a name, as bits of the float that files hold; 0x00800000 for the empty name, which is nothing.
 pub fn id(name: &str) -> u32 {
     let hash = murmur3(name.as_bytes());
     match (hash >> 23) & 0xff {

@@ -62,6 +62,35 @@ impl MatteChoice {
     }
 }
 
+impl MatteChoice {
+    /// The words that choose things of these names in the same Cryptomatte.
+    pub fn words<'n>(&self, names: impl IntoIterator<Item = &'n str>) -> String {
+        let names: Vec<String> = names.into_iter().map(escaped).collect();
+        let names = names.join(",");
+        match self.layer.as_deref() {
+            None => format!("{WORD}:{names}"),
+            Some(MATERIALS) => format!("{MATERIAL}:{names}"),
+            Some(layer) => format!("{WORD}[{layer}]:{names}"),
+        }
+    }
+}
+
+/// A whole name as it is written in a list.
+fn escaped(name: &str) -> String {
+    let inner = name.trim().len();
+    let first = name.len() - name.trim_start().len();
+    let mut text = String::new();
+    for (at, letter) in name.char_indices() {
+        // Blanks count within names alone.
+        let is_outer = letter == ' ' && !(first..first + inner).contains(&at);
+        if "*?,\\".contains(letter) || is_outer {
+            text.push('\\');
+        }
+        text.push(letter);
+    }
+    text
+}
+
 impl FromStr for MatteChoice {
     type Err = String;
 
@@ -209,6 +238,18 @@ mod tests {
         assert_eq!(MatteChoice::layer_of("cryptomatte"), Some(None));
         assert_eq!(MatteChoice::layer_of("cryptomatte[a]"), Some(Some("a")));
         assert_eq!(MatteChoice::layer_of("cryptomatte00"), None);
+    }
+
+    #[test]
+    fn words_choose_the_names_that_they_were_made_of() {
+        let known = ["hero", "a,b", r"c\d", "e*?", " blanks ", "[x] y"];
+        for choice in ["cryptomatte:a", "material:a", "cryptomatte[own]:a"].map(choice) {
+            let words = choice.words(known);
+            let MatteChoice { layer, names } = self::choice(&words);
+            let names: Vec<String> = names.iter().filter_map(Pattern::exact).collect();
+            assert_eq!(layer, choice.layer, "{words}");
+            assert_eq!(names, known, "{words}");
+        }
     }
 
     #[test]
