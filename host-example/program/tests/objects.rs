@@ -208,45 +208,147 @@ fn lines_of_things_have_colours_of_their_own() {
     );
 }
 
-/// The library follows rules by number itself, where the program makes maps of what things cover.
-#[test]
-fn rules_by_number_are_those_of_the_library() {
-    let folder = folder();
-    let at = |name: &str| folder.path().join(name);
-    let rules = r##"{"match": "id:1", "line_color": "#c02010", "line_width": 2}, {"match": "id:3", "lines": false, "detail": 0.5}"##;
-    let is_left = |at: usize| at % SIZE.0 < SIZE.0 / 2;
+/// Channels of a file from names and values by pixel.
+fn channel(name: &str, value: &dyn Fn(usize) -> f32) -> (String, FlatSamples) {
+    (name.to_owned(), FlatSamples::F32((0..PIXELS).map(value).collect()))
+}
+
+/// Greatest difference between a cartoon by rules of the program, on a file with these channels beside its colour, and by the library
+/// itself, on pictures of the channels whose names begin as these guides.
+fn apart(
+    folder: &Path,
+    rules: &str,
+    channels: &[(String, FlatSamples)],
+    guides: [(&'static str, &str); 2],
+) -> f32 {
     let value = |at: usize| ((at % SIZE.0 / 5 + at / SIZE.0 / 5) % 2) as f32 * 0.5 + 0.2;
-    let number = |at: usize| if is_left(at) { 1.0 } else { 3.0 };
-    let distance = |at: usize| if is_left(at) { 2.0 } else { 6.0 };
-    let channel = |name: &str, value: &dyn Fn(usize) -> f32| {
-        (name.to_owned(), FlatSamples::F32((0..PIXELS).map(value).collect()))
-    };
-    let mut channels = ["R", "G", "B"].map(|name| channel(name, &value)).to_vec();
-    channels.extend([channel("object_id.id", &number), channel("Z", &distance)]);
-    save(&at("in.exr"), vec![("", channels, Default::default())]);
-    succeeds(&mut apply(folder.path(), ("cartoon", rules), &["in.exr", "out.exr"]));
+    let texts = attributes("f834d0a", "crypto_object", ("manifest", &manifest(&["hero", "props/box"])));
+    let all = ["R", "G", "B"].map(|name| channel(name, &value)).into_iter().chain(channels.iter().cloned());
+    save(&folder.join("in.exr"), vec![("", all.collect(), texts)]);
+    let mut command = apply(folder, ("cartoon", rules), &["in.exr", "out.exr"]);
+    if !guides.iter().any(|(name, _)| *name == "object_id") {
+        // Or the program would number the things of the Cryptomatte.
+        command.args(["--guide", "object_id=none"]);
+    }
+    succeeds(&mut command);
 
     let library = Library::from_file(support::library()).expect("the library");
     let json = format!(r#"{{"style": "cartoon", "lengths": "pixels", "objects": [{rules}]}}"#);
     let style = library.style_from_json("rules.json", &json, None).expect("it opens");
+    assert_eq!(style.left_out().expect("a list"), []);
     let size = (SIZE.0 as u32, SIZE.1 as u32);
-    let picture = |channels, value: &dyn Fn(usize) -> f32| {
-        let numbers = (0..PIXELS).flat_map(|at| std::iter::repeat_n(value(at), channels as usize)).collect();
-        Pixels::new(size.0, size.1, channels, Samples::F32(numbers)).expect("as many")
+    let picture = |planes: Vec<Vec<f32>>| {
+        let numbers = (0..PIXELS).flat_map(|at| planes.iter().map(move |plane| plane[at])).collect();
+        Pixels::new(size.0, size.1, planes.len() as u32, Samples::F32(numbers)).expect("as many")
     };
-    let (color, ids, depth) = (picture(3, &value), picture(1, &number), picture(1, &distance));
-    let inputs = [("color", &color), ("object_id", &ids), ("depth", &depth)];
+    let guide = |first: &str| {
+        let own = channels.iter().filter(|(name, _)| name.starts_with(first));
+        picture(own.map(|(_, values)| values.values_as_f32().collect()).collect())
+    };
+    let color = picture(vec![(0..PIXELS).map(value).collect(); 3]);
+    let [one, other] = guides.map(|(name, first)| (name, guide(first)));
+    let inputs = [("color", &color), (one.0, &one.1), (other.0, &other.1)];
     let inputs = inputs.map(|(name, pixels)| Input { name, pixels });
-    let guides = library.guide_bits(["object_id", "depth"]).expect("they are known");
+    let guides = library.guide_bits(guides.map(|(name, _)| name)).expect("they are known");
     let usual = library.request(size).expect("the size is possible");
     let request = IsophoteRequest { space: ISOPHOTE_SPACE_LINEAR, guides, ..usual };
     let mut result = Pixels::zeroed(size.0, size.1, 3, Precision::F32);
     let mut graph = style.graph().expect("a graph");
     graph.process(None, &request, &inputs, &mut result, &mut Control::default()).expect("it is computed");
     let wanted = result.to_f32();
-    let apart =
-        rgb(&at("out.exr")).concat().iter().zip(&wanted).map(|(a, b)| (a - b).abs()).fold(0.0, f32::max);
-    assert!(apart < 1e-5, "{apart}");
+    rgb(&folder.join("out.exr")).concat().iter().zip(&wanted).map(|(a, b)| (a - b).abs()).fold(0.0, f32::max)
+}
+
+/// The library follows rules by number and by whole names itself, where the program makes maps of what things cover.
+#[test]
+fn rules_by_number_and_by_name_are_those_of_the_library() {
+    let folder = folder();
+    let is_left = |at: usize| at % SIZE.0 < SIZE.0 / 2;
+    let pick = |at: usize, left: f32, right: f32| if is_left(at) { left } else { right };
+    let depth = channel("Z", &|at| pick(at, 2.0, 6.0));
+    let ids = channel("object_id.id", &|at| pick(at, 1.0, 3.0));
+    let numbered = r##"{"match": "id:1", "line_color": "#c02010", "line_width": 2}, {"match": "id:3", "lines": false, "detail": 0.5}"##;
+    let guides = [("depth", "Z"), ("object_id", "object_id")];
+    let most = apart(folder.path(), numbered, &[ids, depth.clone()], guides);
+    assert!(most < 1e-5, "{most}");
+
+    // Two things of a pixel, of which the one covers five eighths in the middle.
+    let share = |at: usize| if at % SIZE.0 == SIZE.0 / 2 { 0.625 } else { 1.0 };
+    let names = [
+        channel("crypto_object00.R", &|at| pick(at, id("hero"), id("props/box"))),
+        channel("crypto_object00.G", &share),
+        channel("crypto_object00.B", &|at| if share(at) < 1.0 { id("hero") } else { 0.0 }),
+        channel("crypto_object00.A", &|at| 1.0 - share(at)),
+    ];
+    let named = numbered.replace("id:1", "cryptomatte:hero").replace("id:3", "cryptomatte:props/box");
+    let channels = [names.as_slice(), &[depth]].concat();
+    let guides = [("depth", "Z"), ("cryptomatte", "crypto")];
+    let most = apart(folder.path(), &named, &channels, guides);
+    assert!(most < 1e-5, "{most}");
+    let look = r##"{"match": "cryptomatte:hero", "look": {"style": "watercolor", "lengths": "pixels"}, "detail": 2}"##;
+    let most = apart(folder.path(), look, &channels, guides);
+    assert!(most < 1e-5, "{most}");
+}
+
+#[test]
+fn names_are_written_out_for_hosts_that_have_no_list_of_them() {
+    let folder = folder();
+    let at = |name: &str| folder.path().join(name);
+    save_numbered(&at("in.exr"));
+    fs::create_dir(at("looks")).expect("the folder is writable");
+    fs::write(at("looks/skin.json"), r#"{"style": "watercolor", "parameters": {"bleeding": 0.4}}"#)
+        .expect("the folder is writable");
+    let rules = r#"{"match": "cryptomatte: props/*,hero", "detail": 2}, {"match": "cryptomatte:a*", "look": "skin.json"},
+        {"match": "id:3", "look": "ink"}"#;
+    fs::write(at("looks/rules.json"), format!(r#"{{"style": "cartoon", "objects": [{rules}]}}"#))
+        .expect("the folder is writable");
+    let save = |more: &str| {
+        let mut command = isophote();
+        command.current_dir(folder.path()).args(format!("preset save {more} --force").split(' '));
+        command
+    };
+    let saved = |name: &str| -> serde_json::Value {
+        let text = fs::read_to_string(at(name)).expect("it was written");
+        serde_json::from_str(&text).expect("a preset")
+    };
+    succeeds(&mut save("looks/rules.json named.json --names-from in.exr"));
+    let objects = &saved("named.json")["objects"];
+    assert_eq!(objects[0]["match"], "cryptomatte:props/barrel,props/box,hero");
+    assert_eq!(objects[1]["match"], r"cryptomatte:a\,b\*");
+    assert_eq!(objects[1]["look"]["parameters"]["bleeding"], 0.4);
+    assert_eq!((&objects[2]["match"], &objects[2]["look"]), (&"id:3".into(), &"ink".into()));
+    // Without, names stay, and the look's file is found from the new place.
+    succeeds(&mut save("looks/rules.json moved.json"));
+    assert_eq!(saved("moved.json")["objects"][0]["match"], "cryptomatte: props/*,hero");
+    let mut check = isophote();
+    succeeds(check.current_dir(folder.path()).args(["preset", "check", "moved.json", "named.json"]));
+    let shown = |preset: &str| {
+        let mut command = isophote();
+        command.current_dir(folder.path()).args([
+            "apply",
+            preset,
+            "in.exr",
+            "out.exr",
+            "--force",
+            "--backend",
+            "cpu",
+        ]);
+        succeeds(&mut command);
+        fs::read(at("out.exr")).expect("a result")
+    };
+    assert!(shown("named.json") == shown("moved.json"));
+    fails(&mut save("cartoon none.json --names-from in.exr"), 2, &["--names-from", "has none"]);
+    fs::write(
+        at("looks/rules.json"),
+        r#"{"style": "ink", "objects": [{"match": "cryptomatte:prop?", "detail": 2}]}"#,
+    )
+    .expect("the folder is writable");
+    fails(
+        &mut save("looks/rules.json none.json --names-from in.exr"),
+        2,
+        &["in.exr", "no 'prop?'", "props/box"],
+    );
+    assert!(!at("none.json").exists());
 }
 
 #[test]

@@ -1,6 +1,7 @@
 //! `isophote preset`: styles with their parameters as files.
 
-use std::fs;
+mod rules;
+
 use std::path::{Path, PathBuf};
 
 use clap::{Args, Subcommand};
@@ -91,6 +92,10 @@ struct SaveArgs {
     /// A word by which it is found. May be repeated; takes the place of all tags of another preset.
     #[arg(long, value_name = "TAG", value_parser = line)]
     tag: Vec<String>,
+    /// Writes names with * and ? in rules for things out, by the Cryptomatte of this EXR file, and looks in files of their own: for
+    /// compositors, C and Python, which know things by whole names.
+    #[arg(long, value_name = "FRAME")]
+    names_from: Option<PathBuf>,
     /// Replaces the preset that the file starts from.
     #[arg(long)]
     in_place: bool,
@@ -120,7 +125,8 @@ pub fn run(args: &PresetArgs) -> Result<()> {
     match &args.command {
         PresetCommand::List(args) => list(args),
         PresetCommand::Save(args) => {
-            args.consent().check(&[made(args)], false, || Ok(Inputs::of(args.palette.file())))?;
+            let read = || Ok(Inputs::of(args.palette.file().into_iter().chain(args.names_from.as_deref())));
+            args.consent().check(&[made(args)], false, read)?;
             save(&Library::open()?, args)
         }
         PresetCommand::Show { file, frame } => show(&Library::open()?, file, *frame),
@@ -187,13 +193,18 @@ fn base(library: &Library, style: &Style, args: &SaveArgs) -> Result<Preset> {
     }
     let text = source::read(base)?;
     if preset::is_graph(&text) {
-        return Ok(plain(from(file, base)?));
+        return Ok(plain(rules::from(file, base)?));
     }
     let preset = preset::parse(base, &text)?;
     let inner = preset::style_beside(&preset.style, base);
     let is_same = inner == *preset.style;
-    let style = if is_same { preset.style } else { from(file, Path::new(&inner))? };
-    Ok(Preset { style, ..preset })
+    let style = if is_same { preset.style } else { rules::from(file, Path::new(&inner))? };
+    let mut objects = preset.objects;
+    match &args.names_from {
+        Some(frame) => rules::write_out(&mut objects, base, frame)?,
+        None => rules::move_looks(&mut objects, base, file)?,
+    }
+    Ok(Preset { style, objects, ..preset })
 }
 
 /// The style that is written, and all that is set in it.
@@ -212,6 +223,10 @@ fn save(library: &Library, args: &SaveArgs) -> Result<()> {
     let SaveArgs { file, all, name, about, tag, .. } = args;
     let (style, settings) = styled(library, args)?;
     let mut preset = base(library, &style, args)?;
+    if args.names_from.is_some() && preset.objects.is_empty() {
+        let problem = "is for presets with rules for things, and this style has none";
+        return Err(Error::input("--names-from", problem, "leave it out"));
+    }
     let title = Title { name: name.clone(), about: about.clone(), tags: tag.clone() };
     preset.title = title.or(preset.title);
     for setting in &settings {
@@ -257,24 +272,6 @@ fn summary(file: &Path, preset: &Preset) -> String {
     let plural = if count == 1 { "" } else { "s" };
     let style = preset::style_shown(preset);
     format!("{}: {style} with {count} parameter{plural}{animated}\n", file.display())
-}
-
-/// The path of a graph file as a preset names it: relative where both lie in one folder, whole otherwise.
-///
-/// # Errors
-/// [`Error::Input`] for paths that are no text, which JSON cannot hold.
-fn from(preset: &Path, graph: &Path) -> Result<String> {
-    let folder = |path: &Path| {
-        let folder = path.parent().filter(|p| !p.as_os_str().is_empty()).unwrap_or(Path::new("."));
-        fs::canonicalize(folder).ok()
-    };
-    let path = match (folder(preset), folder(graph), graph.file_name()) {
-        (Some(a), Some(b), Some(name)) if a == b => PathBuf::from(name),
-        (_, Some(folder), Some(name)) => folder.join(name),
-        _ => graph.to_owned(),
-    };
-    let text = path.into_os_string().into_string();
-    text.map_err(|_| Error::file(graph, "has a name that is no UTF-8, which no preset can hold", "rename it"))
 }
 
 fn show(library: &Library, file: &Path, frame: Option<i64>) -> Result<()> {
