@@ -192,6 +192,10 @@ extern "C" {
 // values are data, which no colour space changes.
 #define ISOPHOTE_KIND_HATCHING 10
 
+// The two things that cover most of a pixel by a Cryptomatte: id of the one's name and its share of the pixel, then those of the
+// other: 4 channels of f32, as the first layer of a Cryptomatte has them. Its values are data, which nothing changes.
+#define ISOPHOTE_KIND_CRYPTOMATTE 11
+
 // A number.
 #define ISOPHOTE_PARAM_FLOAT 0
 
@@ -301,6 +305,10 @@ extern "C" {
 
 // Bit of `IsophoteRequest::guides` for `line_paint`: colours of lines: that of the line here, as far as it is opaque.
 #define ISOPHOTE_GUIDE_LINE_PAINT 16384
+
+// Bit of `IsophoteRequest::guides` for `cryptomatte`: the two things that cover most of a pixel by a Cryptomatte: id
+// of the one's name and its share, then those of the other.
+#define ISOPHOTE_GUIDE_CRYPTOMATTE 32768
 
 // The host binds its own texture, which shows the window of the picture that the plan names.
 #define ISOPHOTE_ROLE_INPUT 0
@@ -1300,6 +1308,12 @@ typedef struct IsophotePresetsApi {
                                  int64_t *frames,
                                  uint32_t capacity,
                                  uint32_t *count);
+  // [object-thread] What the style's graph does not follow of its preset's rules for things, and why: a list of faults, as
+  // `check` has them, whose places are in the words of the rules. Names with `*` or `?` are followed by hosts alone, which know
+  // all names.
+  IsophoteStatus (ISOPHOTE_ABI *style_left_out)(struct IsophoteStyle style,
+                                   struct IsophoteText *faults,
+                                   struct IsophoteFault *fault);
 } IsophotePresetsApi;
 
 // Features and extensions that a device must be created with.

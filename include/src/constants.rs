@@ -73,6 +73,9 @@ pub const ISOPHOTE_KIND_CONTROL: u32 = 9;
 /// Hatching in up to four tones, the lightest first; 1 is paper and 0 is ink: 4 channels; of 3, there is no fourth tone. Its
 /// values are data, which no colour space changes.
 pub const ISOPHOTE_KIND_HATCHING: u32 = 10;
+/// The two things that cover most of a pixel by a Cryptomatte: id of the one's name and its share of the pixel, then those of the
+/// other: 4 channels of f32, as the first layer of a Cryptomatte has them. Its values are data, which nothing changes.
+pub const ISOPHOTE_KIND_CRYPTOMATTE: u32 = 11;
 
 /// Type of a parameter. One of `ISOPHOTE_PARAM_...`.
 pub type IsophoteParamKind = u32;
@@ -166,6 +169,9 @@ pub const ISOPHOTE_GUIDE_PAPER: u32 = 4096;
 pub const ISOPHOTE_GUIDE_HATCHING: u32 = 8192;
 /// Bit of `IsophoteRequest::guides` for `line_paint`: colours of lines: that of the line here, as far as it is opaque.
 pub const ISOPHOTE_GUIDE_LINE_PAINT: u32 = 16384;
+/// Bit of `IsophoteRequest::guides` for `cryptomatte`: the two things that cover most of a pixel by a Cryptomatte: id
+/// of the one's name and its share, then those of the other.
+pub const ISOPHOTE_GUIDE_CRYPTOMATTE: u32 = 32768;
 // end of guides
 
 /// Purpose of a texture of a plan. One of `ISOPHOTE_ROLE_...`.

@@ -160,4 +160,12 @@ pub struct IsophotePresetsApi {
         capacity: u32,
         count: *mut u32,
     ) -> IsophoteStatus,
+    /// [object-thread] What the style's graph does not follow of its preset's rules for things, and why: a list of faults, as
+    /// `check` has them, whose places are in the words of the rules. Names with `*` or `?` are followed by hosts alone, which know
+    /// all names.
+    pub style_left_out: unsafe extern "C" fn(
+        style: IsophoteStyle,
+        faults: *mut IsophoteText,
+        fault: *mut IsophoteFault,
+    ) -> IsophoteStatus,
 }

@@ -1,12 +1,12 @@
 //! Graphs and parameter sets generated from the registry.
 
-use crate::pictures::Kind;
+use crate::pictures::{Kind, id_of_thing};
 use crate::random::Random;
 use isophote::frames::Frames;
-use isophote::graph::GraphInput;
+use isophote::graph::{GraphInput, ThingLook};
 use isophote::request::Guides;
 use isophote::spec::{ImageKind, NodeSpec, Param, Port, Unit};
-use isophote::things::ThingRule;
+use isophote::things::{ThingRule, Things};
 use isophote::{ColourSpace, Graph, NodeId, Request, Value};
 
 /// A node in a graph that can be planned, with the nodes that stand before it.
@@ -273,14 +273,32 @@ pub fn ruled(spec: &NodeSpec) -> Option<Setting> {
     Some(Setting { label: "by rules".into(), values: Vec::new() })
 }
 
-/// Rules for the objects of [`pictures`](crate::pictures), more than a kernel takes at once.
+/// Rules for the things of [`pictures`](crate::pictures), by number and by name, more than a kernel takes at once.
 pub fn rules() -> Vec<ThingRule> {
+    let things = |number: u32| match number % 3 {
+        0 => Things::Names((number..number + 5).map(id_of_thing).collect()),
+        _ => Things::Numbers(vec![number, number + 2]),
+    };
     let rule = |number: u32| ThingRule {
-        numbers: vec![number, number + 2],
+        things: things(number),
         control: [Some(0.8), None, (number == 1).then_some(0.0), Some(0.3)],
         line_color: number.is_multiple_of(2).then_some([0.8, 0.1, 0.2, 0.6]),
     };
     (0..40).map(rule).collect()
+}
+
+/// Gives a graph of colours rules, and looks for the things of the first two of them.
+pub fn rule(graph: &mut Graph, rules: Vec<ThingRule>) {
+    for (rule, node) in rules.iter().zip(["gaussian", "quantize_luminance"]) {
+        let look = Graph::single(node).expect("the node is there");
+        graph.looks_mut().push(ThingLook { things: rule.things.clone(), graph: look });
+    }
+    graph.set_rules(rules);
+}
+
+/// As [`request`] with names of things alone.
+pub fn request_of_names(kind: Kind, width: u32, height: u32) -> Request {
+    Request { guides: Guides { cryptomatte: true, ..Guides::NONE }, ..request(kind, width, height, true) }
 }
 
 /// As [`request`] with numbers of objects alone.

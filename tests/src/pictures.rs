@@ -2,6 +2,7 @@
 
 use crate::random::Random;
 use isophote::spec::ImageKind;
+use isophote_cryptomatte::id;
 use isophote_engine::Image;
 
 /// A kind of picture that may go wrong in a way of its own.
@@ -209,6 +210,10 @@ pub fn field(kind: ImageKind, width: u32, height: u32) -> Image {
         ImageKind::ObjectId => {
             from_fn(width, height, |x, y| [if empty(x, y) { 0.0 } else { (1 + x / 13 + 7 * (y / 9)) as f32 }])
         }
+        ImageKind::Cryptomatte => from_fn(width, height, |x, y| match empty(x, y) {
+            true => [0.0; 4],
+            false => two_things(&mut random, x, y),
+        }),
         // Things that move each their way, and some that nobody knows.
         ImageKind::Motion => from_fn(width, height, |x, y| {
             if empty(x, y) {
@@ -229,6 +234,21 @@ pub fn field(kind: ImageKind, width: u32, height: u32) -> Image {
             [0.02 * x as f32 - 3.0 * wall, 0.015 * y as f32 + leaf, 0.3 * wall + 0.002 * (x + y) as f32, 1.0]
         }),
     }
+}
+
+/// Two things of a pixel: ids of their names, and their shares, of which some are no numbers.
+fn two_things(random: &mut Random, x: i32, y: i32) -> [f32; 4] {
+    let thing = |x: i32| f32::from_bits(id_of_thing((x / 13 + 7 * (y / 9)) as u32));
+    match x % 13 {
+        0 => [thing(x), 0.5 + 0.5 * random.unit() as f32, thing(x + 13), f32::NAN],
+        12 => [thing(x), 0.7, thing(x + 13), 0.3],
+        _ => [thing(x), 1.0, 0.0, 0.0],
+    }
+}
+
+/// Id of the name that a thing has by its number, as bits of a float.
+pub fn id_of_thing(number: u32) -> u32 {
+    id(&format!("set/thing {number}"))
 }
 
 /// A positive semidefinite tensor: zero, of one direction, isotropic or in between.

@@ -88,7 +88,7 @@ fn variants(spec: &'static NodeSpec) -> Vec<Variant> {
         add(default, false, kind, false, 0.5);
     }
     let plain = Vec::new;
-    let others: [(_, FullRequest, _); 8] = [
+    let others: [(_, FullRequest, _); 9] = [
         (cases::carrying(spec), cases::request_without_rest, plain()),
         (cases::fading(spec), with_guides, plain()),
         (cases::by_distance(spec), with_guides, plain()),
@@ -97,6 +97,7 @@ fn variants(spec: &'static NodeSpec) -> Vec<Variant> {
         (cases::on_materials(spec), cases::request_on_materials, plain()),
         (cases::ruled(spec), cases::request_on_materials, cases::rules()),
         (cases::ruled(spec), cases::request_of_numbers, cases::rules()),
+        (cases::ruled(spec), cases::request_of_names, cases::rules()),
     ];
     for (setting, request, rules) in others {
         all.extend(setting.into_iter().flat_map(|setting| {
@@ -127,7 +128,7 @@ fn planned(spec: &'static NodeSpec, variant: &Variant, size: [u32; 2]) -> Option
     let ([width, height], &Variant { wired, kind, guides, scale, request, .. }) = (size, variant);
     let mut setup = cases::setup(spec, wired);
     variant.setting.apply(&mut setup.graph, setup.node);
-    setup.graph.set_rules(variant.rules.clone());
+    cases::rule(&mut setup.graph, variant.rules.clone());
     let full = request(kind, width, height);
     let request = Request { scale, ..full };
     let plan = run::planned(&setup.graph, request).plan().clone();

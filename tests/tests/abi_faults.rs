@@ -406,7 +406,7 @@ fn impossible_requests_are_refused() {
     let bad = [
         IsophoteRequest { space: 3, ..good },
         IsophoteRequest { alpha: 3, ..good },
-        IsophoteRequest { guides: 1 << 15, ..good },
+        IsophoteRequest { guides: 1 << 16, ..good },
     ];
     for request in bad {
         assert_eq!(make(request, None).0, ISOPHOTE_ERROR_INVALID_ARGUMENT, "{request:?}");

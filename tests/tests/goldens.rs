@@ -8,7 +8,7 @@ use isophote::graph::GraphInput;
 use isophote::registry;
 use isophote::request::Guides;
 use isophote::spec::{ImageKind, NodeSpec};
-use isophote::things::ThingRule;
+use isophote::things::{ThingRule, Things};
 use isophote::{Graph, Planned, Request, Value};
 use isophote_engine::cpu::Control;
 use isophote_engine::plan::Port;
@@ -81,7 +81,11 @@ const RULED: &str = "cartoon-ruled";
 
 /// Rules for the forms: red lines on the large ball, none on the small one, wide ones on the roof.
 fn rules() -> Vec<ThingRule> {
-    let rule = |number, control, line_color| ThingRule { numbers: vec![number], control, line_color };
+    let rule = |number, control, line_color| ThingRule {
+        things: Things::Numbers(vec![number]),
+        control,
+        line_color,
+    };
     vec![
         rule(1, [None; 4], Some([0.8, 0.1, 0.1, 1.0])),
         rule(2, [None, None, Some(0.0), None], None),

@@ -78,6 +78,7 @@ const OF_THE_BINARY: &[OfTheBinary] = named! {
     looks::projects_are_told_of_files_and_clips_that_are_gone,
     look_files::files_are_shown_and_faults_of_theirs_told,
     look_files::rules_for_things_follow_their_numbers,
+    look_files::rules_for_things_follow_their_names,
     look_files::files_are_read_again_when_they_change_or_the_user_asks,
     quirks::a_scale_counts_wherever_the_host_says_it,
     regions::a_host_without_tiles_may_give_parts_all_the_same,

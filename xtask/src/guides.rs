@@ -111,12 +111,13 @@ fn constants(guides: &[Guide]) -> String {
     text
 }
 
-/// The guides that files hold beside the colour: those that renderers draw, then those that people paint.
+/// The guides that files hold beside the colour: those that renderers draw, then those that people paint. Of a Cryptomatte in a file the
+/// program makes the maps of rules by itself, which knows all its ranks and names.
 fn of_files(guides: &[Guide]) -> String {
     let is_painted = |guide: &&Guide| {
         matches!(guide.id.as_str(), "flow" | "control" | "paper" | "hatching" | "line_paint")
     };
-    let drawn = guides.iter().filter(|guide| !is_painted(guide));
+    let drawn = guides.iter().filter(|guide| !is_painted(guide) && guide.id != "cryptomatte");
     let mut text = String::new();
     for guide in drawn.chain(guides.iter().filter(is_painted)).filter(|guide| guide.id != "mask") {
         let kind = match guide.kind.as_str() {

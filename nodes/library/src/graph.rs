@@ -8,7 +8,7 @@ use crate::declare::value::Value;
 use crate::error::{Error, Result, nearest};
 pub use crate::guides::GraphInput;
 use crate::registry;
-use crate::things::ThingRule;
+use crate::things::{ThingRule, Things};
 use isophote_engine::program::Precision;
 
 /// Origin of an input port's picture.
@@ -82,6 +82,16 @@ pub struct Graph {
     output: Option<usize>,
     precision: Precision,
     rules: Vec<ThingRule>,
+    looks: Vec<ThingLook>,
+}
+
+/// Look that things have, in the place of what the graph shows where they are.
+#[derive(Clone, Debug)]
+pub struct ThingLook {
+    /// The things.
+    pub things: Things,
+    /// What shows there: a graph from the same pictures to colours, whose own rules and looks for things count for nothing.
+    pub graph: Graph,
 }
 
 impl Graph {
@@ -100,8 +110,8 @@ impl Graph {
         self.precision = precision;
     }
 
-    /// Rules for things, which count where a host gives numbers of objects: what they say is added to its control map and its
-    /// colours of lines. They are a preset's, and no part of what is saved.
+    /// Rules for things, which count where a host gives numbers of objects or a Cryptomatte: what they say is added to its control
+    /// map and its colours of lines. They are a preset's, and no part of what is saved.
     pub fn rules(&self) -> &[ThingRule] {
         &self.rules
     }
@@ -109,6 +119,17 @@ impl Graph {
     /// Sets the rules for things; the last one counts.
     pub fn set_rules(&mut self, rules: Vec<ThingRule>) {
         self.rules = rules;
+    }
+
+    /// Looks of things, each laid over those before it as far as its things cover a pixel. They count where rules do, and are no part
+    /// of what is saved either.
+    pub fn looks(&self) -> &[ThingLook] {
+        &self.looks
+    }
+
+    /// The same, to be edited.
+    pub fn looks_mut(&mut self) -> &mut Vec<ThingLook> {
+        &mut self.looks
     }
 
     /// A graph of one node, its inputs connected to the graph's inputs of the same name, its output

@@ -134,6 +134,8 @@ guides! {
     Hatching hatching ("Hatching", Hatching, 13, Some(12)),
     /// Colours of lines: that of the line here, as far as it is opaque.
     LinePaint line_paint ("Line paint", Color, 14, Some(13)),
+    /// The two things that cover most of a pixel by a Cryptomatte: id of the one's name and its share, then those of the other.
+    Cryptomatte cryptomatte ("Cryptomatte", Cryptomatte, 15, Some(14)),
 }
 
 impl GraphInput {

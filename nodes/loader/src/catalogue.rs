@@ -76,6 +76,8 @@ pub enum Kind {
     Control,
     /// Hatching in tones.
     Hatching,
+    /// Things by the ids of their names.
+    Cryptomatte,
     /// Something that this program does not know.
     Other,
 }
@@ -94,6 +96,7 @@ impl Kind {
             c::ISOPHOTE_KIND_POSITION => Self::Position,
             c::ISOPHOTE_KIND_CONTROL => Self::Control,
             c::ISOPHOTE_KIND_HATCHING => Self::Hatching,
+            c::ISOPHOTE_KIND_CRYPTOMATTE => Self::Cryptomatte,
             _ => Self::Other,
         }
     }
@@ -117,6 +120,7 @@ impl Kind {
             Self::Position => "position",
             Self::Control => "control map",
             Self::Hatching => "hatching",
+            Self::Cryptomatte => "Cryptomatte",
             Self::Other => "something unknown",
         }
     }

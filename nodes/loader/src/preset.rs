@@ -240,9 +240,14 @@ impl Library {
             // SAFETY: the texts end with a zero, and null is allowed for the last; the others may be written.
             unsafe { (table.check)(json.as_ptr(), place.as_ptr(), pointer(graph.as_ref()), out, fault) }
         })?;
-        let faults: Vec<Fault> = decoded(&report)?;
-        Ok(faults.into_iter().map(shown).collect())
+        listed(&report)
     }
+}
+
+/// The faults of a list in JSON.
+pub(super) fn listed(faults: &str) -> Result<Vec<Fault>> {
+    let faults: Vec<Fault> = decoded(faults)?;
+    Ok(faults.into_iter().map(shown).collect())
 }
 
 /// The pointer to a text that may be missing.

@@ -3,10 +3,10 @@
 use std::cell::Cell;
 use std::marker::PhantomData;
 
-use super::error::Result;
+use super::error::{Fault, Result};
 use super::graph::{Graph, GraphHandle};
 use super::library::Library;
-use super::preset::{faulty, pointer, written};
+use super::preset::{faulty, listed, pointer, written};
 use super::text;
 use isophote_abi::{ISOPHOTE_OK, IsophoteFault, IsophotePresetsApi, IsophoteStatus, IsophoteStyle};
 
@@ -117,6 +117,18 @@ impl Style {
             unsafe { (self.table.style_value)(self.handle, name.as_ptr(), frame, out, fault) }
         });
         value.ok()
+    }
+
+    /// What its graph does not follow of its preset's rules for things, and why; the places are in the words of the rules.
+    ///
+    /// # Errors
+    /// [`Error`](crate::Error) when the library fails.
+    pub fn left_out(&self) -> Result<Vec<Fault>> {
+        let faults = written(|out, fault| {
+            // SAFETY: the handle is this object's; the others may be written.
+            unsafe { (self.table.style_left_out)(self.handle, out, fault) }
+        })?;
+        listed(&faults)
     }
 
     /// Frames of all keys in ascending order.

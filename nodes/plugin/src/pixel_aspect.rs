@@ -219,7 +219,9 @@ impl By {
     fn input(input: GraphInput) -> Self {
         match input.kind() {
             ImageKind::Depth => Self::Surface,
-            ImageKind::ObjectId | ImageKind::Motion | ImageKind::Position => Self::Middle,
+            ImageKind::ObjectId | ImageKind::Cryptomatte | ImageKind::Motion | ImageKind::Position => {
+                Self::Middle
+            }
             ImageKind::Color
             | ImageKind::Normal
             | ImageKind::Scalar

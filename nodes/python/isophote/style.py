@@ -5,6 +5,7 @@ from __future__ import annotations
 import json
 import os
 import threading
+import warnings
 from collections.abc import Callable, Mapping
 from pathlib import Path
 from typing import Any, TypedDict
@@ -109,6 +110,8 @@ class Style:
         self._lock = threading.RLock()
         self._style = _opened(style)
         self._graph = self._style.graph()
+        for rule in self._style.left_out():
+            warnings.warn(f"a rule for things is left out: {rule}", stacklevel=2)
         if precision != "exact":
             self._graph.set_precision(precision)
         for name, value in params.items():
@@ -263,6 +266,7 @@ def apply(
     paper: Any = None,
     hatching: Any = None,
     line_paint: Any = None,
+    cryptomatte: Any = None,
     out: Any = None,
     frame: int = 0,
     color_space: str = "srgb",
@@ -306,6 +310,8 @@ def apply(
       it is transparent.
     - `hatching`: hatching in up to four tones, the lightest in red and the darkest in alpha: 1 is paper, 0 is ink.
     - `line_paint`: colours of lines: that of the line here, as far as it is opaque.
+    - `cryptomatte`: the two things that cover most of a pixel by a Cryptomatte: id of the one's name and its share,
+      then those of the other.
 
     Normals have 3 or 4 channels of floats, rest positions 32 bits a channel, and motion goes x right and y down. Paper and
     hatching of another size than the picture's are tiled over it.
@@ -356,6 +362,7 @@ def apply(
         paper=paper,
         hatching=hatching,
         line_paint=line_paint,
+        cryptomatte=cryptomatte,
     )
 
 

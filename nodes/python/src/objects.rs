@@ -119,6 +119,12 @@ impl Style {
         Ok(Graph(Owned::new(graph)))
     }
 
+    /// What the graph does not follow of rules for things, a sentence each.
+    fn left_out(&self, py: Python<'_>) -> PyResult<Vec<String>> {
+        let faults = answer(py, self.0.with(py, |style| style.left_out())?)?;
+        Ok(faults.iter().map(ToString::to_string).collect())
+    }
+
     /// Lines of the pictures that its lengths are meant for; 0: lengths are pixels.
     fn reference_height(&self, py: Python<'_>) -> PyResult<u32> {
         self.0.with(py, |style| style.reference_height())

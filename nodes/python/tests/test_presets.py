@@ -102,6 +102,35 @@ def test_rules_by_number_follow_object_ids(small: np.ndarray) -> None:
     assert np.array_equal(isophote.apply(preset, small), isophote.apply("cartoon", small))
 
 
+def test_rules_by_name_follow_a_cryptomatte(small: np.ndarray) -> None:
+    height, width = small.shape[:2]
+    # The id of "bunny", over half of the picture whole, and over a quarter by half.
+    matte = np.zeros((height, width, 4), np.float32)
+    matte[..., 0] = np.array(0x13851A76, np.uint32).view(np.float32)
+    matte[:, : width // 2, 1] = 1
+    matte[:, width // 2 : width * 3 // 4, 1] = 0.5
+    look = {"style": "watercolor"}
+    preset = {"style": "cartoon", "objects": [{"match": "cryptomatte:bunny", "detail": 2, "look": look}]}
+    control = np.full((height, width, 4), 0.5, np.float32)
+    control[..., 0] += 0.25 * matte[..., 1]
+    under = isophote.apply("cartoon", small, control=control).astype(float)
+    over = isophote.apply("watercolor", small, control=control).astype(float)
+    share = matte[..., 1:2]
+    found = isophote.apply(preset, small, cryptomatte=matte).astype(float)
+    assert np.abs(found - (under * (1 - share) + over * share)).max() <= 1
+    with pytest.raises(isophote.IsophoteError, match="4 channels of f32"):
+        isophote.apply(preset, small, cryptomatte=matte.astype(np.float16))
+
+
+def test_rules_that_nobody_can_follow_are_warned_of() -> None:
+    rules = [{"match": "cryptomatte:props/*", "lines": False}, {"match": "id:3", "look": "no_look"}]
+    with pytest.warns(UserWarning) as warned:
+        isophote.Style({"style": "cartoon", "objects": rules})
+    messages = [str(warning.message) for warning in warned]
+    assert "cryptomatte:props/*" in messages[0] and "whole names" in messages[0]
+    assert "id:3: its look" in messages[1] and "no_look" in messages[1] and len(messages) == 2
+
+
 def test_graphs_are_the_same_files(small: np.ndarray, host: Path, tmp_path: Path) -> None:
     for file in sorted((ROOT / "host-example/graphs").glob("*.json")):
         result = isophote.apply(file, small, frame=1)

@@ -115,7 +115,7 @@ pub fn files_are_read_again_when_they_change_or_the_user_asks(binary: &Binary) {
     host.no_faults();
 }
 
-/// Rules of a preset for things count where their numbers are connected; those by name cannot, and are told of.
+/// Rules of a preset for things count where their numbers are connected; those for names that nobody knows cannot, and are told of.
 pub fn rules_for_things_follow_their_numbers(binary: &Binary) {
     let host = Host::new(Behaviour::default());
     let instance = in_host(&host, binary, LOOK_EFFECT, CONTEXTS[1]);
@@ -129,7 +129,7 @@ pub fn rules_for_things_follow_their_numbers(binary: &Binary) {
     let rule =
         r##"{"match": "id:3", "lines": false, "detail": 4}, {"match": "id:200", "line_color": "#d01020"}"##;
     let (ruled, named) =
-        (file("ruled.json", rule), file("named.json", r#"{"match": "cryptomatte:hero", "lines": false}"#));
+        (file("ruled.json", rule), file("named.json", r#"{"match": "cryptomatte:hero*", "lines": false}"#));
     let (color, layout) = (source(Layout::default(), false).packed(), Layout::default());
     let graph = |json: &str| isophote::preset::open_json("p.json", json, None).expect("it opens").0;
     let plain_graph = graph(r#"{"style": "cartoon"}"#);
@@ -158,8 +158,66 @@ pub fn rules_for_things_follow_their_numbers(binary: &Binary) {
     assert!(got == Through::of(&plain_graph, SIZE).c(&inputs, layout));
     assert!(got != Through::of(&plain_graph, SIZE).c(&inputs[..2], layout));
     of_file.choose(&named);
-    assert!(told().contains("cryptomatte:hero are left out"), "{}", told());
+    assert!(told().contains("left out. cryptomatte:hero*") && told().contains("whole names"), "{}", told());
     host.no_faults();
+}
+
+/// Names of a Cryptomatte tell things, too, and things may have looks of their own.
+pub fn rules_for_things_follow_their_names(binary: &Binary) {
+    let host = Host::new(Behaviour::default());
+    let instance = in_host(&host, binary, LOOK_EFFECT, CONTEXTS[1]);
+    let of_file = OfFile { instance: &instance, host: &host };
+    let folder = tempfile::TempDir::new().expect("a folder");
+    let path = folder.path().join("named.json");
+    let json = r#"{"style": "cartoon", "objects": [{"match": "cryptomatte:hero", "lines": false},
+        {"match": "material:skin", "look": "look:wet_in_wet"}]}"#;
+    std::fs::write(&path, json).expect("a file");
+    let (color, layout) = (source(Layout::default(), false).packed(), Layout::default());
+    instance.edit("look", 0);
+    of_file.choose(&path);
+    let told = || host.inner.messages.lock().expect("messages").join("\n");
+    assert!(told().contains("to the clip Cryptomatte"), "{}", told());
+    // The hero on the left, and skin over a part of it and of nothing.
+    let [hero, skin] = ["hero", "skin"].map(|name| f32::from_bits(isophote_cryptomatte::id(name)));
+    let pixel = |x: i32| match 4 * x / WIDTH {
+        0 => [hero, 1.0, 0.0, 0.0],
+        1 => [hero, 0.75, skin, 0.25],
+        2 => [skin, 1.0, 0.0, 0.0],
+        _ => [0.0; 4],
+    };
+    let names: Vec<u8> =
+        (0..WIDTH * HEIGHT).flat_map(|at| pixel(at % WIDTH)).flat_map(f32::to_ne_bytes).collect();
+    instance.connect("Cryptomatte", Picture::packed_in(layout, WIDTH, HEIGHT, &names));
+    of_file.choose(&path);
+    assert_eq!(told(), "");
+    let share = |name: f32, [a, of_a, b, of_b]: [f32; 4]| match name {
+        name if name == a => of_a,
+        name if name == b => of_b,
+        _ => 0.0,
+    };
+    let shares = |name| (0..WIDTH * HEIGHT).map(move |at| share(name, pixel(at % WIDTH)));
+    let map = shares(hero).flat_map(|hero| [0.5, 0.5, 0.5 - 0.5 * hero, 0.5]);
+    let control: Vec<u8> = map.flat_map(f32::to_ne_bytes).collect();
+    let inputs = [("color", color.as_slice(), layout), ("control", control.as_slice(), layout)];
+    let shown = |graph: &Graph| floats(&Through::of(graph, SIZE).c(&inputs, layout));
+    let plain = Graph::single("cartoon").expect("a cartoon");
+    let wet = isophote::preset::open("look:wet_in_wet").expect("it ships").0;
+    let (under, over) = (shown(&plain), shown(&wet));
+    let got = floats(&instance.render(layout, SIZE).packed());
+    let shares = shares(skin).flat_map(|share| [share; 4]);
+    let wanted = under.iter().zip(&over).zip(shares).map(|((a, b), share)| a + (b - a) * share);
+    let most = got.iter().zip(wanted).map(|(a, b)| (a - b).abs()).fold(0.0, f32::max);
+    assert!(most < 1e-5 && got != under, "{most}");
+    // Ids are all bits of a float: 16 of them are no Cryptomatte.
+    let short = Layout { depth: kOfxBitDepthHalf, ..layout };
+    instance.connect("Cryptomatte", Picture::packed_in(short, WIDTH, HEIGHT, &vec![0; names.len() / 2]));
+    assert!(instance.render(layout, SIZE).packed() == Through::of(&plain, SIZE).c(&inputs[..1], layout));
+    host.no_faults();
+}
+
+/// Packed pixels of floats.
+fn floats(bytes: &[u8]) -> Vec<f32> {
+    bytes.as_chunks::<4>().0.iter().map(|value| f32::from_ne_bytes(*value)).collect()
 }
 
 /// The control map and the colours of lines that the rules of the test say.

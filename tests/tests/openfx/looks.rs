@@ -261,7 +261,7 @@ fn sorted(labels: &[String]) -> Vec<&String> {
 }
 
 /// Clips of the effect for looks in the general context.
-const CLIPS: [&str; 17] = [
+const CLIPS: [&str; 18] = [
     "Source",
     "Output",
     "Mask",
@@ -279,6 +279,7 @@ const CLIPS: [&str; 17] = [
     "Paper",
     "Hatching",
     "LinePaint",
+    "Cryptomatte",
 ];
 
 pub fn the_effect_for_looks_shows_all_that_ships(binary: &Binary) {

@@ -34,12 +34,12 @@ pub enum ImageKind {
     Motion,
     /// Point x, y, z of the undeformed object, scene units, and validity.
     Position,
-    /// What an artist wants of places, 0.5 in each channel for no change. Its values are data, which no colour space changes
-    /// and nothing multiplies.
+    /// What an artist wants of places, 0.5 in each channel for no change. Its values are data as those of a flow map.
     Control,
-    /// Hatching in up to four tones, a channel each: 1 is paper, 0 is ink. Its values are data, which no colour space changes
-    /// and nothing multiplies.
+    /// Hatching in up to four tones, a channel each: 1 is paper, 0 is ink. Its values are data as those of a flow map.
     Hatching,
+    /// The two things that cover most of a pixel: the id of the one's name, its share, and those of the other.
+    Cryptomatte,
 }
 
 impl ImageKind {
@@ -54,6 +54,7 @@ impl ImageKind {
             Self::ObjectId => "object_id",
             Self::Control => "control",
             Self::Hatching => "hatching",
+            Self::Cryptomatte => "cryptomatte",
             Self::Flow => "flow",
             Self::Motion => "motion",
             Self::Position => "rest_position",
@@ -68,6 +69,7 @@ impl ImageKind {
             | Self::Normal
             | Self::Control
             | Self::Hatching
+            | Self::Cryptomatte
             | Self::Flow
             | Self::Position => 4,
             Self::Motion => 2,

@@ -23,6 +23,8 @@ pub(crate) struct Scratch {
     inputs: Vec<Option<ImageId>>,
     /// By node: whether it is described at frames whose stages are handed in, too.
     besides: Vec<bool>,
+    /// That of the looks of things.
+    looks: Vec<Scratch>,
 }
 
 /// Stages that a node may keep.
@@ -35,6 +37,54 @@ pub(crate) fn describe(
     builder: &mut PlanBuilder,
     scratch: &mut Scratch,
 ) -> Result<()> {
+    let Some((_, kind)) = graph.output_node() else { return Ok(()) };
+    let ruled = Ruled { rules: graph.rules(), request };
+    let Some(mut shown) = described(graph, ruled, 0, builder, scratch) else { return Ok(()) };
+    let mut before = graph.len();
+    scratch.looks.resize_with(graph.looks().len(), Scratch::default);
+    for (look, scratch) in graph.looks().iter().zip(&mut scratch.looks) {
+        if let Some(cover) = ruled.cover(builder, &look.things)
+            && let Some(over) = described(&look.graph, ruled, before, builder, scratch)
+        {
+            shown = laid_over(builder, shown, over, cover);
+        }
+        before += look.graph.len();
+    }
+    let (mut image, light) = shown;
+    if kind == ImageKind::Color {
+        image = colour_export::pass(builder, image, request.encoding());
+        if let Some(light) = light {
+            image = add_light::pass(builder, image, light);
+        }
+    }
+    builder.output("output", image);
+    Ok(())
+}
+
+/// Result of a graph, and the light beyond its coverage where that is taken apart.
+type Shown = (ImageId, Option<ImageId>);
+
+/// A result with another one over it, as far as that covers it.
+fn laid_over(builder: &mut PlanBuilder, under: Shown, over: Shown, cover: ImageId) -> Shown {
+    let image = mix_by_mask::pass(builder, [under.0, over.0], cover, 1.0);
+    let light = match (under.1, over.1) {
+        (Some(under), Some(over)) if under != over => {
+            Some(mix_by_mask::pass(builder, [under, over], cover, 1.0))
+        }
+        (under, over) => under.or(over),
+    };
+    (image, light)
+}
+
+/// Describes a graph, whose nodes come after so many others, in a plan.
+fn described(
+    graph: &Graph,
+    ruled: Ruled<'_>,
+    before: usize,
+    builder: &mut PlanBuilder,
+    scratch: &mut Scratch,
+) -> Option<Shown> {
+    let request = ruled.request;
     needs_of(graph, &request.frames, &mut scratch.needs);
     let frames = (request.frames.past + request.frames.future + 1) as usize;
     scratch.results.clear();
@@ -44,7 +94,7 @@ pub(crate) fn describe(
     find_besides(graph, &mut scratch.besides);
     for index in graph.order() {
         let Some([first, last]) = scratch.needs[*index] else { continue };
-        let mut describing = Describing { graph, request, builder, scratch };
+        let mut describing = Describing { graph, ruled, request, before, builder, scratch };
         describing.find_inputs(*index);
         // The frame at hand comes first: the others ask for stages of its shapes.
         for frame in std::iter::once(0).chain((first..=last).filter(|frame| *frame != 0)) {
@@ -53,24 +103,17 @@ pub(crate) fn describe(
             }
         }
     }
-    if let Some((index, kind)) = graph.output_node()
-        && let Some(result) = scratch.results[request.frames.past as usize * graph.len() + index]
-    {
-        let mut image = result;
-        if kind == ImageKind::Color {
-            image = colour_export::pass(builder, image, request.encoding());
-            if let Some(light) = scratch.lights[index] {
-                image = add_light::pass(builder, image, light);
-            }
-        }
-        builder.output("output", image);
-    }
-    Ok(())
+    let (index, _) = graph.output_node()?;
+    let result = scratch.results[request.frames.past as usize * graph.len() + index]?;
+    Some((result, scratch.lights[index]))
 }
 
 struct Describing<'d> {
     graph: &'d Graph,
+    ruled: Ruled<'d>,
     request: &'d Request,
+    /// Nodes of other graphs that the plan has before those of this one.
+    before: usize,
     builder: &'d mut PlanBuilder,
     scratch: &'d mut Scratch,
 }
@@ -113,8 +156,7 @@ impl Describing<'_> {
     /// A picture that enters, or that rules for things make.
     fn picture(&mut self, input: GraphInput) -> Option<ImageId> {
         let given = self.request.guides.has(input).then(|| graph_input(self.builder, input, self.request));
-        let ruled = Ruled { rules: self.graph.rules(), request: self.request };
-        if ruled.makes(input) { Some(ruled.pass(self.builder, input, given)) } else { given }
+        if self.ruled.makes(input) { self.ruled.pass(self.builder, input, given) } else { given }
     }
 
     /// Describes a node at one frame.
@@ -126,7 +168,7 @@ impl Describing<'_> {
             inputs: &self.scratch.inputs,
             first: -(self.request.frames.past as i32),
             frames: self.request.frames,
-            stage: index as u32 * STAGES,
+            stage: (self.before + index) as u32 * STAGES,
             is_carrying: node.is_carrying(),
         };
         let inputs = &self.scratch.inputs[first..first + ports];

@@ -1,5 +1,6 @@
 //! From a graph to a plan for one size, and from an edited graph to an edited plan.
 
+use crate::declare::spec::ImageKind;
 use crate::error::{Error, Result};
 use crate::graph::{Graph, Upstream};
 use crate::plan::describe::{Scratch, describe};
@@ -112,6 +113,18 @@ fn check(graph: &Graph, request: &Request) -> Result<()> {
             request.origin
         )));
     }
+    for look in graph.looks() {
+        // A look of colours can be laid over colours alone.
+        if [graph, &look.graph].iter().any(|graph| graph.output_kind() != Some(ImageKind::Color)) {
+            return Err(Error::Connection("a look of things, and what it lies over, must be colours".into()));
+        }
+        check_inputs(&look.graph, request)?;
+    }
+    check_inputs(graph, request)
+}
+
+/// Fails where a required input is open.
+fn check_inputs(graph: &Graph, request: &Request) -> Result<()> {
     for node in graph.nodes() {
         for (port, source) in node.spec.ports().zip(&node.inputs) {
             let connected = match source {

@@ -1,12 +1,13 @@
-//! Maps of rules for things as inputs of a graph: a host that gives numbers of objects gives a control map and colours of
-//! lines with them.
+//! Maps of rules for things as inputs of a graph: a host that gives numbers of objects, or a Cryptomatte, gives a control map and
+//! colours of lines with them.
 
 use crate::graph::GraphInput;
 use crate::kernels::colour::followed_rules::{self, Painted};
-use crate::kernels::colour::nearest_across;
-use crate::kernels::colour::thing_rules::{self, Entry};
+use crate::kernels::colour::thing_rules::{self, Said};
+use crate::kernels::colour::{nearest_across, thing_cover};
+use crate::kernels::shared::things::{Entry, Told};
 use crate::plan::request::Request;
-use crate::things::ThingRule;
+use crate::things::{ThingRule, Things};
 use isophote_engine::{ImageId, PlanBuilder};
 
 /// Distance over which lines beside a thing follow its rules and not those of what is farther away, pixels of a picture 1080
@@ -23,22 +24,29 @@ pub(crate) struct Ruled<'r> {
 }
 
 impl Ruled<'_> {
-    /// True for an input that the rules make of the numbers of objects.
+    /// True for an input that the rules make of what tells things.
     pub fn makes(&self, input: GraphInput) -> bool {
         let says = |rule: &ThingRule| match input {
             GraphInput::Control => !rule.is_neutral(),
             GraphInput::LinePaint => rule.line_color.is_some(),
             _ => false,
         };
-        self.request.guides.object_id && self.rules.iter().any(says)
+        self.rules.iter().any(|rule| self.knows(&rule.things) && says(rule))
     }
 
     /// The input that the rules make, over what the host has `painted` of it.
-    pub fn pass(&self, plan: &mut PlanBuilder, input: GraphInput, painted: Option<ImageId>) -> ImageId {
+    pub fn pass(
+        &self,
+        plan: &mut PlanBuilder,
+        input: GraphInput,
+        painted: Option<ImageId>,
+    ) -> Option<ImageId> {
         let is_control = input == GraphInput::Control;
-        let numbers = guide(plan, GraphInput::ObjectId);
         let start = if is_control { [0.5; 4] } else { [0.0; 4] };
-        let map = thing_rules::pass(plan, numbers, &self.table(is_control), start);
+        let told = self.told(plan);
+        let map = thing_rules::pass(plan, told, &self.said(is_control), start, !is_control);
+        // Rules that make an input say something of things that are told.
+        let map = map.or(painted)?;
         let reach = self.reach();
         let depth = self.request.guides.depth.then(|| {
             let depth = guide(plan, GraphInput::Depth);
@@ -46,25 +54,39 @@ impl Ruled<'_> {
         });
         let painted = painted.map(if is_control { Painted::Control } else { Painted::Colours });
         if depth.is_none() && painted.is_none() {
-            return map;
+            return Some(map);
         }
-        followed_rules::pass(plan, map, depth, painted)
+        Some(followed_rules::pass(plan, map, depth, painted))
     }
 
-    /// Entries by number, those of the last rule at the end.
-    fn table(&self, is_control: bool) -> Vec<Entry> {
-        let mut table = Vec::new();
-        for rule in self.rules {
-            let values = if is_control {
-                rule.control
-            } else {
-                rule.line_color.map_or([None; 4], |color| color.map(Some))
-            };
-            if values.iter().any(Option::is_some) {
-                table.extend(ranges(&rule.numbers).into_iter().map(|range| (range, values)));
-            }
+    /// Share of each pixel that some things cover; none where nothing tells them.
+    pub fn cover(&self, plan: &mut PlanBuilder, things: &Things) -> Option<ImageId> {
+        if !self.knows(things) {
+            return None;
         }
-        table
+        let told = self.told(plan);
+        thing_cover::pass(plan, told, &entries(things))
+    }
+
+    /// True where a host gives what tells these things.
+    fn knows(&self, things: &Things) -> bool {
+        self.request.guides.has(things.guide())
+    }
+
+    fn told(&self, plan: &mut PlanBuilder) -> Told {
+        let mut given = |input| self.request.guides.has(input).then(|| guide(plan, input));
+        Told { numbers: given(GraphInput::ObjectId), names: given(GraphInput::Cryptomatte) }
+    }
+
+    /// What the rules say of a map, the last one at the end.
+    fn said(&self, is_control: bool) -> Vec<Said> {
+        let values = |rule: &ThingRule| match (is_control, rule.line_color) {
+            (true, _) => rule.control,
+            (false, color) => color.map_or([None; 4], |color| color.map(Some)),
+        };
+        let rules = self.rules.iter().filter(|rule| self.knows(&rule.things));
+        let said = rules.map(|rule| (entries(&rule.things), values(rule)));
+        said.filter(|(_, values)| values.iter().any(Option::is_some)).collect()
     }
 
     fn reach(&self) -> u32 {
@@ -79,6 +101,19 @@ impl Ruled<'_> {
 
 fn guide(plan: &mut PlanBuilder, input: GraphInput) -> ImageId {
     plan.input(input.id(), input.kind().channels(), input.kind().class())
+}
+
+/// Entries of a table for things.
+fn entries(things: &Things) -> Vec<Entry> {
+    match things {
+        Things::Numbers(numbers) => ranges(numbers).into_iter().map(Entry::Numbers).collect(),
+        Things::Names(ids) => {
+            let mut ids = ids.clone();
+            ids.sort_unstable();
+            ids.dedup();
+            ids.into_iter().map(|id| Entry::Name(f32::from_bits(id))).collect()
+        }
+    }
 }
 
 /// First and last of numbers that follow each other.

@@ -1,12 +1,12 @@
 //! Rules of a preset for things in a picture: how much detail they have, how wide, how many and of which colour their lines
-//! are, how strong the medium is on them, and whether they have a look of their own. Those by number are the
+//! are, how strong the medium is on them, and whether they have a look of their own. Those by number and by whole names are the
 //! graph's; a host that knows where other things are makes maps of their rules, and lays the looks over the picture there.
 
 use super::fault::Fault;
 use crate::declare::value::color_from_text;
 use crate::error::nearest_name;
 use crate::kernels::shared::control::value_of;
-use crate::things::ThingRule;
+use crate::things::{ThingRule, Things};
 use serde::{Deserialize, Serialize};
 use serde_json::{Map, Value};
 
@@ -105,13 +105,23 @@ impl ObjectRule {
         (faults.len() == before).then_some(Self { rule, things, control })
     }
 
-    /// The rule by numbers of objects; none where it finds things in another way, or gives them a look of their own, which is for
-    /// hosts to follow.
-    pub fn by_number(&self) -> Option<ThingRule> {
-        let numbers = ThingRule::numbers_of(&self.things).filter(|_| !self.rule.contains_key(LOOK))?;
-        let color = self.rule.get(LINE_COLOR).and_then(Value::as_str);
+    /// The rule as a graph has it; none where a host alone knows what it is for. A colour of lines is that of the look, if the things
+    /// have one of their own.
+    pub fn of_graph(&self) -> Option<ThingRule> {
+        let things = Things::of(&self.things)?;
+        let color = self.line_color().filter(|_| self.look().is_none());
         let line_color = color.and_then(|text| color_from_text(text).ok());
-        Some(ThingRule { numbers, control: self.control, line_color })
+        Some(ThingRule { things, control: self.control, line_color })
+    }
+
+    /// The look of its own that things have: a name, or a preset that is written out.
+    pub(super) fn look(&self) -> Option<&Value> {
+        self.rule.get(LOOK)
+    }
+
+    /// Colour of lines, as it is written.
+    pub(super) fn line_color(&self) -> Option<&str> {
+        self.rule.get(LINE_COLOR).and_then(Value::as_str)
     }
 
     /// Adds rules to a file, if there are any.

@@ -9,8 +9,10 @@ use super::looks::{self, id_of_look};
 use super::names;
 use super::objects::ObjectRule;
 use crate::declare::param::Param;
-use crate::graph::{Graph, NodeId};
+use crate::declare::spec::ImageKind;
+use crate::graph::{Graph, NodeId, ThingLook};
 use crate::registry;
+use serde_json::Value;
 
 /// The parameters of a graph as a style sets them, and its lengths.
 #[derive(Clone, Debug, Default)]
@@ -19,7 +21,9 @@ pub struct Settings {
     /// True where the style is node 0, and the others feed it.
     is_single: bool,
     animated: Vec<Animated>,
-    left_out: Vec<String>,
+    /// Of the looks of things, in the order of the graph's.
+    looks: Vec<Settings>,
+    left_out: Vec<Fault>,
 }
 
 /// Opens the node of this id, or the look that is named `look:ID`.
@@ -79,11 +83,8 @@ fn follow(
 ) -> Result<(Graph, Settings), Fault> {
     let (mut graph, is_single) = inside(place, &preset.style, graph)?;
     let lengths = preset.lengths.unwrap_or_default();
-    let by_number = |rule: &ObjectRule| rule.by_number().ok_or_else(|| rule.things.clone());
-    let (rules, left_out): (Vec<_>, Vec<_>) = preset.objects.iter().map(by_number).partition(Result::is_ok);
-    graph.set_rules(rules.into_iter().flatten().collect());
-    let left_out = left_out.into_iter().filter_map(Result::err).collect();
-    let mut settings = Settings { lengths, is_single, animated: Vec::new(), left_out };
+    let mut settings = Settings { lengths, is_single, ..Settings::default() };
+    settings.rule(&mut graph, &preset.objects);
     for (name, track) in &preset.params {
         settings.follow(&mut graph, place, (name, track), faults);
     }
@@ -128,10 +129,60 @@ impl Settings {
         self.lengths
     }
 
-    /// Things whose rules the graph does not follow, in the words of their rules: they are not told by numbers, or have looks of
-    /// their own.
-    pub fn left_out(&self) -> &[String] {
+    /// What the graph does not follow of rules for things, and why: the place of each is in the words of its rule.
+    pub fn left_out(&self) -> &[Fault] {
         &self.left_out
+    }
+
+    /// Gives a graph the rules of a preset, and notes what it cannot follow of them.
+    fn rule(&mut self, graph: &mut Graph, objects: &[ObjectRule]) {
+        let mut rules = Vec::new();
+        for object in objects {
+            let Some(rule) = object.of_graph() else {
+                let fix = "write whole names, as in cryptomatte:hero, or numbers, as in id:3";
+                self.left_out.push(Fault::value(
+                    &object.things,
+                    "is not told by numbers or whole names",
+                    fix,
+                ));
+                continue;
+            };
+            if let Some(look) = object.look() {
+                match self.look(&format!("{}: its look", object.things), look, object.line_color()) {
+                    Ok((look, settings)) => {
+                        graph.looks_mut().push(ThingLook { things: rule.things.clone(), graph: look });
+                        self.looks.push(settings);
+                    }
+                    Err(fault) => self.left_out.push(fault),
+                }
+            }
+            rules.push(rule);
+        }
+        graph.set_rules(rules);
+    }
+
+    /// The graph of a look of things, with lines of the colour that their rule says, and its settings.
+    fn look(&self, place: &str, look: &Value, line_color: Option<&str>) -> Result<(Graph, Self), Fault> {
+        let (mut graph, mut settings) = match look {
+            Value::String(name) => open(name).map_err(|fault| fault.at(place))?,
+            written => open_json(place, &written.to_string(), None)?,
+        };
+        if settings.lengths != self.lengths {
+            let problem = format!("has lengths that are {}", settings.lengths.id());
+            let fix = format!("write \"lengths\": \"{}\" as in the preset itself", self.lengths.id());
+            return Err(Fault::value(place, problem, fix));
+        }
+        if graph.output_kind() != Some(ImageKind::Color) {
+            return Err(Fault::value(place, "makes no colours", "choose a style that makes colours"));
+        }
+        if let Some(color) = line_color {
+            settings.set(&mut graph, "line_color", color).map_err(|fault| fault.at(place))?;
+            // Where kinds of lines may have colours of their own.
+            if names::find(&graph, settings.is_single, "line_colors").is_ok() {
+                settings.set(&mut graph, "line_colors", "one").map_err(|fault| fault.at(place))?;
+            }
+        }
+        Ok((graph, settings))
     }
 
     /// Sets a parameter for all frames, by the name that a preset has for it. Returns its node.
@@ -156,7 +207,11 @@ impl Settings {
                 Fault::of(error, place, "choose other keys")
             })?;
         }
-        Ok(!self.animated.is_empty())
+        let mut is_animated = !self.animated.is_empty();
+        for (look, settings) in graph.looks_mut().iter_mut().zip(&self.looks) {
+            is_animated |= settings.at_frame(&mut look.graph, frame)?;
+        }
+        Ok(is_animated)
     }
 
     /// The value at a frame, as text, of the parameter with keyframes that the preset names so.
@@ -167,6 +222,7 @@ impl Settings {
     /// Frames of all keys, in order, each once.
     pub fn frames(&self) -> Vec<i64> {
         let mut frames: Vec<i64> = self.animated.iter().flat_map(Animated::frames).collect();
+        frames.extend(self.looks.iter().flat_map(Self::frames));
         frames.sort_unstable();
         frames.dedup();
         frames

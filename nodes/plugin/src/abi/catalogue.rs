@@ -175,6 +175,7 @@ pub fn kind(kind: ImageKind) -> IsophoteKind {
         ImageKind::ObjectId => ISOPHOTE_KIND_OBJECT_ID,
         ImageKind::Control => ISOPHOTE_KIND_CONTROL,
         ImageKind::Hatching => ISOPHOTE_KIND_HATCHING,
+        ImageKind::Cryptomatte => ISOPHOTE_KIND_CRYPTOMATTE,
         ImageKind::Flow => ISOPHOTE_KIND_FLOW,
         ImageKind::Motion => ISOPHOTE_KIND_MOTION,
         ImageKind::Position => ISOPHOTE_KIND_POSITION,

@@ -284,18 +284,22 @@ impl Checked {
         Ok(())
     }
 
-    /// Fails for directions and vectors in samples that cannot hold them.
+    /// Fails for directions, vectors and ids in samples that cannot hold them.
     pub(super) fn must_suit(&self, input: GraphInput) -> Outcome<()> {
         let (channels, shown) = match input.kind() {
-            ImageKind::Normal | ImageKind::Position => (3, "3 or 4"),
-            ImageKind::Motion => (2, "2 to 4"),
+            ImageKind::Normal | ImageKind::Position => (3, "3 or 4 channels of f16 or f32"),
+            ImageKind::Motion => (2, "2 to 4 channels of f16 or f32"),
+            // Ids are all bits of a float.
+            ImageKind::Cryptomatte => (4, "4 channels of f32"),
             _ => return Ok(()),
         };
-        if self.channels < channels || matches!(self.sample, Sample::U8 | Sample::U16) {
+        let is_short = matches!(self.sample, Sample::U8 | Sample::U16)
+            || self.sample == Sample::F16 && input.kind() == ImageKind::Cryptomatte;
+        if self.channels < channels || is_short {
             let name = input.id();
             return Err(Failure::new(
                 ISOPHOTE_ERROR_INPUT,
-                format!("input image '{name}' must have {shown} channels of f16 or f32"),
+                format!("input image '{name}' must have {shown}"),
             ));
         }
         Ok(())

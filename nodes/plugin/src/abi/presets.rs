@@ -35,6 +35,7 @@ pub static API: IsophotePresetsApi = IsophotePresetsApi {
     style_at_frame,
     style_value,
     style_frames,
+    style_left_out,
 };
 
 const _: () = assert!(Lengths::Relative.reference_height() == ISOPHOTE_REFERENCE_HEIGHT);
@@ -353,4 +354,19 @@ unsafe extern "C" fn style_frames(
         // SAFETY: the host promised that the place may be written.
         unsafe { args::put(count, found.len() as u32, "the place for the number of frames") }
     })
+}
+
+unsafe extern "C" fn style_left_out(
+    style: IsophoteStyle,
+    faults: *mut IsophoteText,
+    fault: *mut IsophoteFault,
+) -> IsophoteStatus {
+    // SAFETY: the host promised that both may be written.
+    unsafe {
+        call(fault, || {
+            let style = StyleObject::slots().get(style.id)?;
+            let left_out = json!(lock(&style.settings).left_out()).to_string();
+            Ok(args::fill(faults, &left_out)?)
+        })
+    }
 }

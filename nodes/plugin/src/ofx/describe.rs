@@ -158,7 +158,7 @@ fn clips(effect: &Effect, general: bool) -> Vec<Described> {
             let components: &[&CStr] = match guide.kind() {
                 // One channel holds no vector and no tones, and three have no place for a strength.
                 ImageKind::Motion | ImageKind::Position | ImageKind::Hatching => &COMPONENTS[..2],
-                ImageKind::Control | ImageKind::Flow => &COMPONENTS[..1],
+                ImageKind::Control | ImageKind::Flow | ImageKind::Cryptomatte => &COMPONENTS[..1],
                 ImageKind::Color
                 | ImageKind::Scalar
                 | ImageKind::Tensor

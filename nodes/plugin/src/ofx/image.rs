@@ -335,6 +335,8 @@ impl<'h> Fetched<'h> {
             ImageKind::Position => self.channels >= 3 && is_float,
             // Strengths are in alpha.
             ImageKind::Control | ImageKind::Flow => self.channels == 4,
+            // Ids are all bits of a float.
+            ImageKind::Cryptomatte => self.channels == 4 && self.sample == ISOPHOTE_SAMPLE_F32,
             // Of three channels, the fourth tone is none.
             ImageKind::Hatching => self.channels >= 3,
             ImageKind::Color
@@ -427,7 +429,9 @@ impl Beyond {
     pub fn of_guide(guide: GraphInput) -> Self {
         match guide {
             // Beside what they hold there is no object, and nothing is painted.
-            GraphInput::RestPosition | GraphInput::Flow | GraphInput::LinePaint => Self::Zero,
+            GraphInput::RestPosition | GraphInput::Flow | GraphInput::LinePaint | GraphInput::Cryptomatte => {
+                Self::Zero
+            }
             GraphInput::Paper | GraphInput::Hatching => Self::Tiled,
             _ => Self::Edge,
         }

@@ -95,17 +95,22 @@ fn from_file(host: &Host, instance: Handle, values: &Values<'_>) -> Result<std::
 
 /// The rules for things of a file that are not followed, and what to do.
 fn left_out(host: &Host, instance: Handle, opened: &Opened) -> Option<String> {
-    let things = opened.settings.left_out();
-    if !things.is_empty() {
-        let things = things.join(", ");
-        return Some(format!(
-            "Rules for {things} are left out: here things have numbers, as in id:3, and no looks of their own."
-        ));
+    let left_out: Vec<String> = opened.settings.left_out().iter().map(ToString::to_string).collect();
+    if !left_out.is_empty() {
+        return Some(format!("Some rules for things are left out. {}.", left_out.join(". ")));
     }
-    let needs_numbers = !opened.graph.rules().is_empty();
-    let is_missing = guide_clip(GraphInput::ObjectId).is_none_or(|name| !is_connected(host, instance, name));
-    (needs_numbers && is_missing)
-        .then(|| "The look has rules for things by number. Connect the clip Object id.".to_owned())
+    let is_missing = |guide| {
+        let is_told = opened.graph.rules().iter().any(|rule| rule.things.guide() == guide);
+        is_told && guide_clip(guide).is_none_or(|name| !is_connected(host, instance, name))
+    };
+    if is_missing(GraphInput::ObjectId) {
+        return Some("The look has rules for things by number. Connect the clip Object id.".to_owned());
+    }
+    is_missing(GraphInput::Cryptomatte).then(|| {
+        let connect =
+            "Connect its first layer (as crypto_object00), as RGBA floats, to the clip Cryptomatte.";
+        format!("The look has rules for things by their names in a Cryptomatte. {connect}")
+    })
 }
 
 /// The file that is chosen.
@@ -137,7 +142,7 @@ fn steady(graph: &mut Graph, values: &Values<'_>) -> isophote::Result<()> {
             graph.set(node, STEADINESS, Value::Float(wanted))?;
         }
     }
-    Ok(())
+    graph.looks_mut().iter_mut().try_for_each(|look| steady(&mut look.graph, values))
 }
 
 /// Share of the result in the picture.
@@ -152,6 +157,7 @@ pub fn mix(values: &Values<'_>) -> f32 {
 pub fn can_be_steady(graph: &Graph) -> bool {
     let specs = (0..graph.len()).filter_map(|index| graph.spec(graph.node(index).ok()?).ok());
     specs.into_iter().any(|spec| spec.is_steady())
+        || graph.looks().iter().any(|look| can_be_steady(&look.graph))
 }
 
 /// Reads the file again where the user asks. The host is given another number, by which it knows that its frames are old.

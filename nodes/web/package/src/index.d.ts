@@ -50,7 +50,19 @@ export type Look = Preset | Graph | string;
 
 export interface Port {
   id: string;
-  kind: "color" | "scalar" | "tensor" | "normal" | "depth" | "object_id" | "flow" | "motion" | "rest_position";
+  kind:
+    | "color"
+    | "scalar"
+    | "tensor"
+    | "normal"
+    | "depth"
+    | "object_id"
+    | "flow"
+    | "motion"
+    | "rest_position"
+    | "control"
+    | "hatching"
+    | "cryptomatte";
   doc: string;
   optional: boolean;
 }
@@ -125,7 +137,8 @@ export type Guide =
   | "control"
   | "paper"
   | "hatching"
-  | "line_paint";
+  | "line_paint"
+  | "cryptomatte";
 // end of guides
 
 /** A picture: anything that `GPUQueue.copyExternalImageToTexture` takes, or a texture of the same device. */

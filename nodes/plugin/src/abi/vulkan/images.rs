@@ -112,7 +112,7 @@ impl Given {
             ImageKind::Color => (3, Samples::Unsigned),
             ImageKind::Normal => (4, Samples::Signed),
             ImageKind::Control | ImageKind::Hatching | ImageKind::Flow => (4, Samples::Unsigned),
-            ImageKind::Position => (4, Samples::Float),
+            ImageKind::Position | ImageKind::Cryptomatte => (4, Samples::Float),
             ImageKind::Motion => (2, Samples::Float),
             ImageKind::Depth | ImageKind::ObjectId => (1, Samples::Float),
             _ => (1, Samples::Unsigned),
