@@ -102,9 +102,10 @@ pub struct IsophotePresetsApi {
     /// [any-thread] Opens a preset, or a graph as `graph_create_from_json` takes it. `graph` is the text of the graph file
     /// that the preset names, or null where it names none. The caller owns the style and destroys it.
     ///
-    /// Rules of a preset for things by number, such as `id:3`, count in requests with numbers of objects: what they say is
-    /// added to the control map and to the colours of lines. Rules by name, and looks of things, are for the host to
-    /// follow, which learns of them by `read`; it opens the preset without its objects if it follows all of them.
+    /// Rules of a preset for things count in requests with what tells these: those by number, such as `id:3`, with numbers of
+    /// objects, those by whole names, such as `cryptomatte:hero`, with a Cryptomatte. What they say is added to the control map and to
+    /// the colours of lines, and looks of things are laid over the result. `style_left_out` tells which rules cannot be followed. A host
+    /// that follows all of them by itself learns of them by `read`, and opens the preset without its objects.
     pub style_create_from_json: unsafe extern "C" fn(
         json: *const c_char,
         place: *const c_char,

@@ -2,13 +2,14 @@
 
 use std::path::Path;
 use std::sync::Arc;
+use std::time::Duration;
 
 use egui_kittest::Harness;
 use egui_kittest::kittest::Queryable;
 use image::{GrayImage, Luma};
 use isophote_files::files::Existing;
 use isophote_loader::Library;
-use isophote_window::jobs::carrying::CarryJob;
+use isophote_window::jobs::carrying::{CarryJob, Carrying};
 use isophote_window::jobs::document::{Document, Options};
 use isophote_window::jobs::export::ExportJob;
 use isophote_window::jobs::maps;
@@ -131,6 +132,28 @@ fn what_is_painted_on_key_frames_is_carried_as_the_program_carries_it() {
         assert!(frame == 1 || own != first, "frame {frame}");
     }
     assert_eq!(differing, 0);
+}
+
+#[test]
+fn maps_of_a_sequence_that_is_open_no_more_are_not_wanted() {
+    let folder = support::folder();
+    shot(folder.path());
+    let document =
+        Document::open(&folder.path().join("shot.####.exr"), &Options::default()).expect("a sequence");
+    let mut harness = window(&document);
+    paint(&mut harness, [80.0, 60.0]);
+    let session = harness.state();
+    let mut carrying = Carrying::new(&(Arc::new(|| {}) as Arc<dyn Fn() + Send + Sync>)).expect("a thread");
+    for (open, is_told) in [(Some(playback(session)), true), (None, false)] {
+        carrying.ask(CarryJob::of(playback(session), &session.library).expect("a key frame"));
+        carrying.follow(open);
+        let mut told = None;
+        while carrying.is_busy() {
+            told = carrying.answer();
+            std::thread::sleep(Duration::from_millis(2));
+        }
+        assert_eq!(matches!(told, Some(Outcome::Carried(..))), is_told);
+    }
 }
 
 #[test]

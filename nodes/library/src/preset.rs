@@ -24,8 +24,9 @@
 //!
 //! `objects` are rules for things in the picture, such as `[{"match": "cryptomatte:hero/*", "detail": 2, "lines": false}]`:
 //! factors from 1/4 to 4 on `detail`, `line_width`, `line_amount` and `medium`, no `lines`, or a `line_color`. Where several match,
-//! the last one counts. Rules by number (`id:3`) are the graph's that is opened, and count where a host gives numbers of objects. A
-//! host that knows things by name, or what they cover of pixels, makes maps of all of them, and opens the preset without.
+//! the last one counts. Rules by number (`id:3`) and by whole names (`cryptomatte:hero`) are the graph's that is opened, and so is the
+//! `look` that things have: they count where a host gives numbers of objects or a Cryptomatte. A host that knows all names, or what
+//! things cover of pixels, makes maps of all rules, and opens the preset without.
 //!
 //! This is the only reader of the format. It reads no files: whoever has them hands in their texts.
 

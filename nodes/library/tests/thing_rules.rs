@@ -146,7 +146,7 @@ fn presets_bring_rules_and_name_those_that_they_leave_out() {
         {"match": "cryptomatte:hero,b", "lines": false},
         {"match": "cryptomatte:props/*", "lines": false},
         {"match": "id:2", "look": "beside.json"},
-        {"match": "id:7", "lines": false}]}"##;
+        {"match": "id:7", "line_amount": 0.25}]}"##;
     let (graph, settings) = preset::open_json("p.json", json, None).unwrap();
     let left_out: Vec<&str> = settings.left_out().iter().map(|fault| fault.place.as_str()).collect();
     assert_eq!(left_out, ["cryptomatte:props/*", "id:2: its look"]);

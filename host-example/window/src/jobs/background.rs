@@ -139,6 +139,7 @@ impl Background {
     /// Follows the look that is shown, and asks for what is to be known of it and of the start.
     pub fn follow(&mut self, session: &Session) {
         self.looks.follow(session);
+        self.carrying.follow(session.open.playback());
         self.folder.follow(session);
         self.idle.follow(session);
     }

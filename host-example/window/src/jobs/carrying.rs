@@ -38,6 +38,8 @@ type Made = (Arc<KeyFrames>, Arc<CarriedMaps>);
 pub struct Carrying {
     wanted: Arc<AtomicU64>,
     worker: Worker<(u64, CarryJob), Option<Result<Made>>>,
+    /// The sequence that the last job is of.
+    asked: Option<Arc<Info>>,
 }
 
 impl Carrying {
@@ -53,13 +55,23 @@ impl Carrying {
             let made = job.carry(&is_wanted);
             is_wanted().then_some(made)
         };
-        Ok(Self { wanted, worker: Worker::new("carry", Arc::clone(wake), work)? })
+        Ok(Self { wanted, worker: Worker::new("carry", Arc::clone(wake), work)?, asked: None })
     }
 
     /// Asks for the maps of all frames, instead of what was asked for before.
     pub fn ask(&mut self, job: CarryJob) {
         let number = self.wanted.fetch_add(1, Ordering::Relaxed) + 1;
+        self.asked = Some(Arc::clone(&job.info));
         self.worker.ask((number, job));
+    }
+
+    /// Ends a job of a sequence that is open no more with the frame at hand; what is open is `playback`.
+    pub fn follow(&mut self, playback: Option<&Playback>) {
+        let is_open = |asked: &Arc<Info>| playback.is_some_and(|open| Arc::ptr_eq(open.info(), asked));
+        if self.asked.as_ref().is_some_and(|asked| !is_open(asked)) {
+            self.asked = None;
+            self.wanted.fetch_add(1, Ordering::Relaxed);
+        }
     }
 
     /// Maps since the last call, or why there are none.

@@ -10,7 +10,9 @@ const NEUTRAL: f32 = 0.0021;
 /// Number of a control map that stands for a factor of 1/4 to 4.
 pub fn value_of(factor: f32) -> f32 {
     let step = factor.log2() / 2.0;
-    if step == 0.0 { 0.5 } else { 0.5 + step * (0.5 - NEUTRAL) + NEUTRAL.copysign(step) }
+    let past = 0.5 + step * (0.5 - NEUTRAL) + NEUTRAL.copysign(step);
+    // Rounding may lead out of a map's range, where numbers say nothing.
+    if step == 0.0 { 0.5 } else { past.clamp(0.0, 1.0) }
 }
 
 /// A channel of a control map as -1..=1, 0 where it is neutral or not a number.
