@@ -215,14 +215,9 @@ pub fn field(kind: ImageKind, width: u32, height: u32) -> Image {
             false => two_things(&mut random, x, y),
         }),
         // Things that move each their way, and some that nobody knows.
-        ImageKind::Motion => from_fn(width, height, |x, y| {
-            if empty(x, y) {
-                return [f32::NAN, f32::INFINITY];
-            }
-            let jitter: [f32; 2] = [random.range(-0.5, 0.5), random.range(-0.5, 0.5)];
-            // About how far pictures move from frame to frame in `sweep::input`, or farther.
-            let base = if x / 13 % 2 == 0 { [-1.9, -1.05] } else { [-3.5, 2.0 + 0.02 * y as f32] };
-            [base[0] + jitter[0], base[1] + jitter[1]]
+        ImageKind::Motion => from_fn(width, height, |x, y| match empty(x, y) {
+            true => [f32::NAN, f32::INFINITY],
+            false => motion(&mut random, x, y),
         }),
         ImageKind::Position => from_fn(width, height, |x, y| {
             if empty(x, y) {
@@ -234,6 +229,13 @@ pub fn field(kind: ImageKind, width: u32, height: u32) -> Image {
             [0.02 * x as f32 - 3.0 * wall, 0.015 * y as f32 + leaf, 0.3 * wall + 0.002 * (x + y) as f32, 1.0]
         }),
     }
+}
+
+/// About how far pictures move from frame to frame in `sweep::input`, or farther.
+fn motion(random: &mut Random, x: i32, y: i32) -> [f32; 2] {
+    let jitter: [f32; 2] = [random.range(-0.5, 0.5), random.range(-0.5, 0.5)];
+    let base = if x / 13 % 2 == 0 { [-1.9, -1.05] } else { [-3.5, 2.0 + 0.02 * y as f32] };
+    [base[0] + jitter[0], base[1] + jitter[1]]
 }
 
 /// Two things of a pixel: ids of their names, and their shares, of which some are no numbers.
