@@ -1,11 +1,12 @@
 //! Frames that know each other: every order gives the same bits, a cut gives the still, and what cannot be carried
 //! leaves a frame alone.
 
-use isophote::graph::GraphInput;
+use isophote::graph::{GraphInput, ThingLook};
 use isophote::spec::NodeSpec;
+use isophote::things::{ThingRule, Things};
 use isophote::{Graph, Request, Value};
 use isophote_engine::Image;
-use isophote_tests::pictures::{from_fn, scenery};
+use isophote_tests::pictures::{from_fn, id_of_thing, scenery};
 use isophote_tests::sequences::Player;
 
 const SIZE: [u32; 2] = [97, 61];
@@ -38,8 +39,28 @@ fn moving(input: GraphInput, frame: i64, last: i64) -> Option<Image> {
         GraphInput::MotionForward => Some(from_fn(w, h, |_, _| STEP)),
         GraphInput::Depth => Some(from_fn(w, h, |_, _| [3.0])),
         GraphInput::ObjectId => Some(from_fn(w, h, |_, _| [1.0])),
+        GraphInput::Cryptomatte => {
+            let [left, right] = [1, 2].map(|number| f32::from_bits(id_of_thing(number)));
+            Some(from_fn(w, h, |x, _| match x as f32 - moved[0] {
+                x if x < 40.0 => [left, 1.0, 0.0, 0.0],
+                x if x < 41.0 => [right, 0.75, left, 0.25],
+                _ => [right, 1.0, 0.0, 0.0],
+            }))
+        }
         _ => None,
     }
+}
+
+/// A cartoon in which a thing has a look of its own and another one wider lines; all are steady.
+fn directed() -> Graph {
+    let cartoon = isophote::registry::find("cartoon").unwrap();
+    let watercolor = isophote::registry::find("watercolor").unwrap();
+    let mut graph = graph(cartoon, 0.6, 2);
+    let names = |number| Things::Names(vec![id_of_thing(number)]);
+    let control = [None, Some(0.9), None, None];
+    graph.set_rules(vec![ThingRule { things: names(2), control, line_color: None }]);
+    graph.looks_mut().push(ThingLook { things: names(1), graph: self::graph(watercolor, 0.6, 1) });
+    graph
 }
 
 fn texture(x: f32, y: f32) -> [f32; 4] {
@@ -53,24 +74,42 @@ fn request() -> Request {
     Request::new(SIZE[0], SIZE[1])
 }
 
+/// The frames of a graph, which every order gives to the bit.
+fn in_every_order(graph: &Graph, name: &str) -> Vec<Image> {
+    let source = |input, frame| moving(input, frame, 6);
+    let mut in_order = Player::new(graph.clone(), 1 << 30);
+    let frames: Vec<Image> = (0..=6).map(|n| in_order.frame(request(), n, &source)).collect();
+    let mut shuffled = Player::new(graph.clone(), 1 << 30);
+    for n in [5, 2, 2, 6, 0, 4, 1, 3] {
+        assert!(shuffled.frame(request(), n, &source) == frames[n as usize], "{name} {n}");
+    }
+    // Without room for anything, and with room for a frame or two.
+    for bytes in [0, 400_000] {
+        let mut forgetful = Player::new(graph.clone(), bytes);
+        for n in [6, 5, 3] {
+            assert!(forgetful.frame(request(), n, &source) == frames[n as usize], "{name} {n}");
+        }
+    }
+    frames
+}
+
 #[test]
 fn every_order_gives_the_same_bits() {
     for node in steady_nodes() {
-        let source = |input, frame| moving(input, frame, 6);
-        let mut in_order = Player::new(graph(node, 0.6, 2), 1 << 30);
-        let frames: Vec<Image> = (0..=6).map(|n| in_order.frame(request(), n, &source)).collect();
-        let mut shuffled = Player::new(graph(node, 0.6, 2), 1 << 30);
-        for n in [5, 2, 2, 6, 0, 4, 1, 3] {
-            assert!(shuffled.frame(request(), n, &source) == frames[n as usize], "{} {n}", node.id);
-        }
-        // Without room for anything, and with room for a frame or two.
-        for bytes in [0, 400_000] {
-            let mut forgetful = Player::new(graph(node, 0.6, 2), bytes);
-            for n in [6, 5, 3] {
-                assert!(forgetful.frame(request(), n, &source) == frames[n as usize], "{} {n}", node.id);
-            }
-        }
+        in_every_order(&graph(node, 0.6, 2), node.id);
     }
+}
+
+#[test]
+fn things_with_rules_and_looks_are_the_same_in_every_order() {
+    let frames = in_every_order(&directed(), "directed");
+    let [cartoon, watercolor] = [("cartoon", 2), ("watercolor", 1)].map(|(node, window)| {
+        let node = isophote::registry::find(node).unwrap();
+        in_every_order(&graph(node, 0.6, window), node.id)
+    });
+    // Far from borders of things each shows its own.
+    assert!(frames[3].pixel(4, 30) == watercolor[3].pixel(4, 30));
+    assert!(frames[3] != cartoon[3] && frames[3] != watercolor[3]);
 }
 
 #[test]

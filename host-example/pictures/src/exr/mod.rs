@@ -29,5 +29,6 @@ pub use self::mask::{MaskSource, OnUnknown, add};
 pub use self::names::components;
 pub use self::offers::{Layer, Offers};
 pub use self::picture::{OwnPixels, Picture};
+pub use self::whole_names::WholeNames;
 pub use isophote_cryptomatte::{MATERIALS, OBJECTS};
 pub use isophote_motion::Convention;

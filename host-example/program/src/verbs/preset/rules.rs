@@ -8,7 +8,7 @@ use serde_json::Value;
 use isophote_files::error::{Error, Result};
 use isophote_finishing::stylize::preset::{self, ObjectRule};
 use isophote_finishing::stylize::source;
-use isophote_pictures::exr::MaskSource;
+use isophote_pictures::exr::{MaskSource, WholeNames};
 use isophote_pictures::read::{Any, Unread};
 
 /// Keys of a rule for its things and for the look that they have.
@@ -57,8 +57,7 @@ fn beside(look: &Value, base: &Path) -> Option<std::ffi::OsString> {
 /// of `frame`, and looks in files.
 ///
 /// # Errors
-/// As [`preset::things`] and [`MaskSource::by_whole_names`]; [`Error::Input`] for a frame that is no EXR file and for looks that are no
-/// presets.
+/// As [`preset::things`] and [`WholeNames::words`]; [`Error::Input`] for a frame that is no EXR file and for looks that are no presets.
 pub fn write_out(rules: &mut [ObjectRule], base: &Path, frame: &Path) -> Result<()> {
     let place = base.display().to_string();
     let things: Vec<MaskSource> = preset::things(&place, rules).collect::<Result<_>>()?;
@@ -66,8 +65,9 @@ pub fn write_out(rules: &mut [ObjectRule], base: &Path, frame: &Path) -> Result<
     let Any::Exr(bytes) = unread.any(frame)? else {
         return Err(Error::file(frame, "is no EXR file, and has no Cryptomatte", "name a frame of the shot"));
     };
+    let names = WholeNames::of(frame, bytes)?;
     for (rule, things) in rules.iter_mut().zip(things) {
-        let words = things.by_whole_names(&rule.things, frame, bytes.clone())?;
+        let words = names.words(&things, &rule.things)?;
         rule.rule.insert(MATCH.into(), words.clone().into());
         rule.things = words;
         if let Some(look) = rule.rule.get_mut(LOOK)
