@@ -331,6 +331,7 @@ impl Instance<'_> {
         clip.set.put(kOfxImageClipPropConnected, vec![1.into()]);
         clip.set.put(kOfxImagePropPixelAspectRatio, vec![layout.aspect.into()]);
         clip.set.put(kOfxImageEffectPropFrameRange, range.map(Value::from).to_vec());
+        clip.set.put(kOfxImageEffectPropPixelDepth, vec![layout.depth.into()]);
         clip.set.put(kOfxImageEffectPropComponents, vec![layout.components.into()]);
         if let Some(alpha) = layout.alpha {
             clip.set.put(kOfxImageEffectPropPreMultiplication, vec![alpha.into()]);

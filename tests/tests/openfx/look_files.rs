@@ -211,6 +211,8 @@ pub fn rules_for_things_follow_their_names(binary: &Binary) {
     // Ids are all bits of a float: 16 of them are no Cryptomatte.
     let short = Layout { depth: kOfxBitDepthHalf, ..layout };
     instance.connect("Cryptomatte", Picture::packed_in(short, WIDTH, HEIGHT, &vec![0; names.len() / 2]));
+    of_file.choose(&path);
+    assert!(told().contains("no 32-bit floats"), "{}", told());
     assert!(instance.render(layout, SIZE).packed() == Through::of(&plain, SIZE).c(&inputs[..1], layout));
     host.no_faults();
 }

@@ -52,6 +52,12 @@ impl<'h> Clip<'h> {
         self.properties.int(kOfxImageClipPropConnected, 0) == Some(0)
     }
 
+    /// True where it says that its samples are no floats of 32 bits.
+    pub fn is_short(&self) -> bool {
+        let depth = self.properties.string(kOfxImageEffectPropPixelDepth, 0);
+        depth.is_some_and(|depth| depth.as_c_str() != kOfxBitDepthFloat)
+    }
+
     /// True where it has a frame at a time: unless it says that it has not.
     pub fn has_frame(&self, time: f64) -> bool {
         let range = self.properties.doubles::<2>(kOfxImageEffectPropFrameRange);

@@ -2,6 +2,7 @@
 
 use super::clips::{guide_clip, guide_label, is_connected};
 use super::host::Host;
+use super::image::Clip;
 use super::preset_files::{self, Opened};
 use super::shipped;
 use super::values::Values;
@@ -106,10 +107,16 @@ fn left_out(host: &Host, instance: Handle, opened: &Opened) -> Option<String> {
     if is_missing(GraphInput::ObjectId) {
         return Some("The look has rules for things by number. Connect the clip Object id.".to_owned());
     }
-    is_missing(GraphInput::Cryptomatte).then(|| {
+    if is_missing(GraphInput::Cryptomatte) {
         let connect =
             "Connect its first layer (as crypto_object00), as RGBA floats, to the clip Cryptomatte.";
-        format!("The look has rules for things by their names in a Cryptomatte. {connect}")
+        return Some(format!("The look has rules for things by their names in a Cryptomatte. {connect}"));
+    }
+    let by_name = opened.graph.rules().iter().any(|rule| rule.things.guide() == GraphInput::Cryptomatte);
+    let clip = guide_clip(GraphInput::Cryptomatte).and_then(|name| Clip::of(host, instance, name));
+    (by_name && clip.is_some_and(|clip| clip.is_short())).then(|| {
+        "The clip Cryptomatte has no 32-bit floats, which names of things are. Give it floats that nothing has converted."
+            .to_owned()
     })
 }
 
