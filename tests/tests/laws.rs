@@ -1,5 +1,6 @@
 //! The laws of the house: names, orphans, promises, documents.
 
+mod locks;
 mod texts;
 
 use isophote::kernels::KERNELS;
