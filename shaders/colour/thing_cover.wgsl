@@ -22,7 +22,7 @@ fn of_pixel(id: vec3u, object_id: vec4f, cryptomatte: vec4f, below: vec4f) -> ve
     var share = select(0.0, below.x, (reads & 4u) > 0u);
     let count = params.count;
     for (var i = 0u; i < count; i++) {
-        share += covered(params.entries[i], object_id.x, cryptomatte, reads);
+        share += thing_share(params.entries[i], object_id.x, cryptomatte, reads);
     }
     return vec4f(min(share, 1.0), 0.0, 0.0, 0.0);
 }

@@ -43,7 +43,7 @@ fn of_pixel(id: vec3u, object_id: vec4f, cryptomatte: vec4f, below: vec4f) -> ve
     let count = params.count;
     for (var i = 0u; i < count; i++) {
         let things = params.entries[2u * i];
-        share += covered(things, object_id.x, cryptomatte, reads);
+        share += thing_share(things, object_id.x, cryptomatte, reads);
         if things.w > 0.0 {
             value = laid_over(value, params.entries[2u * i + 1u], min(share, 1.0));
             share = 0.0;

@@ -8,7 +8,7 @@ const HAS_NAMES: u32 = 2u;
 
 // Share of a pixel, 0..=1, whose things an entry of a table is for: first and last number of objects or, where z is not 0, the id of a
 // name. A Cryptomatte has two things of a pixel: ids in x and z, and how much of it they cover in y and w.
-fn covered(entry: vec4f, number: f32, matte: vec4f, reads: u32) -> f32 {
+fn thing_share(entry: vec4f, number: f32, matte: vec4f, reads: u32) -> f32 {
     if entry.z > 0.0 {
         let shares = select(vec2f(0.0), matte.yw, vec2<bool>(is_finite(matte.y), is_finite(matte.w)));
         let own = select(vec2f(0.0), shares, matte.xz == vec2f(entry.x));
